@@ -1,0 +1,62 @@
+"""What the toolkit says when it cannot go on.
+
+Two kinds are told apart everywhere: the caller gave something unusable (`InputError`, exit code 2),
+or the work was done and its honest answer is "no" (`Refusal`, exit code 1).
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+
+class ToolkitError(Exception):
+    """One message in three parts: what is wrong, where, and what to do about it.
+
+    Parameters
+    ----------
+    what
+        The finding, without a final full stop.
+    where
+        File, line, column, joint or frame that it was found at.
+    remedy
+        What the reader can do.
+    """
+
+    exit_code: ClassVar[int] = 1
+
+    def __init__(self, what: str, *, where: str | None = None, remedy: str | None = None) -> None:
+        self.what = what.rstrip(".")
+        self.where = where
+        self.remedy = remedy
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        place = f"{self.where}: " if self.where else ""
+        remedy = f" {self.remedy}" if self.remedy else ""
+        return f"{place}{self.what}.{remedy}"
+
+
+class InputError(ToolkitError):
+    """A file, an option or an argument that cannot be used as given."""
+
+    exit_code = 2
+
+
+class Refusal(ToolkitError):
+    """The input was fine and the work was done, but there is no honest result to hand out."""
+
+    exit_code = 1
+
+
+class MissingPart(InputError):
+    """An optional part of the toolkit is not installed; the remedy is the install command."""
+
+    def __init__(self, library: str, extra: str, *, needed_for: str) -> None:
+        super().__init__(
+            f"{needed_for} needs the library {library!r}, which is not installed",
+            remedy=f'Install it with: pip install "sk120stiff[{extra}]"',
+        )
+
+
+class ToolkitWarning(UserWarning):
+    """Something suspicious that does not stop the work."""

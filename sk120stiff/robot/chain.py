@@ -1,0 +1,177 @@
+"""A serial chain of one-degree-of-freedom joints as plain arrays, and its kinematics.
+
+The constants are read once out of the Pinocchio model; everything after that is array work for one
+pose or for many. A *virtual joint* (a bearing that tilts, a slice of a beam, a base on its
+foundation) is one more joint of the chain, so compliance anywhere needs no other formula.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True, eq=False)
+class VirtualJoint:
+    """A joint that no motor drives, placed somewhere along a chain.
+
+    Attributes
+    ----------
+    name
+        Unique name, e.g. ``link_bending:link_2_l[3].y``.
+    body
+        Index of the chain joint that carries it (it sits on that joint's moving side); -1 for the
+        base.
+    placement
+        (4, 4) its frame in the frame of that joint [m].
+    axis
+        (3,) unit direction in its own frame.
+    revolute
+        Rotation about the axis if true, translation along it else.
+    """
+
+    name: str
+    body: int
+    placement: Array
+    axis: Array
+    revolute: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Constants of a serial chain from a base frame to an end frame.
+
+    Attributes
+    ----------
+    names
+        Joint names, base to end.
+    placements
+        (m + 1, 4, 4) constant transform before each joint, and from the last joint to the end
+        frame [m].
+    axes
+        (m, 3) unit joint axes in the joint frames.
+    revolute
+        (m,) true for rotation, false for translation.
+    coordinates
+        (m,) index of each joint's value in the joint vector [q of all robot joints; virtual].
+    """
+
+    names: tuple[str, ...]
+    placements: Array
+    axes: Array
+    revolute: NDArray[np.bool_]
+    coordinates: NDArray[np.intp]
+
+    def __post_init__(self) -> None:
+        m = len(self.names)
+        shapes = (self.placements.shape, self.axes.shape, self.revolute.shape)
+        if shapes != ((m + 1, 4, 4), (m, 3), (m,)) or self.coordinates.shape != (m,):
+            raise ValueError(f"chain of {m} joints with arrays of shapes {shapes}")
+
+    @property
+    def m(self) -> int:
+        """Number of joints of the chain."""
+        return len(self.names)
+
+    def with_virtual_joints(self, virtual: Sequence[VirtualJoint], first_index: int) -> Chain:
+        """The same chain with `virtual` joints inserted, in the given order on each body.
+
+        Parameters
+        ----------
+        virtual
+            Joints to insert; several on one body act one after the other as listed.
+        first_index
+            Index of the first virtual joint's value in the joint vector.
+        """
+        names: list[str] = []
+        placements: list[Array] = []
+        axes: list[Array] = []
+        revolute: list[bool] = []
+        coordinates: list[int] = []
+        for body in range(-1, self.m):
+            if body >= 0:
+                names.append(self.names[body])
+                axes.append(self.axes[body])
+                revolute.append(bool(self.revolute[body]))
+                coordinates.append(int(self.coordinates[body]))
+            back = np.eye(4)
+            for k, joint in enumerate(virtual):
+                if joint.body != body:
+                    continue
+                placements.append(back @ joint.placement)
+                back = np.linalg.inv(joint.placement)
+                names.append(joint.name)
+                axes.append(joint.axis)
+                revolute.append(joint.revolute)
+                coordinates.append(first_index + k)
+            placements.append(back @ self.placements[body + 1])
+        return Chain(
+            tuple(names),
+            np.array(placements),
+            np.array(axes).reshape(-1, 3),
+            np.array(revolute, dtype=bool),
+            np.array(coordinates, dtype=np.intp),
+        )
+
+    def sweep(self, q: Array) -> tuple[Array, Array, Array, Array]:
+        """Forward kinematics that keeps every joint on the way.
+
+        Parameters
+        ----------
+        q
+            (..., m) joint values [rad or m].
+
+        Returns
+        -------
+        axes, origins
+            (..., m, 3) joint axes and joint origins in base axes [m].
+        rotation, position
+            (..., 3, 3) and (..., 3) of the end frame in the base frame [m].
+        """
+        batch = q.shape[:-1]
+        count = int(np.prod(batch, dtype=int))
+        flat = q.reshape(count, self.m)
+        sines, cosines = np.sin(flat), np.cos(flat)
+        axes = np.empty((count, self.m, 3))
+        origins = np.empty((count, self.m, 3))
+        rotation = np.broadcast_to(np.eye(3), (count, 3, 3))
+        position = np.zeros((count, 3))
+        for k in range(self.m):
+            position = position + rotation @ self.placements[k, :3, 3]
+            rotation = _times(rotation, self.placements[k, :3, :3])
+            axes[:, k] = rotation @ self.axes[k]
+            if self.revolute[k]:
+                cross = skew(self.axes[k])
+                swept = _times(rotation, cross)
+                rotation = (
+                    rotation
+                    + sines[:, k, None, None] * swept
+                    + (1.0 - cosines[:, k, None, None]) * _times(swept, cross)
+                )
+            else:
+                position = position + flat[:, k, None] * axes[:, k]
+            origins[:, k] = position
+        position = position + rotation @ self.placements[-1, :3, 3]
+        rotation = _times(rotation, self.placements[-1, :3, :3])
+        return (
+            axes.reshape(*batch, self.m, 3),
+            origins.reshape(*batch, self.m, 3),
+            rotation.reshape(*batch, 3, 3),
+            position.reshape(*batch, 3),
+        )
+
+
+def skew(vector: Array) -> Array:
+    """(3, 3) matrix whose product with x is vector × x."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _times(many: Array, one: Array) -> Array:
+    """(N, 3, 3) @ (3, 3) as a single matrix product, which is several times faster."""
+    return (many.reshape(-1, 3) @ one).reshape(many.shape)

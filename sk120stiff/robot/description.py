@@ -1,0 +1,67 @@
+"""`robot.yaml`: what a URDF cannot say about a robot arm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sk120stiff.errors import InputError
+from sk120stiff.files import read_text
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CouplingRule(_Strict):
+    """value = multiplier · driver + offset, in rad or m."""
+
+    driver: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+class RobotDescription(_Strict):
+    """The keys of `robot.yaml`; every one has a default."""
+
+    name: str | None = None
+    urdf: str = "robot.urdf"
+    base_frame: str | None = None
+    tool_frame: str | None = None
+    actuated: tuple[str, ...] | None = None
+    couplings: dict[str, CouplingRule] = Field(default_factory=dict)
+    lock: dict[str, float] = Field(default_factory=dict)
+    foundation: tuple[float, float, float] | None = None
+    notes: tuple[str, ...] = ()
+
+
+def read_description(path: Path) -> RobotDescription:
+    """Read and check a `robot.yaml`.
+
+    Raises
+    ------
+    InputError
+        Not YAML, an unknown key, or a value of the wrong kind; file, line or key are named.
+    """
+    try:
+        content = yaml.safe_load(read_text(path))
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f", line {mark.line + 1}" if mark else ""
+        raise InputError(
+            f"this is not valid YAML ({getattr(error, 'problem', error)})",
+            where=f"{path}{line}",
+            remedy="Mend the syntax at that line.",
+        ) from error
+    try:
+        return RobotDescription.model_validate(content or {})
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(
+            f"key {key!r}: {first['msg'].lower()}",
+            where=str(path),
+            remedy="Keys are: " + ", ".join(RobotDescription.model_fields) + ".",
+        ) from error

@@ -1,0 +1,209 @@
+"""From whatever the user names, a bundled robot, a folder or a URDF, to a `Robot`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff.errors import InputError
+from sk120stiff.robot.bundled import bundled_robots
+from sk120stiff.robot.coupling import Follower, linear_coupling
+from sk120stiff.robot.description import RobotDescription, read_description
+from sk120stiff.robot.robot import Robot
+from sk120stiff.robot.tree import Tree
+from sk120stiff.robot.urdf import UrdfDocument, default_frames, read_urdf
+
+Source = str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class RobotSource:
+    """Where a robot comes from: its URDF, and its `robot.yaml` where there is one."""
+
+    urdf: Source
+    folder: Path | None = None
+    description: RobotDescription = field(default_factory=RobotDescription)
+
+    @property
+    def model_file(self) -> Path | None:
+        """The base model that lies beside `robot.yaml`, if any."""
+        candidate = self.folder / "model.yaml" if self.folder else None
+        return candidate if candidate and candidate.is_file() else None
+
+
+def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSource:
+    """Tell a bundled name, a folder with `robot.yaml`, a file and URDF text apart.
+
+    Parameters
+    ----------
+    source
+        Bundled name, path or XML text.
+    relative_to
+        Folder against which a relative path is tried first.
+
+    Raises
+    ------
+    InputError
+        Nothing of that name; the bundled robots are listed.
+    """
+    text = os.fspath(source)
+    if text.lstrip().startswith("<"):
+        return RobotSource(urdf=text)
+    bundled = bundled_robots()
+    candidates = [relative_to / text] if relative_to else []
+    candidates.append(Path(text))
+    path = next((p for p in candidates if p.exists()), None)
+    if path is None and text in bundled:
+        path = bundled[text]
+    if path is None:
+        raise InputError(
+            "there is no such robot",
+            where=text,
+            remedy="Give a .urdf, a .xacro, a folder with robot.yaml, or a bundled name: "
+            + ", ".join(sorted(bundled))
+            + ".",
+        )
+    if path.is_dir() and (path / "robot.yaml").is_file():
+        description = read_description(path / "robot.yaml")
+        return RobotSource(path / description.urdf, path, description)
+    return RobotSource(urdf=path)
+
+
+def load_robot(
+    source: Source,
+    *,
+    base: str | None = None,
+    tool: str | None = None,
+    actuated: Sequence[str] | None = None,
+    lock: Mapping[str, float] | None = None,
+    relative_to: Path | None = None,
+) -> Robot:
+    """Load the rigid kinematics of any robot arm.
+
+    Parameters
+    ----------
+    source
+        Bundled name (``"motoman_sk120"``), ``.urdf`` or ``.xacro`` file, folder with
+        ``robot.yaml``, or URDF text.
+    base, tool
+        Frames (URDF links) between which the arm is described. Default: what ``robot.yaml`` says,
+        else the root and the only or longest leaf.
+    actuated
+        Joints that motors drive, in the wanted order. Default: what ``robot.yaml`` says, else all
+        moving joints between base and tool that mimic no other.
+    lock
+        Values [rad or m] at which joints that are not actuated are held; zero else.
+    relative_to
+        Folder against which a relative path is tried first.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or describes no arm; the message names place and remedy.
+    """
+    found = find_robot(source, relative_to=relative_to)
+    document = read_urdf(found.urdf)
+    description = found.description
+    tree = Tree(document.xml)
+    guessed_base, guessed_tool, _ = default_frames(document)
+    base_frame = base or description.base_frame or guessed_base
+    tool_frame = tool or description.tool_frame or guessed_tool
+    followers = _followers(document, description)
+    chosen = tuple(actuated or description.actuated or _drivers(tree, base_frame, tool_frame, followers))
+    _check_actuated(chosen, tree, followers, document)
+    rest = {**description.lock, **(lock or {})}
+    for name in rest:
+        tree.joint_index(name)
+    coupling = linear_coupling(tree.joint_names, chosen, followers, rest)
+    lower, upper = _limits(document, chosen)
+    foundation = description.foundation
+    return Robot(
+        name=description.name or document.name,
+        base_frame=base_frame,
+        tool_frame=tool_frame,
+        actuated=chosen,
+        lower=lower,
+        upper=upper,
+        tree=tree,
+        coupling=coupling,
+        document=document,
+        source=os.fspath(source),
+        followers=followers,
+        locked={
+            name: rest.get(name, 0.0)
+            for name in tree.joint_names
+            if name not in chosen and name not in followers
+        },
+        foundation=np.zeros(3) if foundation is None else np.array(foundation, dtype=float),
+        notes=tuple(description.notes),
+    )
+
+
+def _followers(document: UrdfDocument, description: RobotDescription) -> dict[str, Follower]:
+    """Mimic rules of the URDF, extended and overruled by those of `robot.yaml`."""
+    rules = {
+        joint.name: Follower(*joint.mimic) for joint in document.joints if joint.mimic is not None
+    }
+    for name, rule in description.couplings.items():
+        rules[name] = Follower(rule.driver, rule.multiplier, rule.offset)
+    return rules
+
+
+def _drivers(
+    tree: Tree, base: str, tool: str, followers: Mapping[str, Follower]
+) -> tuple[str, ...]:
+    """Joints on the way to the tool that follow no other, and the drivers of those that do."""
+    found: list[str] = []
+    for k in tree.path(base, tool):
+        name = tree.joint_names[k]
+        seen = {name}
+        while name in followers:
+            name = followers[name].driver
+            if name in seen or name not in tree.joint_names:
+                break  # linear_coupling refuses this with the full story
+            seen.add(name)
+        if name not in found and name in tree.joint_names:
+            found.append(name)
+    return tuple(found)
+
+
+def _check_actuated(
+    chosen: tuple[str, ...],
+    tree: Tree,
+    followers: Mapping[str, Follower],
+    document: UrdfDocument,
+) -> None:
+    if not chosen:
+        raise InputError(
+            "no joint moves between the base frame and the tool frame",
+            where=document.name,
+            remedy="Choose other frames with --base and --tool.",
+        )
+    for name in chosen:
+        tree.joint_index(name)
+        if name in followers:
+            raise InputError(
+                f"this joint follows {followers[name].driver!r} and cannot be actuated",
+                where=f"joint {name!r}",
+                remedy="Leave it out of the actuated joints, or remove its mimic rule.",
+            )
+    if len(set(chosen)) < len(chosen):
+        raise InputError("an actuated joint is named twice", where=document.name)
+
+
+def _limits(document: UrdfDocument, chosen: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Limits the URDF states for the actuated joints; infinite where it states none."""
+    specs = {joint.name: joint for joint in document.joints}
+    lower = np.full(len(chosen), -np.inf)
+    upper = np.full(len(chosen), np.inf)
+    for k, name in enumerate(chosen):
+        joint = specs[name]
+        if joint.type == "continuous" or joint.lower is None or joint.upper is None:
+            continue
+        if joint.lower < joint.upper:
+            lower[k], upper[k] = joint.lower, joint.upper
+    return lower, upper

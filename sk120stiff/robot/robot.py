@@ -1,0 +1,168 @@
+"""The rigid robot: what moves, what follows, and where every point of it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.errors import InputError
+from sk120stiff.robot.coupling import Array, Coupling, Follower
+from sk120stiff.robot.screws import Mechanism, Screws
+from sk120stiff.robot.tree import Tree
+
+if TYPE_CHECKING:
+    from sk120stiff.robot.urdf import UrdfDocument
+
+STANDARD_GRAVITY = 9.80665  # m/s²
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """Rigid kinematics of an arm in its actuated coordinates; made by `load_robot`.
+
+    Everything that takes coordinates ``a`` takes one pose (n,) or any batch (..., n), in rad for
+    joints that turn and m for joints that slide.
+
+    Attributes
+    ----------
+    name
+        Name of the robot.
+    actuated
+        The n joints that motors drive, in the order of ``a``.
+    base_frame, tool_frame
+        Frames between which the arm is described. All results are in axes of `base_frame`.
+    lower, upper
+        (n,) joint limits; infinite where none are published.
+    followers
+        Mimic rule of every coupled joint.
+    foundation
+        (3,) point of the base frame about which the base rocks [m].
+    gravity
+        (3,) acceleration in axes of the URDF's root [m/s²].
+    """
+
+    name: str
+    base_frame: str
+    tool_frame: str
+    actuated: tuple[str, ...]
+    lower: Array
+    upper: Array
+    tree: Tree
+    coupling: Coupling
+    document: UrdfDocument
+    source: str
+    followers: dict[str, Follower] = field(default_factory=dict)
+    locked: dict[str, float] = field(default_factory=dict)
+    foundation: Array = field(default_factory=lambda: np.zeros(3))
+    gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -STANDARD_GRAVITY]))
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Robot {self.name}: {', '.join(self.actuated)}; {self.tool_frame}>"
+
+    @property
+    def n(self) -> int:
+        """Number of actuated coordinates."""
+        return len(self.actuated)
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        """Names of all frames (URDF links)."""
+        return self.tree.frame_names
+
+    @cached_property
+    def prismatic(self) -> tuple[bool, ...]:
+        """For each actuated joint: does it slide (metres) rather than turn (radians)?"""
+        return tuple(not self.tree.revolute[self.tree.joint_index(j)] for j in self.actuated)
+
+    @cached_property
+    def _mechanisms(self) -> dict[str, Mechanism]:
+        return {}
+
+    def mechanism(self, frame: str | None = None) -> Mechanism:
+        """Chain and coupling from the base frame to `frame` (default: the tool)."""
+        name = frame or self.tool_frame
+        if name not in self._mechanisms:
+            chain = self.tree.chain(self.base_frame, name)
+            self._mechanisms[name] = Mechanism(chain, self.coupling)
+        return self._mechanisms[name]
+
+    def screws(
+        self, a: ArrayLike, frame: str | None = None, point: ArrayLike | None = None
+    ) -> Screws:
+        """Unit twists of the joints at `point` (3,) [m, axes of `frame`] for coordinates `a`.
+
+        Raises
+        ------
+        InputError
+            `a` has another number of coordinates, is not finite, or `frame` does not exist.
+        """
+        coordinates = self.coordinates(a)
+        at = None if point is None else np.asarray(point, dtype=float)
+        return self.mechanism(frame).screws(coordinates, at)
+
+    def placement(
+        self, a: ArrayLike, frame: str | None = None, point: ArrayLike | None = None
+    ) -> Array:
+        """(..., 4, 4) T_base_frame, with its origin moved to `point` of the frame [m]."""
+        screws = self.screws(a, frame, point)
+        T_base_frame = np.zeros((*screws.position.shape[:-1], 4, 4))
+        T_base_frame[..., :3, :3] = screws.rotation
+        T_base_frame[..., :3, 3] = screws.position
+        T_base_frame[..., 3, 3] = 1.0
+        return T_base_frame
+
+    def jacobian(
+        self, a: ArrayLike, frame: str | None = None, point: ArrayLike | None = None
+    ) -> Array:
+        """(..., 6, n) Jacobian of a point by the actuated coordinates, [linear; angular].
+
+        Base axes, Pinocchio's LOCAL_WORLD_ALIGNED. Units m/rad and rad/rad (per m for slides).
+        """
+        return self.screws(a, frame, point).jacobian
+
+    def joint_values(self, a: ArrayLike) -> dict[str, Array]:
+        """Value (...,) of every moving joint, coupled ones included, by joint name."""
+        q = self.coupling.motion(self.coordinates(a)).q
+        return {name: q[..., k] for k, name in enumerate(self.tree.joint_names)}
+
+    def gravity_torque(self, a: ArrayLike) -> Array:
+        """(..., n) torques by which the robot's own weight drives the actuated joints [N·m or N].
+
+        Zero for a robot whose URDF states no mass: ask `total_mass` before you trust it.
+        """
+        coordinates = self.coordinates(a)
+        flat = coordinates.reshape(-1, self.n)
+        torques = np.empty_like(flat)
+        for k, row in enumerate(flat):
+            motion = self.coupling.motion(row)
+            torques[k] = self.tree.gravity_torques(motion.q, self.gravity) @ motion.first
+        return torques.reshape(coordinates.shape)
+
+    @cached_property
+    def total_mass(self) -> float:
+        """Sum of all link masses the URDF states, the root's included [kg]."""
+        return float(sum(link.mass for link in self.document.links))
+
+    def coordinates(self, a: ArrayLike) -> Array:
+        """`a` as an array (..., n) of finite numbers.
+
+        Raises
+        ------
+        InputError
+            Another number of coordinates, or a value that is not finite.
+        """
+        values = np.asarray(a, dtype=float)
+        if values.shape[-1:] != (self.n,):
+            raise InputError(
+                f"{values.shape[-1] if values.ndim else 1} coordinates given, but {self.name} has "
+                f"{self.n} actuated joints",
+                remedy=f"Give one value for each of: {', '.join(self.actuated)}.",
+            )
+        if not np.isfinite(values).all():
+            raise InputError("a joint coordinate is not a finite number", where=self.name)
+        return values

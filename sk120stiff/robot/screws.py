@@ -1,0 +1,142 @@
+"""A mechanism at a pose: the unit twists of its joints at a point, and what follows from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot.chain import Chain, VirtualJoint
+from sk120stiff.robot.coupling import Array, Coupling
+
+
+@dataclass(frozen=True, eq=False)
+class Screws:
+    """Joint axes of a chain at one pose or many, seen from a point of the end frame.
+
+    Attributes
+    ----------
+    axes, origins
+        (..., m, 3) unit joint axes and points on them, in base axes [m].
+    revolute
+        (m,) rotation or translation.
+    rotation, frame_position
+        (..., 3, 3) and (..., 3) of the end frame [m].
+    point
+        (3,) or (..., 3) the point, in the end frame [m].
+    first, second
+        (..., m, n) and (..., m, n, n) or None: derivatives of the joint values by the coordinates.
+    """
+
+    axes: Array
+    origins: Array
+    revolute: NDArray[np.bool_]
+    rotation: Array
+    frame_position: Array
+    point: Array
+    first: Array
+    second: Array | None = None
+
+    @cached_property
+    def position(self) -> Array:
+        """(..., 3) position of the point in the base frame [m]."""
+        return self.frame_position + np.einsum("...ij,...j->...i", self.rotation, self.point)
+
+    @cached_property
+    def angular(self) -> Array:
+        """(..., m, 3) angular parts w_k of the unit twists [rad per rad, 0 for a slide]."""
+        if self.revolute.all():
+            return self.axes
+        return np.where(self.revolute[:, None], self.axes, 0.0)
+
+    @cached_property
+    def linear(self) -> Array:
+        """(..., m, 3) linear parts v_k of the unit twists at the point [m per rad, or 1]."""
+        turned = np.cross(self.axes, self.position[..., None, :] - self.origins)
+        if self.revolute.all():
+            return turned
+        return np.where(self.revolute[:, None], turned, self.axes)
+
+    @cached_property
+    def jacobian(self) -> Array:
+        """(..., 6, n) Jacobian of the point by the coordinates, [linear; angular], base axes."""
+        columns = np.concatenate([self.linear, self.angular], axis=-1)  # (..., m, 6)
+        return np.swapaxes(columns, -1, -2) @ self.first
+
+    @cached_property
+    def linear_jacobian(self) -> Array:
+        """(..., 3, n) the upper half of `jacobian`, without computing the lower one."""
+        return np.swapaxes(self.linear, -1, -2) @ self.first
+
+    def joint_torques(self, wrench: Array) -> Array:
+        """(..., m) torque of a wrench (..., 6) about every chain joint, Jᵀ W [N·m or N]."""
+        force, moment = wrench[..., None, :3], wrench[..., None, 3:]
+        return (self.linear * force).sum(-1) + (self.angular * moment).sum(-1)
+
+    def torques(self, wrench: Array) -> Array:
+        """(..., n) generalised forces of a wrench (..., 6) on the coordinates [N·m or N]."""
+        per_joint = self.joint_torques(wrench)
+        return (per_joint[..., None, :] @ self.first)[..., 0, :]
+
+    def at(self, point: Array) -> Screws:
+        """The same pose seen from another point of the end frame, (3,) or (..., 3) [m]."""
+        return replace(self, point=np.asarray(point, dtype=float))
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """A chain whose joints follow generalised coordinates z = [a; v].
+
+    ``a`` are the actuated coordinates, ``v`` the displacements of the virtual joints (rigid robots
+    have none).
+    """
+
+    chain: Chain
+    coupling: Coupling
+    virtual: tuple[VirtualJoint, ...] = field(default=())
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates, actuated and virtual."""
+        return self.coupling.n + len(self.virtual)
+
+    def with_virtual_joints(self, virtual: Sequence[VirtualJoint]) -> Mechanism:
+        """This mechanism with compliance at the given places."""
+        if self.virtual:
+            raise ValueError("virtual joints are inserted once, all together")
+        joints = int(self.coupling.motion(np.zeros(self.coupling.n)).q.shape[-1])
+        chain = self.chain.with_virtual_joints(virtual, joints)
+        return Mechanism(chain, self.coupling, tuple(virtual))
+
+    def screws(self, z: Array, point: Array | None = None) -> Screws:
+        """Kinematics at coordinates `z` (..., n), seen from `point` of the end frame [m]."""
+        z = np.asarray(z, dtype=float)
+        n_a, n_v = self.coupling.n, len(self.virtual)
+        motion = self.coupling.motion(z[..., :n_a])
+        q, first, second = motion.q, motion.first, motion.second
+        if n_v:
+            m = q.shape[-1]
+            q = np.concatenate([q, z[..., n_a:]], axis=-1)
+            wide = np.zeros((*first.shape[:-2], m + n_v, n_a + n_v))
+            wide[..., :m, :n_a] = first
+            wide[..., np.arange(m, m + n_v), np.arange(n_a, n_a + n_v)] = 1.0
+            first = wide
+            if second is not None:
+                tall = np.zeros((*second.shape[:-3], m + n_v, n_a + n_v, n_a + n_v))
+                tall[..., :m, :n_a, :n_a] = second
+                second = tall
+        pick = self.chain.coordinates
+        axes, origins, rotation, position = self.chain.sweep(q[..., pick])
+        return Screws(
+            axes=axes,
+            origins=origins,
+            revolute=self.chain.revolute,
+            rotation=rotation,
+            frame_position=position,
+            point=np.zeros(3) if point is None else np.asarray(point, dtype=float),
+            first=first[..., pick, :],
+            second=None if second is None else second[..., pick, :, :],
+        )

@@ -1,0 +1,190 @@
+"""The one file that talks to Pinocchio: a kinematic tree read from clean URDF text.
+
+Pinocchio parses, places and weighs; we keep the coupling of mimic joints ourselves, because its own
+mimic support refuses or falsifies several derivatives. Every name is checked before Pinocchio sees
+it: a wrong frame id would corrupt its memory instead of raising.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+
+from sk120stiff.errors import InputError
+from sk120stiff.robot.chain import Chain
+from sk120stiff.robot.coupling import Array
+from sk120stiff.robot.urdf import captured_stderr
+
+
+class Tree:
+    """All moving joints and frames of a URDF, with Pinocchio's constants and dynamics.
+
+    Joint values are the tangent coordinates ``q`` (m,) in Pinocchio's joint order, one number per
+    joint, also for continuous joints.
+    """
+
+    def __init__(self, xml: str) -> None:
+        with captured_stderr() as said:
+            try:
+                self._model = pin.buildModelFromXML(xml, mimic=False)
+            except (ValueError, RuntimeError) as error:
+                raise InputError(
+                    f"Pinocchio cannot build this robot: {said.text.strip() or error}",
+                    remedy="Repair the URDF at the element named above.",
+                ) from error
+        if any(joint.nv != 1 for joint in list(self._model.joints)[1:]):
+            raise ValueError("a joint with several degrees of freedom reached the kinematic tree")
+        self._data = self._model.createData()
+        self.joint_names: tuple[str, ...] = tuple(self._model.names)[1:]
+        self.frame_names: tuple[str, ...] = tuple(
+            frame.name for frame in self._model.frames if frame.type == pin.FrameType.BODY
+        )
+
+    @property
+    def m(self) -> int:
+        """Number of moving joints."""
+        return len(self.joint_names)
+
+    @cached_property
+    def axes(self) -> Array:
+        """(m, 3) unit joint axes in the joint frames."""
+        return self._local_twists[:, :3] + self._local_twists[:, 3:]
+
+    @cached_property
+    def revolute(self) -> np.ndarray:
+        """(m,) true where the joint turns."""
+        return np.linalg.norm(self._local_twists[:, 3:], axis=1) > 0.5
+
+    @cached_property
+    def _local_twists(self) -> Array:
+        pin.computeJointJacobians(self._model, self._data, pin.neutral(self._model))
+        twists = np.zeros((self.m, 6))
+        for k in range(self.m):
+            local = pin.getJointJacobian(self._model, self._data, k + 1, pin.LOCAL)
+            twists[k] = local[:, self._model.joints[k + 1].idx_v]
+        return twists
+
+    def joint_index(self, name: str) -> int:
+        """Position of a joint in q.
+
+        Raises
+        ------
+        InputError
+            There is no such moving joint; the existing ones are listed.
+        """
+        if name not in self.joint_names:
+            raise InputError(
+                f"there is no moving joint {name!r}{_hint(name, self.joint_names)}",
+                remedy=f"Moving joints are: {', '.join(self.joint_names)}.",
+            )
+        return self.joint_names.index(name)
+
+    def body(self, frame: str) -> tuple[int, Array]:
+        """Moving joint that carries a frame (-1: none), and the frame's (4, 4) placement on it [m].
+
+        Raises
+        ------
+        InputError
+            There is no such frame; the existing ones are listed.
+        """
+        if frame not in self.frame_names:
+            raise InputError(
+                f"there is no frame {frame!r}{_hint(frame, self.frame_names)}",
+                remedy=f"Frames are: {', '.join(self.frame_names)}.",
+            )
+        found = self._model.frames[self._model.getFrameId(frame, pin.FrameType.BODY)]
+        return int(found.parentJoint) - 1, np.asarray(found.placement.homogeneous)
+
+    def path(self, base: str, tool: str) -> tuple[int, ...]:
+        """Moving joints met on the way from one frame to another.
+
+        Raises
+        ------
+        InputError
+            The way from `base` to `tool` does not run outwards only.
+        """
+        start, _ = self.body(base)
+        body, _ = self.body(tool)
+        joints: list[int] = []
+        while body not in (start, -1):
+            joints.append(body)
+            body = int(self._model.parents[body + 1]) - 1
+        if body != start:
+            raise InputError(
+                f"the frame {tool!r} is not carried by {base!r}",
+                remedy="Choose a base frame that lies between the root and the tool.",
+            )
+        return tuple(reversed(joints))
+
+    def chain(self, base: str, tool: str) -> Chain:
+        """Constants of the serial chain from the frame `base` to the frame `tool`."""
+        joints = self.path(base, tool)
+        _, T_body_base = self.body(base)
+        _, T_body_tool = self.body(tool)
+        placements = [self._model.jointPlacements[k + 1].homogeneous for k in joints]
+        if placements:
+            placements[0] = np.linalg.inv(T_body_base) @ placements[0]
+            placements.append(T_body_tool)
+        else:
+            placements = [np.linalg.inv(T_body_base) @ T_body_tool]
+        index = np.array(joints, dtype=np.intp)
+        return Chain(
+            names=tuple(self.joint_names[k] for k in joints),
+            placements=np.array(placements),
+            axes=self.axes[index],
+            revolute=self.revolute[index],
+            coordinates=index,
+        )
+
+    def position_limits(self) -> tuple[Array, Array]:
+        """(m,) lower and upper joint limits [rad or m] as Pinocchio read them."""
+        lower, upper = np.full(self.m, -np.inf), np.full(self.m, np.inf)
+        for k, joint in enumerate(list(self._model.joints)[1:]):
+            if joint.nq == 1:
+                lower[k] = self._model.lowerPositionLimit[joint.idx_q]
+                upper[k] = self._model.upperPositionLimit[joint.idx_q]
+        return lower, upper
+
+    def jacobian(self, q: Array, frame: str, point: Array) -> Array:
+        """(6, m) Pinocchio's own Jacobian of a point of a frame, root axes: the second road."""
+        joint, T_body_frame = self.body(frame)
+        placement = pin.SE3(T_body_frame) * pin.SE3(np.eye(3), np.asarray(point, dtype=float))
+        configuration = self._configuration(q)
+        pin.computeJointJacobians(self._model, self._data, configuration)
+        columns = pin.getFrameJacobian(
+            self._model, self._data, joint + 1, placement, pin.LOCAL_WORLD_ALIGNED
+        )
+        return np.asarray(columns)
+
+    def gravity_torques(self, q: Array, gravity: Array) -> Array:
+        """(m,) torques by which gravity drives the joints [N·m or N]: minus the holding torques.
+
+        Parameters
+        ----------
+        q
+            (m,) joint values.
+        gravity
+            (3,) acceleration in root axes [m/s²].
+        """
+        self._model.gravity.linear = np.asarray(gravity, dtype=float)
+        held = pin.computeGeneralizedGravity(self._model, self._data, self._configuration(q))
+        return -np.asarray(held)
+
+    def _configuration(self, q: Array) -> Array:
+        """Pinocchio's configuration (nq,) for tangent coordinates q (m,)."""
+        values = np.zeros(self._model.nv)
+        for k in range(self.m):
+            values[self._model.joints[k + 1].idx_v] = q[k]
+        start = np.zeros(self._model.nq)
+        for joint in list(self._model.joints)[1:]:
+            if joint.nq == 2:  # a continuous joint is stored as (cos, sin)
+                start[joint.idx_q] = 1.0
+        return np.asarray(pin.integrate(self._model, start, values))
+
+
+def _hint(name: str, known: tuple[str, ...]) -> str:
+    close = get_close_matches(name, known, n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""

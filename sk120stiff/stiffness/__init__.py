@@ -1,0 +1,50 @@
+"""A robot under load: pure functions on arrays, for one pose or for many."""
+
+from sk120stiff.stiffness.cartesian import (
+    cartesian_compliance,
+    cartesian_stiffness,
+    spring_matrix,
+)
+from sk120stiff.stiffness.complementary import complementary_stiffness, symmetric_part
+from sk120stiff.stiffness.critical import critical_load
+from sk120stiff.stiffness.deflection import Deflection, deflection
+from sk120stiff.stiffness.energy import PaperWork, loading_balance, paper_work, quadratic
+from sk120stiff.stiffness.equilibrium import (
+    ElasticLaw,
+    Equilibrium,
+    equilibrium,
+    linear_springs,
+)
+from sk120stiff.stiffness.principal import (
+    CLASSES,
+    Definiteness,
+    Principal,
+    definiteness,
+    definiteness_of,
+    principal_stiffness,
+)
+
+__all__ = [
+    "CLASSES",
+    "Definiteness",
+    "Deflection",
+    "ElasticLaw",
+    "Equilibrium",
+    "PaperWork",
+    "Principal",
+    "cartesian_compliance",
+    "cartesian_stiffness",
+    "complementary_stiffness",
+    "critical_load",
+    "definiteness",
+    "definiteness_of",
+    "deflection",
+    "equilibrium",
+    "linear_springs",
+    "loading_balance",
+    "paper_work",
+    "principal_stiffness",
+    "quadratic",
+    "spring_matrix",
+    "symmetric_part",
+]

@@ -1,0 +1,57 @@
+"""K_C: how a constant load stiffens or softens the joints because the Jacobian turns with the arm.
+
+Alici & Shirinzadeh 2005, eq. (9), for every load of force and moment and any chain.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.robot import Screws
+from sk120stiff.robot.coupling import Array
+
+
+def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
+    """∂(Jᵀ W)/∂z for a force and a moment that are constant in base axes.
+
+    With v and w the linear and angular parts of the unit twists of the chain joints, in chain
+    order::
+
+        K_C[i, j] = F · (w_min(i,j) × v_max(i,j)) + M · (w_j × w_i) [j < i only]
+
+    and, for coordinates z that the joints follow by q(z) with G = dq/dz and H = d²q/dz²::
+
+        K_C,z = Gᵀ K_C G + Σ_k τ_k H_k.
+
+    Parameters
+    ----------
+    screws
+        Kinematics at the loaded point, batch shape (...).
+    wrench
+        (..., 6) force [N] and moment [N·m] at that point, base axes.
+
+    Returns
+    -------
+    (..., n, n) [N·m/rad]. The part of the force is symmetric, that of a moment is not: a moment
+    about fixed axes has no potential. Symmetrise before any statement about definiteness.
+    """
+    load = np.asarray(wrench, dtype=float)
+    force, moment = load[..., None, :3], load[..., None, 3:]
+    v, w = screws.linear, screws.angular
+    upper = np.triu(np.cross(force, w) @ np.swapaxes(v, -1, -2))
+    K_C = upper + np.swapaxes(np.triu(upper, 1), -1, -2)  # (..., m, m)
+    if moment.any():
+        turned = np.triu(np.cross(moment, w) @ np.swapaxes(w, -1, -2), 1)
+        K_C = K_C + np.swapaxes(turned, -1, -2)
+    G = screws.first
+    K_Cz = np.swapaxes(G, -1, -2) @ K_C @ G
+    if screws.second is not None:
+        torques = screws.joint_torques(load)
+        K_Cz = K_Cz + np.einsum("...k,...kij->...ij", torques, screws.second)
+    return np.asarray(K_Cz)
+
+
+def symmetric_part(matrix: Array) -> Array:
+    """(M + Mᵀ)/2, the part of a stiffness that does work over a closed path of zero."""
+    return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))

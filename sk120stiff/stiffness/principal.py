@@ -1,0 +1,89 @@
+"""Principal stiffness, and what definiteness says about stability."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness.complementary import symmetric_part
+
+
+class Definiteness(StrEnum):
+    """The paper's five classes (section V)."""
+
+    POSITIVE_DEFINITE = "positive definite"
+    POSITIVE_SEMIDEFINITE = "positive semi-definite"
+    NEGATIVE_DEFINITE = "negative definite"
+    NEGATIVE_SEMIDEFINITE = "negative semi-definite"
+    INDEFINITE = "indefinite"
+
+    @property
+    def short(self) -> str:
+        """The column head of the paper's Table IV."""
+        return {"positive definite": "PD", "positive semi-definite": "PSD"}.get(
+            self.value,
+            {"negative definite": "ND", "negative semi-definite": "NSD"}.get(self.value, "ID"),
+        )
+
+
+CLASSES = tuple(Definiteness)
+
+
+@dataclass(frozen=True, eq=False)
+class Principal:
+    """Eigenvalues and directions of a 3×3 stiffness, softest first.
+
+    Attributes
+    ----------
+    values
+        (..., 3) principal stiffness [N/m]; a negative one is an unstable direction, an infinite
+        one a direction in which the arm cannot move at all.
+    directions
+        (..., 3, 3) unit directions in base axes, one per row.
+    """
+
+    values: Array
+    directions: Array
+
+
+def principal_stiffness(compliance: Array) -> Principal:
+    """Principal stiffness from a compliance (..., 3, 3) [m/N], safe at singular poses.
+
+    The load's moment part can make the compliance unsymmetric; its symmetric part is taken, which
+    is the one that stores energy. Values are ordered from the largest compliance down; negative
+    compliances (unstable directions) come last.
+    """
+    compliances, vectors = np.linalg.eigh(symmetric_part(compliance))
+    compliances, vectors = compliances[..., ::-1], vectors[..., ::-1]
+    size = np.max(np.abs(compliances), axis=-1, keepdims=True)
+    rigid = np.abs(compliances) <= 1e-12 * size
+    with np.errstate(divide="ignore"):
+        values = np.where(rigid, np.inf, 1.0 / np.where(rigid, 1.0, compliances))
+    return Principal(values, np.swapaxes(vectors, -1, -2))
+
+
+def definiteness(matrix: Array, *, tolerance: float = 1e-12) -> NDArray[np.intp]:
+    """Class of each symmetric part of (..., n, n), as indices into `CLASSES`.
+
+    An eigenvalue counts as zero below `tolerance` times the largest magnitude among them; the zero
+    matrix is positive semi-definite.
+    """
+    values = np.linalg.eigvalsh(symmetric_part(matrix))
+    threshold = tolerance * np.max(np.abs(values), axis=-1, keepdims=True)
+    positive = (values > threshold).any(axis=-1)
+    negative = (values < -threshold).any(axis=-1)
+    zero = (np.abs(values) <= threshold).any(axis=-1)
+    return np.select(
+        [positive & negative, negative & zero, negative, positive & zero | ~positive],
+        [4, 3, 2, 1],
+        default=0,
+    ).astype(np.intp)
+
+
+def definiteness_of(matrix: Array) -> Definiteness:
+    """Class of the symmetric part of one matrix (n, n)."""
+    return CLASSES[int(definiteness(matrix))]
