@@ -31,12 +31,12 @@ def _dumps(value: object) -> str:
 
 def _plain(value: object) -> object:
     """`value` in the types that JSON knows."""
-    if value is None or isinstance(value, bool | int | str) and not isinstance(value, Enum):
+    if isinstance(value, Enum):
+        return _plain(value.value)
+    if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):
         return float(value) if math.isfinite(value) else None
-    if isinstance(value, Enum):
-        return _plain(value.value)
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):

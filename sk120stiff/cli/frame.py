@@ -60,15 +60,11 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
         if answer.exit_code:
             raise typer.Exit(answer.exit_code)
 
-    shared = [
-        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=annotation)
-        for name, annotation in (("as_json", AsJson), ("debug", Debug))
-    ]
-    parameters = [*signature.parameters.values(), *shared]
-    run.__signature__ = signature.replace(  # type: ignore[attr-defined]
-        parameters=[p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in parameters],
-        return_annotation=None,
-    )
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    parameters = [p.replace(kind=keyword) for p in signature.parameters.values()]
+    for name, annotation in (("as_json", AsJson), ("debug", Debug)):
+        parameters.append(inspect.Parameter(name, keyword, default=False, annotation=annotation))
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     run.__annotations__ = {p.name: p.annotation for p in parameters}
     return run
 
@@ -143,6 +139,7 @@ def _messages(*, debug: bool) -> Iterator[None]:
         file: TextIO | None = None,
         line: str | None = None,
     ) -> None:
+        del category, file, line  # the signature is Python's
         text = " ".join(str(message).split())
         if text not in seen:
             seen.add(text)

@@ -1,0 +1,84 @@
+"""What an installed copy carries, and what importing it costs."""
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import sk120stiff
+from sk120stiff.robot.bundled import bundled_robots
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def test_every_public_name_is_there() -> None:
+    assert sorted(sk120stiff.__all__) == sorted(sk120stiff._HOME)
+    for name in sk120stiff.__all__:
+        assert getattr(sk120stiff, name).__name__ == name
+    assert set(sk120stiff.__all__) < set(dir(sk120stiff))
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="load_robots"):
+        _ = sk120stiff.load_robots
+
+
+def test_importing_the_package_imports_nothing_else() -> None:
+    code = "import sys; before = set(sys.modules); import sk120stiff; print(*set(sys.modules) - before)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    outside = {name.partition(".")[0] for name in done.stdout.split()} - {"sk120stiff"}
+    assert outside <= set(sys.stdlib_module_names)
+    assert "sk120stiff.errors" not in done.stdout.split()
+
+
+def test_the_checkout_finds_its_robots() -> None:
+    assert bundled_robots()["motoman_sk120"] == ROOT / "robots" / "motoman_sk120"
+
+
+@pytest.fixture(scope="session")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel that `pip install .` would install, built without any network."""
+    from hatchling.builders.wheel import WheelBuilder
+
+    folder = tmp_path_factory.mktemp("wheel")
+    return Path(next(WheelBuilder(str(ROOT)).build(directory=str(folder), versions=["standard"])))
+
+
+def test_the_wheel_carries_robots_and_types(wheel: Path) -> None:
+    names = set(zipfile.ZipFile(wheel).namelist())
+    robots = ROOT / "robots"
+    for path in robots.rglob("*"):
+        if path.is_file() and "__pycache__" not in path.parts:
+            assert f"sk120stiff/_robots/{path.relative_to(robots).as_posix()}" in names
+    assert "sk120stiff/py.typed" in names
+    assert {name.partition("/")[0] for name in names} == {
+        "sk120stiff",
+        f"sk120stiff-{sk120stiff.__version__}.dist-info",
+    }
+
+
+def test_the_wheel_works_without_the_checkout(wheel: Path, tmp_path: Path) -> None:
+    zipfile.ZipFile(wheel).extractall(tmp_path)
+    code = (
+        "import sk120stiff\n"
+        "from sk120stiff.robot.bundled import bundled_robots\n"
+        "print(sk120stiff.__file__)\n"
+        "print(bundled_robots()['motoman_sk120'])\n"
+        "print(sk120stiff.load_robot('motoman_sk120').n)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(tmp_path), "PATH": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [
+        str(tmp_path / "sk120stiff" / "__init__.py"),
+        str(tmp_path / "sk120stiff" / "_robots" / "motoman_sk120"),
+        "6",
+    ]
