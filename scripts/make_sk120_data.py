@@ -58,8 +58,8 @@ CALCULATED_YAML = (
     COMMON_YAML
     + """\
 displacement: {frame: base, zero: separate}
-# Not measured but computed by the paper, printed to 0.1 um. Rounding alone has a standard deviation
-# of 0.1/sqrt(12) = 0.0289 um per displacement; sigma is that of one of two readings: 0.0289/sqrt(2).
+# Not measured but computed by the paper, printed to 0.1 um. Rounding alone scatters by
+# 0.1/sqrt(12) = 0.0289 um per displacement; sigma is that of one of two readings, 0.0289/sqrt(2).
 noise: {sigma: 0.0204, unit: um}
 source: >
   G. Alici, B. Shirinzadeh, "Enhanced Stiffness Modeling, Identification and Characterization for
@@ -81,7 +81,7 @@ def convert(rows: list[dict[str, str]], calculated: bool) -> list[dict[str, str]
         flip = NEGATED[row["pose"]]
         out = {"pose": row["pose"]}
         out |= {name: row[name] for name in ARM}
-        out |= {name: "0" for name in WRIST}
+        out |= dict.fromkeys(WRIST, "0")
         out |= {name: negate(row[name]) if name in flip else row[name] for name in FORCE}
         for name in DISPLACEMENT:
             printed = row[f"calc_{name}" if calculated else name]
