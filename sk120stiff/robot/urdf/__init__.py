@@ -1,0 +1,30 @@
+"""URDF files of any origin become a `UrdfDocument`: forms, repairs with warnings, refusals."""
+
+from sk120stiff.robot.urdf.document import (
+    Finding,
+    GeometrySpec,
+    Inertial,
+    JointSpec,
+    LinkSpec,
+    Mimic,
+    UrdfDocument,
+    VisualSpec,
+)
+from sk120stiff.robot.urdf.frames import default_frames
+from sk120stiff.robot.urdf.native import CapturedText, captured_stderr
+from sk120stiff.robot.urdf.reading import read_urdf
+
+__all__ = [
+    "CapturedText",
+    "Finding",
+    "GeometrySpec",
+    "Inertial",
+    "JointSpec",
+    "LinkSpec",
+    "Mimic",
+    "UrdfDocument",
+    "VisualSpec",
+    "captured_stderr",
+    "default_frames",
+    "read_urdf",
+]

@@ -1,0 +1,92 @@
+"""Clean kinematic URDF text out of checked joints and links: what Pinocchio gets to read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from sk120stiff.robot.urdf.document import Array, JointSpec, LinkSpec
+
+# urdfdom refuses "inf"; nothing here moves this far [rad or m].
+UNLIMITED = 1e30
+
+
+def clean_xml(name: str, links: Iterable[LinkSpec], joints: Iterable[JointSpec]) -> str:
+    """URDF without pictures, repairs applied, mimic rules kept, every number round-tripping."""
+    lines = ['<?xml version="1.0"?>', f"<robot name={quoteattr(name)}>"]
+    lines.extend(_link(link) for link in links)
+    lines.extend(_joint(joint) for joint in joints)
+    lines.append("</robot>\n")
+    return "\n".join(lines)
+
+
+def _link(link: LinkSpec) -> str:
+    name = quoteattr(link.name)
+    inertial = link.inertial
+    if inertial is None or (inertial.mass == 0.0 and not inertial.inertia.any()):
+        return f"  <link name={name}/>"
+    moments = inertial.inertia
+    inertia = " ".join(
+        f'{key}="{_number(moments[i, j])}"'
+        for key, i, j in (
+            ("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2),
+            ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2),
+        )
+    )  # fmt: skip
+    return (
+        f"  <link name={name}><inertial>{_origin(inertial.origin)}"
+        f'<mass value="{_number(inertial.mass)}"/><inertia {inertia}/></inertial></link>'
+    )
+
+
+def _joint(joint: JointSpec) -> str:
+    parts = [
+        f'  <joint name={quoteattr(joint.name)} type="{joint.type}">',
+        _origin(joint.origin),
+        f"<parent link={quoteattr(joint.parent)}/><child link={quoteattr(joint.child)}/>",
+    ]
+    if joint.moves:
+        parts.append(f'<axis xyz="{_numbers(joint.axis)}"/>')
+        lower = -UNLIMITED if joint.lower is None else joint.lower
+        upper = UNLIMITED if joint.upper is None else joint.upper
+        parts.append(
+            f'<limit lower="{_number(lower)}" upper="{_number(upper)}" '
+            f'effort="{_number(joint.effort or 0.0)}" velocity="{_number(joint.velocity or 0.0)}"/>'
+        )
+    if joint.mimic is not None:
+        parts.append(
+            f"<mimic joint={quoteattr(joint.mimic.joint)} "
+            f'multiplier="{_number(joint.mimic.multiplier)}" '
+            f'offset="{_number(joint.mimic.offset)}"/>'
+        )
+    parts.append("</joint>")
+    return "".join(parts)
+
+
+def _origin(T: Array) -> str:
+    if np.array_equal(T, np.eye(4)):
+        return ""
+    rpy = rpy_from_rotation(T[:3, :3])
+    return f'<origin xyz="{_numbers(T[:3, 3])}" rpy="{_numbers(rpy)}"/>'
+
+
+def rpy_from_rotation(R: Array) -> Array:
+    """(3,) roll, pitch, yaw [rad] with R = R_z(yaw) R_y(pitch) R_x(roll).
+
+    Any yaw is followed by the roll and pitch that complete it, so gimbal lock costs no accuracy.
+    """
+    yaw = np.arctan2(R[1, 0], R[0, 0])
+    s, c = np.sin(yaw), np.cos(yaw)
+    roll = np.arctan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
+    pitch = np.arctan2(-R[2, 0], c * R[0, 0] + s * R[1, 0])
+    return np.array([roll, pitch, yaw])
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _numbers(values: Array) -> str:
+    return " ".join(_number(value) for value in values)

@@ -1,0 +1,174 @@
+"""Numbers, vectors and names of one element, with the number syntax that exporters really write."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+
+from sk120stiff.robot.urdf.document import Array
+from sk120stiff.robot.urdf.findings import Notebook, at, shown
+from sk120stiff.robot.urdf.xml_tree import Element
+
+_NUMBER = re.compile(r"[+-]?(?:\d{1,400}\.?\d{0,400}|\.\d{1,400})(?:[eE][+-]?\d{1,6})?\Z", re.ASCII)
+_NOT_FINITE = re.compile(r"[+-]?(?:inf|infinity|nan)\Z", re.IGNORECASE)
+_ZERO_WIDTH = dict.fromkeys(map(ord, "\u200b\u200c\u200d\ufeff"), None)
+
+
+class Fields:
+    """Reads attributes of the children of one link or joint and notes every repair.
+
+    Parameters
+    ----------
+    notes
+        Where repairs and refusals go.
+    kind, name
+        The element for messages, e.g. ``joint``, ``elbow``.
+    """
+
+    def __init__(self, notes: Notebook, kind: str, name: str) -> None:
+        self.notes, self.kind, self.name = notes, kind, name
+
+    def place(self, element: Element) -> str:
+        """Line and name for messages."""
+        return at(element.line, self.kind, self.name)
+
+    def warn(self, code: str, element: Element, message: str) -> None:
+        """Note a repair at an element."""
+        self.notes.warn(code, self.place(element), message)
+
+    def number(self, element: Element, attribute: str) -> float | None:
+        """A finite number, or None where the attribute is absent or empty.
+
+        Raises
+        ------
+        InputError
+            Something else stands there.
+        """
+        text = element.get(attribute)
+        if text is None:
+            return None
+        if not text.strip():
+            self.warn("number_syntax", element, f"{attribute} is empty; taken as absent")
+            return None
+        values = self._tokens(element, attribute, text, 1)
+        if len(values) != 1:
+            self._refuse(element, attribute, text, f"holds {len(values)} numbers, not one")
+        return values[0]
+
+    def bound(self, element: Element, attribute: str) -> float | None:
+        """Like `number`, but an infinite or undefined value means None and is noted."""
+        text = (element.get(attribute) or "").strip()
+        if _NOT_FINITE.match(text):
+            self.warn("number_syntax", element, f"{attribute} is {text!r}; taken as absent")
+            return None
+        return self.number(element, attribute)
+
+    def vector(self, element: Element, attribute: str, size: int = 3) -> Array | None:
+        """(size,) finite numbers, or None where the attribute is absent or empty.
+
+        Raises
+        ------
+        InputError
+            Another count of numbers, or something that is no number.
+        """
+        text = element.get(attribute)
+        if text is None:
+            return None
+        if not text.strip():
+            self.warn("number_syntax", element, f"{attribute} is empty; taken as absent")
+            return None
+        values = self._tokens(element, attribute, text, size)
+        if len(values) != size:
+            self._refuse(element, attribute, text, f"holds {len(values)} numbers, not {size}")
+        return np.array(values)
+
+    def _tokens(self, element: Element, attribute: str, text: str, size: int) -> list[float]:
+        if len(text) > 2000:
+            self._refuse(element, attribute, text, "is too long for a number")
+        clean = text.replace("\u2212", "-").translate(_ZERO_WIDTH)
+        words = clean.split()
+        if any("," in word or ";" in word for word in words):
+            if (
+                len(words) == size
+                and all(word.count(",") <= 1 for word in words)
+                and not any(
+                    word.startswith(",") or word.endswith(",") or ";" in word for word in words
+                )
+            ):
+                words = [word.replace(",", ".") for word in words]
+                meaning = "as a decimal comma"
+            else:
+                words = re.split(r"[\s,;]+", clean.strip(" \t\r\n,;"))
+                meaning = "as separators"
+            note = f"commas in {attribute} {shown(text)} read {meaning}"
+            self.warn("number_syntax", element, note)
+        values = []
+        for word in words:
+            plain = word[:-1] if word[-1:] in "fF" and _NUMBER.match(word[:-1]) else word
+            if not _NUMBER.match(plain):
+                hint = "is not a number"
+                if "$" in word or "pi" in word:
+                    hint = "is an expression of xacro, not a number"
+                self._refuse(element, attribute, text, hint)
+            value = float(plain)
+            if not math.isfinite(value):
+                self._refuse(element, attribute, text, "is too large for a number")
+            if plain != word:
+                note = f"{attribute} {shown(text)}: the 'f' was ignored"
+                self.warn("number_syntax", element, note)
+            values.append(value)
+        return values
+
+    def _refuse(self, element: Element, attribute: str, text: str, why: str) -> None:
+        remedy = "Write plain numbers with a decimal point, separated by spaces."
+        if "xacro" in why:
+            remedy = "Give the .xacro file, or expand it first."
+        self.notes.refuse(
+            f"<{element.tag} {attribute}={shown(text)}> {why}",
+            where=self.place(element),
+            remedy=remedy,
+        )
+
+    def placement(self, parent: Element) -> Array:
+        """(4, 4) placement by the `<origin>` of an element, identity where there is none [m]."""
+        T = np.eye(4)
+        origin = parent.first("origin")
+        if origin is None:
+            return T
+        if sum(1 for _ in parent.all("origin")) > 1:
+            self.warn("duplicate_element", origin, "several <origin>; the first one was used")
+        xyz = self.vector(origin, "xyz")
+        if xyz is not None:
+            T[:3, 3] = xyz
+        rpy = self.vector(origin, "rpy")
+        quaternion = self.vector(origin, "quat_xyzw", 4)
+        if quaternion is not None and np.linalg.norm(quaternion) > 1e-9:
+            T[:3, :3] = _from_quaternion(quaternion)
+        elif rpy is not None:
+            T[:3, :3] = rotation_from_rpy(rpy)
+        return T
+
+
+def rotation_from_rpy(rpy: Array) -> Array:
+    """(3, 3) rotation for fixed-axis roll, pitch, yaw [rad]: R_z(yaw) R_y(pitch) R_x(roll)."""
+    (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def _from_quaternion(xyzw: Array) -> Array:
+    x, y, z, w = xyzw / np.linalg.norm(xyzw)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )

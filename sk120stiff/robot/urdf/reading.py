@@ -1,0 +1,132 @@
+"""From any form of a URDF to a checked `UrdfDocument`: the order of the steps."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+
+from sk120stiff.robot.urdf.clean import clean_xml
+from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument, VisualSpec
+from sk120stiff.robot.urdf.findings import Notebook, at
+from sk120stiff.robot.urdf.joints import read_joint, same_names
+from sk120stiff.robot.urdf.links import read_link, read_materials, read_visuals
+from sk120stiff.robot.urdf.mimics import checked_mimics
+from sk120stiff.robot.urdf.packages import package_folders as folders_around
+from sk120stiff.robot.urdf.source import RawSource, read_source
+from sk120stiff.robot.urdf.structure import declared_links, find_root
+from sk120stiff.robot.urdf.xacro import expand, uses_xacro
+from sk120stiff.robot.urdf.xml_text import decode
+from sk120stiff.robot.urdf.xml_tree import Element, parse_robot
+
+_FOREIGN = frozenset(
+    {
+        "transmission", "gazebo", "ros2_control", "sensor", "mujoco", "plugin", "static", "author",
+        "plugins", "gripper", "actuator", "contact", "group", "project", "include", "visual",
+        "kinematics", "safety_controller", "inertial", "collision", "verbose", "version", "isaac",
+        "self_collide", "disable_collisions", "keep", "fixed_camera",
+    }
+)  # fmt: skip
+
+
+def read_urdf(
+    source: str | os.PathLike[str] | bytes,
+    *,
+    package_folders: Iterable[str | os.PathLike[str]] = (),
+    xacro_arguments: Mapping[str, str] | None = None,
+) -> UrdfDocument:
+    """Read a robot description in any form, repair what can be repaired, and say so.
+
+    Parameters
+    ----------
+    source
+        ``.urdf`` or ``.xacro`` file, folder that holds exactly one, or XML as text or bytes.
+    package_folders
+        Folders that hold packages, tried before the parent folders and ROS_PACKAGE_PATH.
+    xacro_arguments
+        Values of ``<xacro:arg>``.
+
+    Returns
+    -------
+    UrdfDocument
+        One tree of links, with a finding for every repair.
+
+    Raises
+    ------
+    InputError
+        The description cannot be used; the message names the line and the remedy.
+    """
+    raw = read_source(source)
+    notes = Notebook(raw.label)
+    folders = folders_around(raw.path, package_folders)
+    text = decode(raw.data, notes)
+    if raw.is_xacro or uses_xacro(text):
+        text = expand(raw, text, folders, xacro_arguments or {}, notes)
+        notes.source = f"{raw.label} (expanded)"
+    root = parse_robot(text, notes)
+    return _document(root, raw, folders, notes)
+
+
+def _document(root: Element, raw: RawSource, folders: tuple, notes: Notebook) -> UrdfDocument:  # type: ignore[type-arg]
+    name = _robot_name(root, raw, notes)
+    _note_foreign(root, notes)
+    link_elements = list(root.all("link"))
+    declared = [read_link(element, notes) for element in link_elements]
+    same_names([(link.name, link.line) for link in declared], "link", notes)
+    joints: list[JointSpec] = []
+    locked: dict[str, str] = {}
+    for element in root.all("joint"):
+        joint, why = read_joint(element, notes)
+        joints.append(joint)
+        if why is not None:
+            locked[joint.name] = why
+    same_names([(joint.name, joint.line) for joint in joints], "joint", notes)
+    _refuse_reserved(joints, notes)
+    links = declared_links(declared, joints, notes) if declared else tuple(declared)
+    tree_root = find_root(links, joints, notes)
+    checked = checked_mimics(tuple(joints), locked, notes)
+    colours = read_materials(root, notes)
+    visuals: list[VisualSpec] = []
+    for element, link in zip(link_elements, declared, strict=True):
+        visuals.extend(read_visuals(element, link.name, colours, notes))
+    return UrdfDocument(
+        name=name,
+        xml=clean_xml(name, links, checked),
+        path=raw.path,
+        package_folders=folders,
+        joints=checked,
+        links=links,
+        visuals=tuple(visuals),
+        root=tree_root,
+        locked=locked,
+        warnings=tuple(notes.findings),
+    )
+
+
+def _robot_name(root: Element, raw: RawSource, notes: Notebook) -> str:
+    name = (root.get("name") or "").strip()
+    if name:
+        return name
+    name = raw.path.name.split(".")[0] if raw.path is not None else ""
+    name = name or "robot"
+    notes.warn("robot_name_missing", at(root.line), f"<robot> has no name; called {name!r}")
+    return name
+
+
+def _note_foreign(root: Element, notes: Notebook) -> None:
+    seen: set[str] = set()
+    for child in root.children:
+        tag = child.tag
+        if tag in ("link", "joint", "material") or tag in _FOREIGN or ":" in tag or tag in seen:
+            continue
+        seen.add(tag)
+        notes.warn("unknown_element", at(child.line), f"<{tag[:40]}> is not URDF and was ignored")
+
+
+def _refuse_reserved(joints: list[JointSpec], notes: Notebook) -> None:
+    for joint in joints:
+        if joint.name == "universe":
+            notes.refuse(
+                "the joint name 'universe' is reserved for the ground",
+                where=at(joint.line, "joint", joint.name),
+                remedy="Rename the joint.",
+            )
