@@ -1,0 +1,94 @@
+"""Pictures of a robot under load: figures, the report, the 3-D scene, the live page.
+
+Nothing heavy is imported before a name is used. The parts:
+
+Figures (`sk120stiff.show.figures`)
+    Functions of plain arrays that return a matplotlib `Figure`, in one style:
+    `force_deflection`, `surface_parts`, `curve_parts`, `stiffness_slice`, `plane_ellipses`,
+    `gap_per_pose`, `gap_waterfall`, `residual_suspects`, `parameter_forest`, `definiteness_map`.
+    ``save_figure(fig, path)`` writes SVG, PNG or PDF by the ending of the name;
+    ``inline_svg(fig, alt)`` gives the `<svg>` text for a page.
+
+Report (`sk120stiff.show.report`)
+    ``Report(title, sections=[Section(title, blocks=[...])], ...).write(path)``. Blocks are strings
+    (paragraphs) and `Table`, `Picture`, `KeyFigures`, `Note`, `Items`, `Code`, `SceneFrame`,
+    `Section` (a subsection). One file, readable offline, prints to PDF.
+
+Scene (`sk120stiff.show.scene`)
+    ``Scene(robot, elastic=Elastic.of_springs(robot, springs), poses=[ScenePose(...)])``, then
+    ``static_scene(path, scene)`` for a self-contained page with sliders, ``scene_html(scene)`` for
+    its text, and the scene itself shows in a notebook.
+
+Live (`sk120stiff.show.live`)
+    ``serve(scene, port=..., open_browser=...)``: the same page with everything computed by Python.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sk120stiff.show.elastic import Elastic
+    from sk120stiff.show.report import (
+        Code,
+        Items,
+        KeyFigures,
+        Note,
+        Picture,
+        Report,
+        SceneFrame,
+        Section,
+        Table,
+    )
+    from sk120stiff.show.saving import inline_svg, save_figure
+    from sk120stiff.show.scene import Reading, Scene, ScenePose
+    from sk120stiff.show.static import scene_html, static_scene
+
+_HOME = {
+    "Code": "report",
+    "Elastic": "elastic",
+    "Items": "report",
+    "KeyFigures": "report",
+    "Note": "report",
+    "Picture": "report",
+    "Reading": "scene",
+    "Report": "report",
+    "Scene": "scene",
+    "SceneFrame": "report",
+    "ScenePose": "scene",
+    "Section": "report",
+    "Table": "report",
+    "inline_svg": "saving",
+    "save_figure": "saving",
+    "scene_html": "static",
+    "static_scene": "static",
+}
+
+__all__ = [
+    "Code",
+    "Elastic",
+    "Items",
+    "KeyFigures",
+    "Note",
+    "Picture",
+    "Reading",
+    "Report",
+    "Scene",
+    "SceneFrame",
+    "ScenePose",
+    "Section",
+    "Table",
+    "inline_svg",
+    "save_figure",
+    "scene_html",
+    "static_scene",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value

@@ -1,0 +1,136 @@
+"""Force against deflection, measured and modelled: the kind of the paper's Figs. 4 to 6."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.show import palette
+from sk120stiff.show.style import hide_spare, styled, subplots
+
+Array = NDArray[np.float64]
+_DASHES = ("-", "--", ":", "-.")
+_MARKERS = ("o", "s", "^")
+
+
+@dataclass(frozen=True, eq=False)
+class LoadCurve:
+    """One pose loaded step by step.
+
+    Attributes
+    ----------
+    title
+        What the panel is headed with, e.g. ``pose 1``.
+    force
+        (k,) size of the load at each reading [N].
+    measured
+        (k, 3) measured displacement, base axes [m]; None where there is none.
+    sigma
+        (k, 3) standard uncertainty of the readings [m], or None.
+    line_force
+        (l,) loads at which the models were evaluated [N]; default: `force`.
+    models
+        Model name → (l, 3) predicted displacement [m].
+    """
+
+    title: str
+    force: Array
+    measured: Array | None = None
+    sigma: Array | None = None
+    line_force: Array | None = None
+    models: Mapping[str, Array] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        loads = self.force if self.line_force is None else self.line_force
+        for name, values in self.models.items():
+            if np.shape(values) != (len(loads), 3):
+                raise InputError(
+                    f"model {name!r} has predictions of shape {np.shape(values)}, "
+                    f"not ({len(loads)}, 3)",
+                    where=self.title,
+                )
+        if self.measured is not None and np.shape(self.measured) != (len(self.force), 3):
+            raise InputError(
+                f"measured displacements have shape {np.shape(self.measured)}, "
+                f"not ({len(self.force)}, 3)",
+                where=self.title,
+            )
+
+
+def force_deflection(
+    curves: Sequence[LoadCurve], *, columns: int = 3, title: str | None = None
+) -> Figure:
+    """Displacement of the point over the size of the load, one panel per pose.
+
+    Colours are the base axes, markers are readings, line styles are models.
+    """
+    if not curves:
+        raise InputError("no pose to draw")
+    columns = min(columns, len(curves))
+    rows = -(-len(curves) // columns)
+    with styled():
+        figure, axes = subplots(rows, columns, height=0.65 + 2.45 * rows, sharex=False)
+        names = list(dict.fromkeys(name for curve in curves for name in curve.models))
+        for panel, curve in zip(axes, curves, strict=False):
+            _draw(panel, curve, names)
+        for k, panel in enumerate(axes[: len(curves)]):
+            panel.set_xlabel("load [N]")
+            if k % columns == 0:
+                panel.set_ylabel("displacement [µm]")
+        hide_spare(axes, len(curves))
+        measured = any(curve.measured is not None for curve in curves)
+        figure.legend(
+            handles=_key(names, measured), loc="outside lower center", ncols=3 + len(names) + 1
+        )
+        if title:
+            figure.suptitle(title, x=0.01, ha="left")
+    return figure
+
+
+def _draw(panel, curve: LoadCurve, names: Sequence[str]) -> None:  # type: ignore[no-untyped-def]
+    panel.set_title(curve.title)
+    panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
+    for axis in range(3):
+        colour = palette.AXES[axis]
+        if curve.measured is not None:
+            panel.errorbar(
+                curve.force,
+                1e6 * np.asarray(curve.measured)[:, axis],
+                yerr=None if curve.sigma is None else 1e6 * np.asarray(curve.sigma)[:, axis],
+                fmt=_MARKERS[axis],
+                color=colour,
+                markerfacecolor=palette.PAPER,
+                markeredgewidth=1.3,
+                elinewidth=0.9,
+                capsize=2,
+                zorder=3,
+            )
+        loads = curve.force if curve.line_force is None else curve.line_force
+        for name, values in curve.models.items():
+            style = _DASHES[names.index(name) % len(_DASHES)]
+            panel.plot(loads, 1e6 * np.asarray(values)[:, axis], style, color=colour)
+    panel.margins(x=0.03, y=0.08)
+
+
+def _key(names: Sequence[str], measured: bool) -> list[Line2D]:
+    handles = [
+        Line2D([], [], color=palette.AXES[k], marker=_MARKERS[k] if measured else "", linestyle="-",
+               markerfacecolor=palette.PAPER, label=f"d{'xyz'[k]}")
+        for k in range(3)
+    ]  # fmt: skip
+    if measured:
+        handles.append(
+            Line2D([], [], color=palette.INK, marker="o", linestyle="",
+                   markerfacecolor=palette.PAPER, label="measured")
+        )  # fmt: skip
+    handles += [
+        Line2D([], [], color=palette.INK, linestyle=_DASHES[k % len(_DASHES)], label=name)
+        for k, name in enumerate(names)
+    ]
+    return handles

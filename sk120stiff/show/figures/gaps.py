@@ -1,0 +1,134 @@
+"""The gap between measurement and model: per pose, and as the model grows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from sk120stiff.errors import InputError
+from sk120stiff.show import palette
+from sk120stiff.show.style import new_figure, styled
+
+_BEFORE_AFTER = (palette.NOISE, palette.BLUE, palette.GREEN, palette.ORANGE, palette.PURPLE)
+_INSIDE = (palette.INK, palette.PAPER)  # text on the first bar and on the later ones
+
+
+@dataclass(frozen=True)
+class GapStep:
+    """One step of a growing model; root-mean-square gaps in metres."""
+
+    model: str
+    fit_rms: float
+    heldout_rms: float | None = None
+
+
+def gap_per_pose(
+    poses: Sequence[str],
+    gaps: Mapping[str, ArrayLike],
+    *,
+    noise_floor: float | None = None,
+    title: str | None = None,
+) -> Figure:
+    """Root-mean-square gap of each pose, one bar per model.
+
+    Parameters
+    ----------
+    poses
+        Labels of the poses.
+    gaps
+        Model name → (poses,) gap [m], in the order before, after, ...
+    noise_floor
+        What the noise alone would leave [m].
+    """
+    count = len(poses)
+    series = {name: 1e6 * np.asarray(values, dtype=float) for name, values in gaps.items()}
+    for name, values in series.items():
+        if values.shape != (count,):
+            raise InputError(f"model {name!r} has {values.size} gaps for {count} poses")
+    with styled():
+        figure = new_figure(2.9, width=max(4.2, min(7.2, 1.8 + 0.34 * count * (1 + len(series)))))
+        panel = figure.subplots()
+        width = 0.8 / max(1, len(series))
+        place = np.arange(count)
+        for k, (name, values) in enumerate(series.items()):
+            bars = panel.bar(
+                place + (k - 0.5 * (len(series) - 1)) * width, values, 0.92 * width,
+                color=_BEFORE_AFTER[k % len(_BEFORE_AFTER)], label=name, zorder=2,
+            )  # fmt: skip
+            if count * len(series) <= 14:
+                panel.bar_label(bars, fmt=_short, fontsize=7.5, padding=2)
+        _floor(panel, noise_floor)
+        panel.set_xticks(place, poses, rotation=0 if count <= 12 else 90)
+        panel.set_xlabel("pose")
+        panel.set_ylabel("rms gap [µm]")
+        panel.grid(visible=False, axis="x")
+        panel.margins(y=0.14)
+        figure.legend(loc="outside lower center", ncols=4)
+        if title:
+            panel.set_title(title)
+    return figure
+
+
+def gap_waterfall(
+    steps: Sequence[GapStep], *, noise_floor: float | None = None, title: str | None = None
+) -> Figure:
+    """How the gap falls as effects are added; points are poses that the fit never saw."""
+    if not steps:
+        raise InputError("no model to draw")
+    fit = 1e6 * np.array([step.fit_rms for step in steps])
+    held = 1e6 * np.array(
+        [np.nan if s.heldout_rms is None else s.heldout_rms for s in steps], dtype=float
+    )
+    with styled():
+        figure = new_figure(1.15 + 0.42 * len(steps))
+        panel = figure.subplots()
+        rows = np.arange(len(steps))
+        for k in rows:
+            start = fit[k - 1] if k else fit[0]
+            if k and start > fit[k]:
+                panel.barh(k, start - fit[k], left=fit[k], height=0.56, color=palette.GREEN,
+                           alpha=0.28, zorder=2)  # fmt: skip
+            panel.barh(k, fit[k], height=0.56, zorder=2,
+                       color=palette.NOISE if k == 0 else palette.BLUE)  # fmt: skip
+            saved = f"  (−{start - fit[k]:.3g})" if k and start > fit[k] else ""
+            inside = fit[k] > 0.3 * fit.max()
+            edge = fit[k] if inside else np.nanmax([fit[k], start, held[k]])
+            panel.annotate(
+                f"{_short(fit[k])} µm{saved}", (edge, k), (-7 if inside else 8, 0),
+                textcoords="offset points", ha="right" if inside else "left", va="center",
+                fontsize=8.5, color=_INSIDE[min(k, 1)] if inside else palette.INK, zorder=5,
+            )  # fmt: skip
+        if np.isfinite(held).any():
+            panel.plot(held, rows, "D", color=palette.ORANGE, markeredgecolor="white",
+                       markersize=7, label="held-out poses", zorder=4)  # fmt: skip
+        _floor(panel, noise_floor, vertical=True)
+        panel.set_yticks(rows, [step.model for step in steps])
+        panel.invert_yaxis()
+        panel.set_xlim(0.0, 1.28 * float(np.nanmax([*fit, *held])))
+        panel.set_xlabel("rms gap [µm]")
+        panel.grid(visible=False, axis="y")
+        panel.tick_params(axis="y", length=0)
+        if panel.get_legend_handles_labels()[0]:
+            figure.legend(loc="outside lower center", ncols=3)
+        if title:
+            panel.set_title(title)
+    return figure
+
+
+def _floor(panel: Axes, noise_floor: float | None, *, vertical: bool = False) -> None:
+    if noise_floor is None:
+        return
+    draw = panel.axvline if vertical else panel.axhline
+    draw(
+        1e6 * noise_floor, color=palette.VERMILION, linestyle="--", linewidth=1.3, zorder=3,
+        label=f"noise floor {_short(1e6 * noise_floor)} µm",
+    )  # fmt: skip
+
+
+def _short(value: float) -> str:
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"

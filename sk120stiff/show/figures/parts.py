@@ -1,0 +1,92 @@
+"""What the force components contribute to the diagonal of K_C: the paper's Figs. 7 to 9."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.show import palette
+from sk120stiff.show.style import styled, subplots
+
+Array = NDArray[np.float64]
+_COMPONENTS = ("Fx", "Fy", "Fz")
+DIVERGING = "PuOr"  # its two hues are told apart with every kind of colour vision
+
+
+def surface_parts(
+    x: Array, y: Array, parts: Array, *, element: str, x_label: str, y_label: str
+) -> Figure:
+    """Three maps side by side: the derivative that each force component multiplies.
+
+    Parameters
+    ----------
+    x, y
+        (nx,), (ny,) joint values of the grid [rad].
+    parts
+        (3, ny, nx) contribution of a unit force along x, y and z to the element [N·m/rad per N].
+    element
+        Name of the element, e.g. ``C11``.
+    x_label, y_label
+        Names of the two joints.
+    """
+    values = np.asarray(parts, dtype=float)
+    if values.shape != (3, len(y), len(x)):
+        raise InputError(f"parts have shape {values.shape}, not (3, {len(y)}, {len(x)})")
+    bound = float(np.max(np.abs(values))) or 1.0
+    with styled():
+        figure, axes = subplots(1, 3, height=2.75, sharey=True)
+        drawn = None
+        for k, panel in enumerate(axes):
+            drawn = panel.pcolormesh(
+                np.degrees(x), np.degrees(y), values[k], cmap=DIVERGING, vmin=-bound, vmax=bound,
+                shading="nearest", rasterized=True,
+            )  # fmt: skip
+            if np.ptp(values[k]) > 1e-9 * bound:
+                lines = panel.contour(
+                    np.degrees(x), np.degrees(y), values[k], levels=5, colors=palette.INK,
+                    linewidths=0.5,
+                )  # fmt: skip
+                panel.clabel(lines, fontsize=6.5, fmt="%.2g")
+            panel.grid(visible=False)
+            panel.set_title(f"part {k + 1}: ∂{element}/∂{_COMPONENTS[k]}")
+            panel.set_xlabel(f"{x_label} [deg]")
+        axes[0].set_ylabel(f"{y_label} [deg]")
+        figure.colorbar(drawn, ax=axes, label="N·m/rad per N", shrink=0.9, pad=0.02)
+    return figure
+
+
+def curve_parts(
+    x: Array,
+    parts: Mapping[str, Array],
+    *,
+    element: str,
+    x_label: str,
+    x_unit: str = "deg",
+) -> Figure:
+    """The same along one joint: three panels, one line for each named case.
+
+    Parameters
+    ----------
+    x
+        (k,) abscissa, already in `x_unit`.
+    parts
+        Name of the case → (3, k) contributions of a unit force along x, y, z [N·m/rad per N].
+    """
+    cases: Sequence[str] = list(parts)
+    with styled():
+        figure, axes = subplots(3, 1, height=4.6, sharex=True)
+        for k, panel in enumerate(axes):
+            panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
+            for case, colour in zip(cases, palette.SERIES * 9, strict=False):
+                panel.plot(x, np.asarray(parts[case])[k], color=colour, label=case)
+            panel.set_title(f"part {k + 1}: ∂{element}/∂{_COMPONENTS[k]}")
+            panel.set_ylabel("N·m/rad per N")
+        axes[-1].set_xlabel(f"{x_label} [{x_unit}]")
+        if len(cases) > 1:
+            handles, labels = axes[0].get_legend_handles_labels()
+            figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(cases)))
+    return figure
