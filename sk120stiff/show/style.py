@@ -14,7 +14,7 @@ from sk120stiff.show import palette
 
 WIDTH: Final = 7.2  # inches: the text width of a report page
 
-_RC: Final[dict[str, Any]] = {
+_RC: Final[Any] = {
     "axes.axisbelow": True,
     "axes.edgecolor": palette.SOFT_INK,
     "axes.facecolor": palette.PAPER,

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
@@ -15,7 +17,7 @@ from sk120stiff.show import palette
 from sk120stiff.show.style import hide_spare, styled, subplots
 
 Array = NDArray[np.float64]
-_DASHES = ("-", "--", ":", "-.")
+_DASHES: tuple[Literal["-", "--", ":", "-."], ...] = ("-", "--", ":", "-.")
 _MARKERS = ("o", "s", "^")
 
 
@@ -93,7 +95,7 @@ def force_deflection(
     return figure
 
 
-def _draw(panel, curve: LoadCurve, names: Sequence[str]) -> None:  # type: ignore[no-untyped-def]
+def _draw(panel: Axes, curve: LoadCurve, names: Sequence[str]) -> None:
     panel.set_title(curve.title)
     panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
     for axis in range(3):

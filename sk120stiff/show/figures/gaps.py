@@ -88,7 +88,7 @@ def gap_waterfall(
         figure = new_figure(1.15 + 0.42 * len(steps))
         panel = figure.subplots()
         rows = np.arange(len(steps))
-        for k in rows:
+        for k in range(len(steps)):
             start = fit[k - 1] if k else fit[0]
             if k and start > fit[k]:
                 panel.barh(k, start - fit[k], left=fit[k], height=0.56, color=palette.GREEN,

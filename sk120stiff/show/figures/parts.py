@@ -39,12 +39,14 @@ def surface_parts(
     bound = float(np.max(np.abs(values))) or 1.0
     with styled():
         figure, axes = subplots(1, 3, height=2.75, sharey=True)
-        drawn = None
-        for k, panel in enumerate(axes):
-            drawn = panel.pcolormesh(
+        drawn = [
+            panel.pcolormesh(
                 np.degrees(x), np.degrees(y), values[k], cmap=DIVERGING, vmin=-bound, vmax=bound,
                 shading="nearest", rasterized=True,
-            )  # fmt: skip
+            )
+            for k, panel in enumerate(axes)
+        ]  # fmt: skip
+        for k, panel in enumerate(axes):
             if np.ptp(values[k]) > 1e-9 * bound:
                 lines = panel.contour(
                     np.degrees(x), np.degrees(y), values[k], levels=5, colors=palette.INK,
@@ -55,7 +57,7 @@ def surface_parts(
             panel.set_title(f"part {k + 1}: ∂{element}/∂{_COMPONENTS[k]}")
             panel.set_xlabel(f"{x_label} [deg]")
         axes[0].set_ylabel(f"{y_label} [deg]")
-        figure.colorbar(drawn, ax=axes, label="N·m/rad per N", shrink=0.9, pad=0.02)
+        figure.colorbar(drawn[0], ax=axes, label="N·m/rad per N", shrink=0.9, pad=0.02)
     return figure
 
 

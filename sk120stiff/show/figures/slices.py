@@ -51,12 +51,12 @@ def stiffness_slice(
     with styled():
         figure = new_figure(3.9, width=5.4)
         panel = figure.subplots()
+        levels = np.linspace(low, top, 15)
         drawn = panel.contourf(
-            np.degrees(x), np.degrees(y), np.clip(shown, None, top),
-            levels=np.linspace(low, top, 15), cmap="cividis",
-        )  # fmt: skip
+            np.degrees(x), np.degrees(y), np.clip(shown, None, top), levels=levels, cmap="cividis"
+        )
         lines = panel.contour(
-            np.degrees(x), np.degrees(y), np.clip(shown, None, top), levels=drawn.levels[2:-1:3],
+            np.degrees(x), np.degrees(y), np.clip(shown, None, top), levels=levels[2:-1:3],
             colors="white", linewidths=0.6,
         )  # fmt: skip
         panel.clabel(lines, fontsize=7, fmt="%.3g")

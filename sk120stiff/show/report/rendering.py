@@ -1,0 +1,146 @@
+"""A report becomes one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from html import escape
+from numbers import Real
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from sk120stiff.files import write_atomically
+from sk120stiff.show import palette
+from sk120stiff.show.report.blocks import Block, Picture, SceneFrame, Section, Table
+from sk120stiff.show.saving import inline_svg
+
+_COLOURS = {
+    name.lower(): value
+    for name, value in vars(palette).items()
+    if isinstance(value, str) and value.startswith("#")
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Report:
+    """A titled sequence of sections.
+
+    Attributes
+    ----------
+    title
+        Heading of the page.
+    sections
+        Its parts, in order.
+    subtitle
+        A line under the heading.
+    lead
+        The answer, in a sentence or two, before everything else.
+    reproducibility
+        Name → text, shown last; see `reproducibility`.
+    """
+
+    title: str
+    sections: Sequence[Section] = ()
+    subtitle: str = ""
+    lead: str = ""
+    reproducibility: Mapping[str, str] = field(default_factory=dict)
+
+    def html(self) -> str:
+        """The whole page as text."""
+        template = _environment().get_template("report.html.j2")
+        return template.render(report=self, colours=_COLOURS)
+
+    def write(self, path: str | os.PathLike[str]) -> Path:
+        """Write the page; an interrupted write leaves the old file as it was."""
+        return write_atomically(path, self.html())
+
+    def _repr_html_(self) -> str:
+        page = escape(self.html(), quote=True)
+        return f'<iframe title="{escape(self.title, quote=True)}" srcdoc="{page}" ' + (
+            'style="width:100%;height:640px;border:0"></iframe>'
+        )
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("sk120stiff.show.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["cell"] = _cell
+    environment.filters["numeric"] = _numeric
+    environment.filters["prose"] = _prose
+    environment.filters["kind"] = _kind
+    environment.filters["slug"] = _slug
+    environment.filters["svg"] = _svg
+    environment.filters["page"] = _page
+    return environment
+
+
+def _kind(block: Block) -> str:
+    return type(block).__name__
+
+
+def _numeric(table: Table) -> list[bool]:
+    """For each column after the first: does it hold a number?"""
+    columns = list(zip(*table.rows, strict=True)) or [()] * len(table.header)
+    return [
+        k > 0 and any(isinstance(cell, Real) and not isinstance(cell, bool) for cell in column)
+        for k, column in enumerate(columns)
+    ]
+
+
+def _cell(value: object, digits: int) -> str:
+    """A number with `digits` significant digits and a true minus sign; text as it is."""
+    if value is None:
+        return "–"
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return str(value)
+    number = float(value)
+    if not math.isfinite(number):
+        return "–" if math.isnan(number) else ("∞" if number > 0 else "−∞")
+    if isinstance(value, int):
+        return str(value).replace("-", "−")
+    text = f"{number:.{digits}g}"
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        text = f"{mantissa}·10{_superscript(int(exponent))}"
+    return text.replace("-", "−")
+
+
+def _superscript(number: int) -> str:
+    return str(number).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def _prose(text: str) -> Markup:
+    """Plain text in which `code` and **strong** words are marked."""
+    marked = escape(text)
+    marked = re.sub(r"`([^`]+)`", r"<code>\1</code>", marked)
+    marked = re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", marked)
+    return Markup(marked)
+
+
+def _slug(title: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") or "section"
+
+
+def _svg(picture: Picture) -> Markup:
+    return Markup(inline_svg(picture.figure, picture.alt))
+
+
+def _page(frame: SceneFrame) -> str:
+    """The text of the scene's page; autoescape turns it into an attribute."""
+    if isinstance(frame.scene, str):
+        return frame.scene
+    from sk120stiff.show.static import scene_html
+
+    return scene_html(frame.scene)
