@@ -64,6 +64,7 @@ class Tree:
         twists = np.zeros((self.m, 6))
         for k in range(self.m):
             local = pin.getJointJacobian(self._model, self._data, k + 1, pin.LOCAL)
+            local = np.reshape(local, (6, self.m))  # a single column comes back flat
             twists[k] = local[:, self._model.joints[k + 1].idx_v]
         return twists
 
@@ -157,7 +158,7 @@ class Tree:
         columns = pin.getFrameJacobian(
             self._model, self._data, joint + 1, placement, pin.LOCAL_WORLD_ALIGNED
         )
-        return np.asarray(columns)
+        return np.asarray(columns).reshape(6, self.m)
 
     def gravity_torques(self, q: Array, gravity: Array) -> Array:
         """(m,) torques by which gravity drives the joints [N·m or N]: minus the holding torques.

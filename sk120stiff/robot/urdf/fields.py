@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 
+from sk120stiff.errors import InputError
 from sk120stiff.robot.urdf.document import Array
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
 from sk120stiff.robot.urdf.xml_tree import Element
@@ -58,12 +59,16 @@ class Fields:
         return values[0]
 
     def bound(self, element: Element, attribute: str) -> float | None:
-        """Like `number`, but an infinite or undefined value means None and is noted."""
+        """Like `number`, but whatever is no finite number means None and is noted."""
         text = (element.get(attribute) or "").strip()
         if _NOT_FINITE.match(text):
             self.warn("number_syntax", element, f"{attribute} is {text!r}; taken as absent")
             return None
-        return self.number(element, attribute)
+        try:
+            return self.number(element, attribute)
+        except InputError as error:  # a limit is no part of the kinematics
+            self.warn("number_syntax", element, f"{error.what}; taken as absent")
+            return None
 
     def vector(self, element: Element, attribute: str, size: int = 3) -> Array | None:
         """(size,) finite numbers, or None where the attribute is absent or empty.

@@ -7,8 +7,8 @@ import re
 from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument
 
 _FINGER = re.compile(
-    r"finger|gripper|grasp|jaw|thumb|knuckle|claw|pinch|suction|allegro|barrett|robotiq|schunk"
-    r"|(?:^|_)(?:index|middle|ring|pinky|little)(?:_|\d|$)",
+    r"finger|gripper|grasp|jaw|thumb|knuckle|claw|pinch|suction"
+    r"|(?:^|_)(?:index|middle|ring|pinky|little|mrl)(?:_|\d|$)",
     re.IGNORECASE,
 )
 # What robot makers call the frame to work with, best first.
@@ -36,9 +36,8 @@ def default_frames(document: UrdfDocument) -> tuple[str, str, tuple[str, ...]]:
     children: dict[str, list[JointSpec]] = {}
     for joint in document.joints:
         children.setdefault(joint.parent, []).append(joint)
-    fingers = {joint.name for joint in document.joints if joint.moves and _is_finger(joint)}
-    arm = [j for j in document.joints if j.moves and j.mimic is None and j.name not in fingers]
-    if not arm:
+    fingers = {joint.name for joint in document.moving_joints if _is_finger(joint)}
+    if not any(j.mimic is None and j.name not in fingers for j in document.moving_joints):
         fingers = set()  # the robot is a gripper: then its fingers are the arm
     moving, level, order = _walk(document, children, fingers)
     longest = max(moving.values())
@@ -60,7 +59,10 @@ def default_frames(document: UrdfDocument) -> tuple[str, str, tuple[str, ...]]:
 
 
 def _is_finger(joint: JointSpec) -> bool:
-    return any(_FINGER.search(name) for name in (joint.name, joint.child))
+    """By its name; by its child's name only if it slides, since a wrist may carry a gripper."""
+    return bool(
+        _FINGER.search(joint.name) or (joint.type == "prismatic" and _FINGER.search(joint.child))
+    )
 
 
 def _walk(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 
+from sk120stiff.errors import InputError
 from sk120stiff.robot.urdf.clean import clean_xml
 from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument, VisualSpec
 from sk120stiff.robot.urdf.findings import Notebook, at
@@ -14,7 +16,7 @@ from sk120stiff.robot.urdf.mimics import checked_mimics
 from sk120stiff.robot.urdf.packages import package_folders as folders_around
 from sk120stiff.robot.urdf.source import RawSource, read_source
 from sk120stiff.robot.urdf.structure import declared_links, find_root
-from sk120stiff.robot.urdf.xacro import expand, uses_xacro
+from sk120stiff.robot.urdf.xacro import expand, has_substitutions, uses_xacro
 from sk120stiff.robot.urdf.xml_text import decode
 from sk120stiff.robot.urdf.xml_tree import Element, parse_robot
 
@@ -59,14 +61,21 @@ def read_urdf(
     notes = Notebook(raw.label)
     folders = folders_around(raw.path, package_folders)
     text = decode(raw.data, notes)
-    if raw.is_xacro or uses_xacro(text):
-        text = expand(raw, text, folders, xacro_arguments or {}, notes)
-        notes.source = f"{raw.label} (expanded)"
-    root = parse_robot(text, notes)
-    return _document(root, raw, folders, notes)
+    if not (raw.is_xacro or uses_xacro(text)):
+        try:
+            return _document(parse_robot(text, notes), raw, folders, notes)
+        except InputError:
+            if not has_substitutions(text):
+                raise
+        notes = Notebook(raw.label)  # $(optenv ...) in a plain URDF: let xacro put in the values
+    text = expand(raw, text, folders, xacro_arguments or {}, notes)
+    notes.source = f"{raw.label} (expanded)"
+    return _document(parse_robot(text, notes), raw, folders, notes)
 
 
-def _document(root: Element, raw: RawSource, folders: tuple, notes: Notebook) -> UrdfDocument:  # type: ignore[type-arg]
+def _document(
+    root: Element, raw: RawSource, folders: tuple[Path, ...], notes: Notebook
+) -> UrdfDocument:
     name = _robot_name(root, raw, notes)
     _note_foreign(root, notes)
     link_elements = list(root.all("link"))

@@ -18,12 +18,18 @@ from sk120stiff.robot.urdf.source import MAX_BYTES, RawSource
 
 TIME_LIMIT = 60.0  # s
 _ELEMENT = re.compile(r"<xacro:\w")
+_SUBSTITUTION = re.compile(r"\$\((?:optenv|env|arg|find|eval|dirname) |\$\{[^}]{1,200}\}")
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
 def uses_xacro(text: str) -> bool:
     """Are there xacro elements, outside comments?"""
     return bool(_ELEMENT.search(text)) and bool(_ELEMENT.search(_COMMENT.sub("", text)))
+
+
+def has_substitutions(text: str) -> bool:
+    """Does an attribute hold an expression that only xacro can evaluate?"""
+    return bool(_SUBSTITUTION.search(_COMMENT.sub("", text)))
 
 
 def expand(
@@ -69,6 +75,9 @@ def expand(
                 "through ROS_PACKAGE_PATH.",
             )
         expanded = result.read_text(encoding="utf-8", errors="replace")
+    for line in said.split("; "):
+        if line.startswith("package "):
+            notes.warn("package_guessed", "", line)
     notes.warn("xacro_expanded", "", "lines below are those of the expanded text")
     return expanded
 
@@ -78,7 +87,7 @@ def _run(job: Mapping[str, object], notes: Notebook) -> str:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:
         done = subprocess.run(
-            [sys.executable, "-m", "sk120stiff.robot.urdf.xacro_child"],
+            [sys.executable, "-P", "-m", "sk120stiff.robot.urdf.xacro_child"],
             input=json.dumps(job).encode(),
             capture_output=True,
             timeout=TIME_LIMIT,
@@ -91,4 +100,4 @@ def _run(job: Mapping[str, object], notes: Notebook) -> str:
             remedy="Look for a macro that calls itself.",
         )
     lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
-    return " ".join(line.strip() for line in lines[-6:])[:600]
+    return "; ".join(dict.fromkeys(line.strip() for line in lines[-8:]))[:800]

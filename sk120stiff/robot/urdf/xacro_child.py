@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -39,7 +40,7 @@ def _expand(job: dict[str, Any]) -> None:
     folders = [Path(folder) for folder in job["folders"]]
 
     def look_up(name: str) -> str:
-        found = find_package(name, folders)
+        found = find_package(name, folders) or _guess(name, job["path"])
         if not found:
             raise FileNotFoundError(
                 f"package {name!r} was not found in the parent folders or ROS_PACKAGE_PATH"
@@ -49,6 +50,7 @@ def _expand(job: dict[str, Any]) -> None:
     packages.get_path = look_up
     options = {"subargs": job["arguments"], "resolve_packages": False}
     if job["path"] is not None:
+        os.chdir(Path(job["path"]).parent)  # includes are relative to the file
         document = XacroDoc.from_file(job["path"], **options)
     else:
         document = XacroDoc.from_string(job["text"], **options)
@@ -56,6 +58,15 @@ def _expand(job: dict[str, Any]) -> None:
     if len(text) > job["max_bytes"]:
         raise MemoryError(f"the expanded text has {len(text) / 1e6:.0f} MB")
     Path(job["result"]).write_text(text, encoding="utf-8")
+
+
+def _guess(name: str, path: str | None) -> list[Path]:
+    """Root of a package whose folder was renamed: two levels up, if the file lies in `urdf`."""
+    folder = Path(path).parent if path is not None else Path()
+    if folder.name not in ("urdf", "robots", "robot", "xacro"):
+        return []
+    print(f"package {name!r} was not found; {folder.parent} was taken instead", file=sys.stderr)  # noqa: T201
+    return [folder.parent]
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from sk120stiff.robot.urdf.findings import Notebook
+from sk120stiff.robot.urdf.findings import Notebook, at
 
 _DECLARATION = re.compile(r"<\?xml\b[^>]{0,200}\?>")
 _ENCODING = re.compile(rb"<\?xml\b[^>]{0,200}?encoding\s*=\s*[\"']([A-Za-z0-9._-]{1,40})[\"']")
@@ -67,8 +67,8 @@ def without_prologue(text: str, notes: Notebook) -> str:
 def mended(text: str, notes: Notebook) -> str:
     """Repair slips that strict XML forbids and common URDF parsers accept; each one is noted.
 
-    Double hyphens inside comments, bare ampersands, control characters. Text with other entity
-    references is left as it is: what an entity stands for is not ours to guess.
+    Double hyphens inside comments, bare ampersands, control characters, text behind the end. Text
+    with other entity references is left as it is: what an entity stands for is not ours to guess.
     """
     comments = _COMMENT.findall(text)
     if any("--" in comment[4:-3] or comment.endswith("--->") for comment in comments):
@@ -79,6 +79,12 @@ def mended(text: str, notes: Notebook) -> str:
     ):
         notes.warn("xml_syntax", "", "a bare '&' was read as '&amp;'")
         text = _STRAY_AMPERSAND.sub("&amp;", text)
+    end = text.rfind("</robot>") + len("</robot>")
+    if end >= len("</robot>") and text[end:].strip() and "<" not in text[end:]:
+        notes.warn(
+            "xml_syntax", at(text.count("\n", 0, end) + 1), "text behind </robot> was ignored"
+        )
+        text = text[:end]
     if _CONTROL.search(text):
         notes.warn("xml_syntax", "", "control characters were skipped")
         text = _CONTROL.sub(" ", text)

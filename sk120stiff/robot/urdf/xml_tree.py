@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import NoReturn
 from xml.parsers import expat
 
 from sk120stiff.robot.urdf.findings import Notebook, shown
@@ -85,7 +86,7 @@ def parse_robot(text: str, notes: Notebook) -> Element:
         try:
             root = _build(again)
         except expat.ExpatError:
-            root = _without_trailing_text(text, first, notes)
+            _refuse_markup(first, notes)
         except _Stop as stop:
             notes.refuse(stop.what, where=f"line {stop.line}", remedy=stop.remedy)
     except _Stop as stop:
@@ -116,23 +117,16 @@ def _refuse_pointer(text: str, notes: Notebook) -> None:
         )
 
 
-def _without_trailing_text(text: str, error: expat.ExpatError, notes: Notebook) -> Element:
-    """The tree before stray text at the end of a file, or the refusal of a file that is not XML."""
-    message = expat.ErrorString(error.code)
+def _refuse_markup(error: expat.ExpatError, notes: Notebook) -> NoReturn:
     place = f"line {error.lineno}, column {error.offset + 1}"
     if error.code == expat.errors.codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
-        cut = sum(len(line) + 1 for line in text.split("\n")[: error.lineno - 1])
-        tail = text[cut:].encode()[error.offset :].decode(errors="replace")
-        if "<" in tail:
-            notes.refuse(
-                "there is a second outermost element",
-                where=place,
-                remedy="Keep one <robot> per file.",
-            )
-        notes.warn("xml_syntax", place, "text behind </robot> was ignored")
-        return _build(text[: len(text) - len(tail)])
-    return notes.refuse(
-        f"this is not well-formed XML ({message})",
+        notes.refuse(
+            "there is more than one outermost element",
+            where=place,
+            remedy="Keep one <robot> per file and nothing behind it.",
+        )
+    notes.refuse(
+        f"this is not well-formed XML ({expat.ErrorString(error.code)})",
         where=place,
         remedy="Mend the markup at that place; an XML editor shows it.",
     )
