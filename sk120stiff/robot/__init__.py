@@ -3,7 +3,7 @@
 from sk120stiff.robot.chain import Chain, VirtualJoint
 from sk120stiff.robot.coupling import Coupling, Follower, JointMotion, LinearCoupling
 from sk120stiff.robot.loading import RobotSource, find_robot, load_robot
-from sk120stiff.robot.robot import STANDARD_GRAVITY, Robot
+from sk120stiff.robot.robot import STANDARD_GRAVITY, Linkage, Robot
 from sk120stiff.robot.screws import Mechanism, Screws
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Follower",
     "JointMotion",
     "LinearCoupling",
+    "Linkage",
     "Mechanism",
     "Robot",
     "RobotSource",

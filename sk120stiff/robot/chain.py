@@ -33,6 +33,9 @@ class VirtualJoint:
         (3,) unit direction in its own frame.
     revolute
         Rotation about the axis if true, translation along it else.
+    followers
+        Joints of the robot that follow this displacement through a closed linkage, as (index in q,
+        multiplier): a parallelogram keeps the forearm's direction also when the upper arm bends.
     """
 
     name: str
@@ -40,6 +43,7 @@ class VirtualJoint:
     placement: Array
     axis: Array
     revolute: bool = True
+    followers: tuple[tuple[int, float], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -23,6 +24,27 @@ class CouplingRule(_Strict):
     offset: float = 0.0
 
 
+class Foundation(_Strict):
+    """The point about which the base rocks, in a frame that does not move against the base."""
+
+    frame: str | None = None
+    xyz: tuple[float, float, float]
+    unit: Literal["m", "mm"] = "m"
+
+
+class LinkageRule(_Strict):
+    """A driven rod of a closed linkage.
+
+    `corners` are three frames whose origins are the crank's pivot, the joint of crank and rod, and
+    the far end of the rod; `drivers` are the two actuated joints that the linkage ties together,
+    the one that turns the crank last.
+    """
+
+    rod: str
+    drivers: tuple[str, str]
+    corners: tuple[str, str, str]
+
+
 class RobotDescription(_Strict):
     """The keys of `robot.yaml`; every one has a default."""
 
@@ -33,8 +55,9 @@ class RobotDescription(_Strict):
     actuated: tuple[str, ...] | None = None
     couplings: dict[str, CouplingRule] = Field(default_factory=dict)
     lock: dict[str, float] = Field(default_factory=dict)
-    foundation: tuple[float, float, float] | None = None
-    notes: tuple[str, ...] = ()
+    linkages: tuple[LinkageRule, ...] = ()
+    foundation: Foundation | None = None
+    notes: str = ""
 
 
 def read_description(path: Path) -> RobotDescription:

@@ -11,9 +11,9 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot.bundled import bundled_robots
-from sk120stiff.robot.coupling import Follower, linear_coupling
+from sk120stiff.robot.coupling import Array, Follower, linear_coupling
 from sk120stiff.robot.description import RobotDescription, read_description
-from sk120stiff.robot.robot import Robot
+from sk120stiff.robot.robot import Linkage, Robot
 from sk120stiff.robot.tree import Tree
 from sk120stiff.robot.urdf import UrdfDocument, default_frames, read_urdf
 
@@ -120,7 +120,6 @@ def load_robot(
         tree.joint_index(name)
     coupling = linear_coupling(tree.joint_names, chosen, followers, rest)
     lower, upper = _limits(document, chosen)
-    foundation = description.foundation
     return Robot(
         name=description.name or document.name,
         base_frame=base_frame,
@@ -138,8 +137,11 @@ def load_robot(
             for name in tree.joint_names
             if name not in chosen and name not in followers
         },
-        foundation=np.zeros(3) if foundation is None else np.array(foundation, dtype=float),
-        notes=tuple(description.notes),
+        linkages=tuple(
+            Linkage(rule.rod, rule.drivers, rule.corners) for rule in description.linkages
+        ),
+        foundation=_foundation(description, tree, base_frame),
+        notes=description.notes.strip(),
     )
 
 
@@ -207,3 +209,21 @@ def _limits(document: UrdfDocument, chosen: Sequence[str]) -> tuple[np.ndarray, 
         if joint.lower < joint.upper:
             lower[k], upper[k] = joint.lower, joint.upper
     return lower, upper
+
+
+def _foundation(description: RobotDescription, tree: Tree, base: str) -> Array:
+    """(3,) rocking point in the base frame [m]; its origin where `robot.yaml` names none."""
+    given = description.foundation
+    if given is None:
+        return np.zeros(3)
+    point = np.array(given.xyz) * {"m": 1.0, "mm": 1e-3}[given.unit]
+    body, T_body_base = tree.body(base)
+    fixed_to, T_body_frame = tree.body(given.frame or base)
+    if fixed_to != body:
+        raise InputError(
+            f"the frame {given.frame!r} moves against the base frame {base!r}",
+            where="robot.yaml, foundation.frame",
+            remedy="Name a frame that is fixed to the base.",
+        )
+    T_base_frame = np.linalg.inv(T_body_base) @ T_body_frame
+    return np.asarray(T_base_frame[:3, :3] @ point + T_base_frame[:3, 3])

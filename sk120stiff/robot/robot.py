@@ -20,6 +20,25 @@ if TYPE_CHECKING:
 STANDARD_GRAVITY = 9.80665  # m/s²
 
 
+@dataclass(frozen=True)
+class Linkage:
+    """The rod of a closed linkage between two actuated joints (see `robot.yaml`).
+
+    Attributes
+    ----------
+    rod
+        Link name of the rod.
+    drivers
+        The two actuated joints; the second one turns the crank and is held by the rod.
+    corners
+        Frames at the crank's pivot, at the joint of crank and rod, and at the rod's far end.
+    """
+
+    rod: str
+    drivers: tuple[str, str]
+    corners: tuple[str, str, str]
+
+
 @dataclass(frozen=True, eq=False)
 class Robot:
     """Rigid kinematics of an arm in its actuated coordinates; made by `load_robot`.
@@ -59,7 +78,8 @@ class Robot:
     locked: dict[str, float] = field(default_factory=dict)
     foundation: Array = field(default_factory=lambda: np.zeros(3))
     gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -STANDARD_GRAVITY]))
-    notes: tuple[str, ...] = ()
+    linkages: tuple[Linkage, ...] = ()
+    notes: str = ""
 
     def __repr__(self) -> str:
         return f"<Robot {self.name}: {', '.join(self.actuated)}; {self.tool_frame}>"

@@ -123,6 +123,10 @@ class Mechanism:
             wide = np.zeros((*first.shape[:-2], m + n_v, n_a + n_v))
             wide[..., :m, :n_a] = first
             wide[..., np.arange(m, m + n_v), np.arange(n_a, n_a + n_v)] = 1.0
+            for k, joint in enumerate(self.virtual):
+                for index, multiplier in joint.followers:
+                    wide[..., index, n_a + k] += multiplier
+                    q[..., index] += multiplier * z[..., n_a + k]
             first = wide
             if second is not None:
                 tall = np.zeros((*second.shape[:-3], m + n_v, n_a + n_v, n_a + n_v))

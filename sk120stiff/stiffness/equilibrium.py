@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Mechanism, Screws
@@ -67,6 +67,7 @@ def equilibrium(
     *,
     point: Array | None = None,
     force_point: Array | None = None,
+    soft: NDArray[np.intp] | None = None,
 ) -> Equilibrium:
     """Exact static equilibrium z = z_0 + e(J(z)ᵀ W) by Newton's method on compliances.
 
@@ -86,6 +87,9 @@ def equilibrium(
     point, force_point
         (3,) measured point and point where the force acts, in the end frame [m]. The force acts at
         the measured point unless said otherwise.
+    soft
+        Indices of the coordinates that can yield under `law`; the others are not solved for.
+        Default: all.
 
     Raises
     ------
@@ -97,14 +101,15 @@ def equilibrium(
     batch = np.broadcast_shapes(z_0.shape[:-1], load.shape[:-1])
     z = np.broadcast_to(z_0, (*batch, z_0.shape[-1])).copy()
     loaded_point = point if force_point is None else force_point
-    identity = np.eye(z.shape[-1])
+    pick = np.arange(z.shape[-1]) if soft is None else soft
+    identity = np.eye(len(pick))
     for step in range(MAX_ITERATIONS):
         screws = mechanism.screws(z, loaded_point)
         torques = screws.torques(load)
         elongation, compliance = law(torques)
         K_C = complementary_stiffness(screws, load)
-        error = z - z_0 - elongation
-        newton = identity - compliance @ K_C
+        error = (z - z_0 - elongation)[..., pick]
+        newton = identity - compliance[..., pick[:, None], pick] @ K_C[..., pick[:, None], pick]
         try:
             change = np.linalg.solve(newton, error[..., None])[..., 0]
         except np.linalg.LinAlgError:
@@ -113,11 +118,11 @@ def equilibrium(
             break
         if np.max(np.abs(change), initial=0.0) <= TOLERANCE:
             measured = screws if force_point is None else screws.at(_given(point))
-            compliance = np.broadcast_to(compliance, newton.shape)
+            compliance = np.broadcast_to(compliance, K_C.shape)
             return Equilibrium(z, measured, torques, compliance, K_C, step)
         # A step of more than half a radian would leave the region in which Newton can be trusted.
-        largest = np.max(np.abs(change), axis=-1, keepdims=True)
-        z = z - change * np.minimum(1.0, 0.5 / np.maximum(largest, 1e-300))
+        largest = np.max(np.abs(change), axis=-1, keepdims=True, initial=0.0)
+        z[..., pick] -= change * np.minimum(1.0, 0.5 / np.maximum(largest, 1e-300))
     raise Refusal(
         "no static equilibrium was found: the load is beyond what these springs can hold",
         remedy="Check the units of load and springs; see the critical load with "

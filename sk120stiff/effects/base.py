@@ -1,0 +1,257 @@
+"""The contract of an effect: one physical cause with a name, a place, parameters and a law.
+
+An effect enters in one of four ways, and each way is one base class:
+
+=============  ==========================================================  ======================
+class          what it changes                                             example
+=============  ==========================================================  ======================
+`Elastic`      elongation of coordinates under load, e(τ)                  joint springs, a beam
+`Geometric`    where the unloaded arm really is, z₀                        joint offset
+`LoadError`    the load, W_true = W + (S·p) W + o·p in sensor axes         force bias
+`ReadingError` the displacement read, d_read = d + (S·p) d + o·p           tracker misalignment
+=============  ==========================================================  ======================
+
+So a misread force can never pose as a spring. Adding an effect is one new file and one line in
+`catalogue.py`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True)
+class ParameterSpec:
+    """One parameter of an effect.
+
+    The law works with an internal value that is zero when the effect is absent (a compliance). What
+    people write and read may be its reciprocal (a stiffness): `public` and `internal` convert.
+
+    Attributes
+    ----------
+    name
+        Short name, unique within the effect.
+    unit
+        SI unit of the public value, e.g. ``N*m/rad``.
+    internal_unit
+        SI unit of the internal value.
+    reciprocal
+        The public value is one over the internal one.
+    lower, upper
+        Physical bounds of the internal value.
+    plausible
+        Internal magnitude above which the value is no explanation, however well it fits.
+    typical
+        Internal magnitude worth telling from zero; scales numerics and detectable sizes.
+    """
+
+    name: str
+    unit: str
+    internal_unit: str
+    plausible: float
+    typical: float
+    reciprocal: bool = False
+    lower: float = -np.inf
+    upper: float = np.inf
+
+    def public(self, internal: float) -> float:
+        """The value as people write it; infinite stiffness where nothing yields."""
+        if not self.reciprocal:
+            return internal
+        return float(np.inf) if internal == 0.0 else 1.0 / internal
+
+    def internal(self, public: float) -> float:
+        """The value as the law uses it."""
+        if not self.reciprocal:
+            return public
+        return 0.0 if np.isinf(public) else 1.0 / public
+
+    def public_std(self, internal: float, std: float) -> float:
+        """Standard error of the public value, to first order."""
+        if not self.reciprocal:
+            return std
+        return float(np.inf) if internal == 0.0 else std / internal**2
+
+
+def compliance(
+    name: str, *, softest: float, typical: float, unit: str = "N*m/rad", signed: bool = False
+) -> ParameterSpec:
+    """A compliance that people give as a stiffness.
+
+    Parameters
+    ----------
+    softest, typical
+        Stiffness [unit] below which the value is implausible, and one that is often met.
+    unit
+        ``N*m/rad``, ``N/m`` or ``N*m**2`` (beams).
+    signed
+        May be negative (a cross term).
+    """
+    inverse = {"N*m/rad": "rad/(N*m)", "N/m": "m/N", "N*m**2": "1/(N*m**2)"}[unit]
+    return ParameterSpec(
+        name=name,
+        unit=unit,
+        internal_unit=inverse,
+        plausible=1.0 / softest,
+        typical=1.0 / typical,
+        reciprocal=True,
+        lower=-np.inf if signed else 0.0,
+    )
+
+
+@dataclass(frozen=True)
+class Effect(ABC):
+    """One physical cause at one place.
+
+    Attributes
+    ----------
+    name
+        Public identifier (class attribute).
+    where
+        URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
+    """
+
+    where: str
+
+    name: ClassVar[str]
+
+    @property
+    def id(self) -> str:
+        """``name:where``."""
+        return f"{self.name}:{self.where}"
+
+    @property
+    @abstractmethod
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """What is to be known about it."""
+
+    @abstractmethod
+    def sentence(self) -> str:
+        """What happens, in plain words, as a full sentence."""
+
+    @classmethod
+    @abstractmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every `where` at which the effect can act on this robot."""
+
+    def aliases(self, robot: Robot) -> tuple[str, ...]:
+        """Other effects (``name:where``) that no reading of positions can tell from this one."""
+        return ()
+
+    def applies_to(self, situation: Situation) -> bool:
+        """Do these readings hold what the law needs (an order, branches, a weight)?"""
+        return True
+
+
+@dataclass(frozen=True, eq=False)
+class Elongation:
+    """What an elastic law returns for k coordinates and P parameters.
+
+    Attributes
+    ----------
+    value
+        (N, k) elongation [rad or m].
+    by_torque
+        (N, k, k) tangent compliance.
+    by_parameter
+        (N, k, P) derivative by the internal parameters.
+    """
+
+    value: Array
+    by_torque: Array
+    by_parameter: Array
+
+
+class Elastic(Effect):
+    """An effect that lets coordinates yield under load."""
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Joints that the effect adds to the chain; none where motors' coordinates yield."""
+        return ()
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """Names of the k coordinates that yield: actuated joints or own virtual joints."""
+        return tuple(joint.name for joint in self.virtual_joints(robot))
+
+    @abstractmethod
+    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+        """Law e(τ) for torques (N, k) [N·m or N] and internal parameter values (P,)."""
+
+
+class LinearElastic(Elastic):
+    """Elongation linear in torque and in parameters: e = Σ_p values[p] · pattern_p τ."""
+
+    @abstractmethod
+    def patterns(self, situation: Situation) -> Array:
+        """(P, k, k) or (P, N, k, k) symmetric compliance per unit of each parameter."""
+
+    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+        """See `Elastic.elongation`."""
+        patterns = self.patterns(situation)
+        if patterns.ndim == 3:
+            by_parameter = np.einsum("pij,nj->nip", patterns, torques)
+        else:
+            by_parameter = np.einsum("pnij,nj->nip", patterns, torques)
+        C = np.tensordot(values, patterns, axes=1)
+        return Elongation(
+            value=by_parameter @ values,
+            by_torque=np.broadcast_to(C, (*torques.shape, torques.shape[-1])),
+            by_parameter=by_parameter,
+        )
+
+
+class Geometric(Effect):
+    """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ p_k e_k."""
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Rigid joints that carry the error; none where an actuated coordinate does."""
+        return ()
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """Name of the coordinate that each parameter shifts."""
+        return tuple(joint.name for joint in self.virtual_joints(robot))
+
+
+class Misreading(Effect):
+    """x_out = x + Σ_p values[p] (S_p x + o_p)."""
+
+    @cached_property
+    @abstractmethod
+    def generators(self) -> Array:
+        """(P, d, d) matrices S_p."""
+
+    def offsets(self, situation: Situation) -> Array:
+        """(N, d, P) constants o_p; zero unless the effect adds something of its own."""
+        P, d, _ = self.generators.shape
+        return np.zeros((situation.count, d, P))
+
+    def columns(self, x: Array, situation: Situation) -> Array:
+        """(N, d, P) derivative of the output by the parameters, for inputs x (N, d)."""
+        return np.einsum("pij,nj->nip", self.generators, x) + self.offsets(situation)
+
+    def matrix(self, values: Array) -> Array:
+        """(d, d) derivative of the output by the input."""
+        return np.eye(self.generators.shape[-1]) + np.tensordot(values, self.generators, axes=1)
+
+
+class LoadError(Misreading):
+    """The load differs from what was reported; x is the wrench (6) in sensor axes [N, N·m]."""
+
+
+class ReadingError(Misreading):
+    """The reading differs from the displacement; x is the displacement (3), base axes [m]."""
+
+
+def unit_vectors(dimension: int, picks: Sequence[int]) -> Array:
+    """(len(picks), dimension) rows of the identity."""
+    return np.eye(dimension)[list(picks)]

@@ -1,0 +1,85 @@
+"""Compliance of a closed linkage between two motors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+from sk120stiff.robot.coupling import Array
+from sk120stiff.robot.robot import Linkage
+
+PAIR = "+"  # joint_2_l+joint_3_u: a pair of joints as one place
+
+
+@dataclass(frozen=True)
+class ClosureCoupling(LinearElastic):
+    """Torque on one motor moves the other: a cross term c₂₃ between two joint compliances."""
+
+    name: ClassVar[str] = "closure_coupling"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """The cross compliance, given as its reciprocal; it may have either sign."""
+        return (compliance("cross_stiffness", softest=2e5, typical=1e7, signed=True),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        first, second = self.where.split(PAIR)
+        return f"Torque on {first} moves {second} through the closed linkage, and back."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every pair of actuated joints that a linkage of `robot.yaml` ties together."""
+        return tuple(PAIR.join(linkage.drivers) for linkage in robot.linkages)
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """The two joints."""
+        return tuple(self.where.split(PAIR))
+
+    def patterns(self, situation: Situation) -> Array:
+        """c₂₃ (e₂ e₃ᵀ + e₃ e₂ᵀ)."""
+        return np.array([[[0.0, 1.0], [1.0, 0.0]]])
+
+
+@dataclass(frozen=True)
+class ClosureRod(LinearElastic):
+    """The linkage rod stretches: c / sin²γ on the joint it holds, γ the crank–rod angle."""
+
+    name: ClassVar[str] = "closure_rod"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Joint stiffness that the rod alone would give where crank and rod are square."""
+        return (compliance("stiffness", softest=1e6, typical=2e7),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The linkage's {self.where} stretches, the more so the more the linkage folds."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every rod that `robot.yaml` describes."""
+        return tuple(linkage.rod for linkage in robot.linkages)
+
+    def linkage(self, robot: Robot) -> Linkage:
+        """The description of this rod."""
+        return next(linkage for linkage in robot.linkages if linkage.rod == self.where)
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """The joint whose crank the rod holds."""
+        return (self.linkage(robot).drivers[1],)
+
+    def patterns(self, situation: Situation) -> Array:
+        """1 / sin²γ at the unloaded pose."""
+        corners = self.linkage(situation.robot).corners
+        pivot, elbow, end = (
+            situation.robot.screws(situation.a, frame).position for frame in corners
+        )
+        crank, rod = elbow - pivot, end - elbow
+        square = (np.cross(crank, rod) ** 2).sum(-1) / ((crank**2).sum(-1) * (rod**2).sum(-1))
+        return (1.0 / np.maximum(square, 1e-6))[None, :, None, None]

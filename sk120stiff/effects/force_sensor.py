@@ -1,0 +1,134 @@
+"""The force sensor misreads. Everything is stated in the sensor's axes, those of the tool frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import permutations
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import LoadError, ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+from sk120stiff.robot.chain import skew
+from sk120stiff.robot.coupling import Array
+
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class ForceSensorEffect(LoadError):
+    """A property of the one force sensor."""
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """The sensor."""
+        return ("sensor",)
+
+
+@dataclass(frozen=True)
+class ForceScale(ForceSensorEffect):
+    """Each force axis has a gain of its own."""
+
+    name: ClassVar[str] = "force_scale"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Relative gain errors of the three force axes."""
+        return tuple(
+            ParameterSpec(f"gain_{axis}", "1", "1", plausible=0.05, typical=0.01) for axis in AXES
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The force sensor's axes read too much or too little in proportion."
+
+    @cached_property
+    def generators(self) -> Array:
+        """One diagonal element of the force each."""
+        out = np.zeros((3, 6, 6))
+        out[range(3), range(3), range(3)] = 1.0
+        return out
+
+
+@dataclass(frozen=True)
+class ForceBias(ForceSensorEffect):
+    """The sensor adds a constant force that the unloaded reading did not have."""
+
+    name: ClassVar[str] = "force_bias"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """True force where the sensor reads zero."""
+        return tuple(
+            ParameterSpec(f"force_{axis}", "N", "N", plausible=30.0, typical=5.0) for axis in AXES
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The force sensor has a constant offset under load."
+
+    @cached_property
+    def generators(self) -> Array:
+        """It does not depend on the load."""
+        return np.zeros((3, 6, 6))
+
+    def offsets(self, situation: Situation) -> Array:
+        """A unit force along each sensor axis."""
+        return np.broadcast_to(np.eye(6)[:, :3], (situation.count, 6, 3))
+
+
+@dataclass(frozen=True)
+class ForceRotation(ForceSensorEffect):
+    """The sensor is mounted turned by a small angle: W_true = W + φ × W."""
+
+    name: ClassVar[str] = "force_rotation"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Mounting angles about the sensor axes."""
+        return tuple(
+            ParameterSpec(f"angle_{axis}", "rad", "rad", plausible=0.09, typical=0.0175)
+            for axis in AXES
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The force sensor is mounted turned, so it sees the load in a wrong direction."
+
+    @cached_property
+    def generators(self) -> Array:
+        """φ × acts on force and moment."""
+        out = np.zeros((3, 6, 6))
+        for k in range(3):
+            out[k, :3, :3] = out[k, 3:, 3:] = skew(np.eye(3)[k])
+        return out
+
+
+@dataclass(frozen=True)
+class ForceCrosstalk(ForceSensorEffect):
+    """A force along one sensor axis shows on another."""
+
+    name: ClassVar[str] = "force_crosstalk"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Share of each axis's reading that is added to another's."""
+        return tuple(
+            ParameterSpec(f"{source}_to_{target}", "1", "1", plausible=0.09, typical=0.01)
+            for source, target in permutations(AXES, 2)
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The force sensor's axes talk to each other."
+
+    @cached_property
+    def generators(self) -> Array:
+        """One element off the diagonal each."""
+        out = np.zeros((6, 6, 6))
+        for k, (source, target) in enumerate(permutations(range(3), 2)):
+            out[k, target, source] = 1.0
+        return out

@@ -1,0 +1,88 @@
+"""The base on its foundation: it rocks about horizontal axes, and it slides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True)
+class BaseRocking(LinearElastic):
+    """The base turns about the x and y axes of the base frame through the foundation point.
+
+    Its yaw is left out: about a vertical first joint it is that joint's spring under another name.
+    """
+
+    name: ClassVar[str] = "base_rocking"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Rocking stiffness about x and about y."""
+        return (
+            compliance("stiffness_x", softest=3e5, typical=1e7),
+            compliance("stiffness_y", softest=3e5, typical=1e7),
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The base rocks on its foundation about horizontal axes."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """The base frame."""
+        return (robot.base_frame,)
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Two joints before all others."""
+        placement = np.eye(4)
+        placement[:3, 3] = robot.foundation
+        return tuple(
+            VirtualJoint(f"{self.id}.{label}", -1, placement, np.eye(3)[k])
+            for k, label in enumerate("xy")
+        )
+
+    def patterns(self, situation: Situation) -> Array:
+        """Each axis has a compliance of its own."""
+        return np.array([np.diag(row) for row in np.eye(2)])
+
+
+@dataclass(frozen=True)
+class BaseSliding(LinearElastic):
+    """The base shifts along the axes of the base frame."""
+
+    name: ClassVar[str] = "base_sliding"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Stiffness against shifting along x, y and z."""
+        return tuple(
+            compliance(f"stiffness_{label}", softest=2e6, typical=7e7, unit="N/m")
+            for label in "xyz"
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The base shifts on its foundation under the load."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """The base frame."""
+        return (robot.base_frame,)
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Three slides before all other joints."""
+        return tuple(
+            VirtualJoint(f"{self.id}.{label}", -1, np.eye(4), np.eye(3)[k], revolute=False)
+            for k, label in enumerate("xyz")
+        )
+
+    def patterns(self, situation: Situation) -> Array:
+        """Each axis has a compliance of its own."""
+        return np.array([np.diag(row) for row in np.eye(3)])

@@ -1,0 +1,120 @@
+"""The rigid geometry is wrong. It shows in deflections only through the Jacobian, so hardly ever."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import Geometric, ParameterSpec
+from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.anatomy import arm_joint, arm_links
+
+
+@dataclass(frozen=True)
+class JointOffset(Geometric):
+    """The joint stands elsewhere than it reads."""
+
+    slides: bool = False
+    name: ClassVar[str] = "joint_offset"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """True coordinate minus reading."""
+        if self.slides:
+            return (ParameterSpec("offset", "m", "m", plausible=0.02, typical=1e-3),)
+        return (ParameterSpec("offset", "rad", "rad", plausible=0.02, typical=1e-3),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The zero of {self.where} is off."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every actuated joint."""
+        return robot.actuated
+
+    @classmethod
+    def at(cls, robot: Robot, where: str) -> JointOffset:
+        """The offset of one joint, in rad or m as the joint asks for."""
+        return cls(where, slides=robot.prismatic[robot.actuated.index(where)])
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """The actuated joint itself."""
+        return (self.where,)
+
+
+@dataclass(frozen=True)
+class ToolOffset(Geometric):
+    """The measured point (and the force with it) sits elsewhere in the tool frame."""
+
+    name: ClassVar[str] = "tool_offset"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """True position minus stated position of the point, tool axes."""
+        return tuple(
+            ParameterSpec(f"offset_{axis}", "m", "m", plausible=0.02, typical=2e-3)
+            for axis in "xyz"
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The measured point sits elsewhere on the tool than stated."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """The tool frame."""
+        return (robot.tool_frame,)
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Three rigid slides at the tool frame."""
+        chain = robot.mechanism().chain
+        return tuple(
+            VirtualJoint(
+                f"{self.id}.{label}", chain.m - 1, chain.placements[-1], axis, revolute=False
+            )
+            for label, axis in zip("xyz", np.eye(3), strict=True)
+        )
+
+    def aliases(self, robot: Robot) -> tuple[str, ...]:
+        """A tool that is longer is a last link that is longer."""
+        last = arm_links(robot)[-1] if arm_links(robot) else None
+        return (f"link_length:{last.link}",) if last else ()
+
+
+@dataclass(frozen=True)
+class LinkLength(Geometric):
+    """A link is longer or shorter than stated."""
+
+    name: ClassVar[str] = "link_length"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """True length minus stated length."""
+        return (ParameterSpec("offset", "m", "m", plausible=0.02, typical=2e-3),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The link {self.where} has another length than stated."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every link with a length."""
+        return tuple(joint.link for joint in arm_links(robot))
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """A rigid slide along the link, at its far end."""
+        link = arm_joint(robot, self.where)
+        placement = np.eye(4)
+        placement[:3, 3] = link.along
+        return (
+            VirtualJoint(
+                f"{self.id}.length",
+                link.index,
+                placement,
+                link.directions()[0],
+                revolute=False,
+            ),
+        )

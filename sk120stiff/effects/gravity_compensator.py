@@ -1,0 +1,66 @@
+"""A balancer (spring or gas) beside a joint: extra stiffness that goes with the arm's posture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import LinearElastic, ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+from sk120stiff.robot.anatomy import arm_joint, arm_joints
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True)
+class GravityCompensator(LinearElastic):
+    """The joint's compliance falls by γ cos θ, θ the link's angle from the vertical.
+
+    To first order this is a stiffness K + ΔK cos θ with γ = ΔK/K².
+    """
+
+    name: ClassVar[str] = "gravity_compensator"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Drop of the compliance where the link stands upright."""
+        unit = "rad/(N*m)"
+        return (ParameterSpec("compliance_drop", unit, unit, plausible=5e-7, typical=1e-7),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"A balancer adds stiffness to {self.where} that goes with the arm's posture."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every actuated joint that turns about a horizontal axis at all poses, and has a link."""
+        return tuple(
+            joint.name
+            for joint in arm_joints(robot)
+            if joint.revolute
+            and joint.actuated is not None
+            and joint.length > 0.1
+            and _stays_horizontal(robot, joint.index)
+        )
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """The actuated joint itself."""
+        return (self.where,)
+
+    def patterns(self, situation: Situation) -> Array:
+        """−cos θ, from the height of the link's far end over its near end."""
+        robot = situation.robot
+        joint = arm_joint(robot, self.where)
+        origin = robot.screws(situation.a, joint.link).position
+        end = robot.screws(situation.a, joint.link, joint.along).position
+        up = -robot.gravity / np.linalg.norm(robot.gravity)
+        cosine = (end - origin) @ up / joint.length
+        return -cosine[None, :, None, None]
+
+
+def _stays_horizontal(robot: Robot, index: int) -> bool:
+    poses = np.random.default_rng(0).uniform(-1.0, 1.0, (8, robot.n))
+    axes = robot.screws(poses).axes[:, index]
+    return bool(np.abs(axes @ robot.gravity).max() < 1e-9 * np.linalg.norm(robot.gravity))

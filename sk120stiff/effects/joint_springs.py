@@ -1,0 +1,64 @@
+"""Torsional springs of the actuated joints: the base model of the 2005 paper, eq. (5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+from sk120stiff.robot.anatomy import arm_joints
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True)
+class JointSprings(LinearElastic):
+    """θ − θ₀ = τ / K: gear, bearing and servo of one motor as one spring.
+
+    For a joint that slides, K is in N/m.
+    """
+
+    slides: bool = False
+    name: ClassVar[str] = "joint_springs"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """The spring's stiffness."""
+        if self.slides:
+            return (compliance("stiffness", softest=1e4, typical=1e7, unit="N/m"),)
+        return (compliance("stiffness", softest=1e3, typical=1e6),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The drive of {self.where} yields under the torque it carries."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every actuated joint."""
+        return robot.actuated
+
+    @classmethod
+    def at(cls, robot: Robot, where: str) -> JointSprings:
+        """The spring of one joint, in N·m/rad or N/m as the joint asks for."""
+        return cls(where, slides=robot.prismatic[robot.actuated.index(where)])
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """The actuated joint itself."""
+        return (self.where,)
+
+    def patterns(self, situation: Situation) -> Array:
+        """e = c τ."""
+        return np.ones((1, 1, 1))
+
+    def aliases(self, robot: Robot) -> tuple[str, ...]:
+        """A joint-4 spring and the twist of a straight forearm are one; see `link_torsion`."""
+        found = []
+        for before, after in zip(arm_joints(robot), arm_joints(robot)[1:], strict=False):
+            if after.name == self.where and after.revolute and before.length > 0.0:
+                axis = robot.mechanism().chain.placements[after.index][:3, :3] @ after.axis
+                if np.linalg.norm(np.cross(axis, before.along)) < 1e-9 * before.length:
+                    found.append(f"link_torsion:{before.link}")
+        return tuple(found)

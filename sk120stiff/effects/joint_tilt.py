@@ -1,0 +1,54 @@
+"""A bearing tilts about the axes normal to its joint axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance, unit_vectors
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.anatomy import arm_joint, arm_joints
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True)
+class JointTilt(LinearElastic):
+    """Two virtual joints at the bearing, on its moving side: along the link, and across it."""
+
+    name: ClassVar[str] = "joint_tilt"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Tilt stiffness about the link's direction and across it."""
+        return (
+            compliance("stiffness_along", softest=3e5, typical=1e7),
+            compliance("stiffness_across", softest=3e5, typical=1e7),
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The bearing of {self.where} tilts about the axes normal to its joint axis."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every actuated joint that turns."""
+        return tuple(
+            joint.name
+            for joint in arm_joints(robot)
+            if joint.revolute and joint.actuated is not None
+        )
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """One joint for each tilt axis, at the joint's origin."""
+        joint = arm_joint(robot, self.where)
+        return tuple(
+            VirtualJoint(f"{self.id}.{label}", joint.index, np.eye(4), axis)
+            for label, axis in zip(("along", "across"), joint.tilt_axes(), strict=True)
+        )
+
+    def patterns(self, situation: Situation) -> Array:
+        """Each axis has a compliance of its own."""
+        return np.array([np.diag(row) for row in unit_vectors(2, (0, 1))])

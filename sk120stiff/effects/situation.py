@@ -1,0 +1,186 @@
+"""What an effect may look at: the readings of an experiment as arrays, in base axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.robot import Robot, Screws
+from sk120stiff.robot.coupling import Array
+
+if TYPE_CHECKING:
+    from sk120stiff.measurements import Measurements
+
+
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """N readings of a robot under load.
+
+    Attributes
+    ----------
+    robot
+        The rigid robot.
+    a
+        (N, n) commanded coordinates [rad or m].
+    wrench
+        (N, 6) load as reported, base axes, at `force_point` [N, N·m].
+    rotation
+        (N, 3, 3) unloaded tool frame in base axes.
+    point, force_point
+        (3,) measured point and point of the force, in the tool frame [m].
+    reading_axes
+        (N, 3, 3) axes in which displacements are stated, in base axes.
+    order, time
+        (N,) position in the series [1] and instant [s] of each reading minus that of its zero, or
+        None.
+    branch
+        (N,) +1 while the load grows, -1 while it falls.
+    pose
+        (N,) index into `poses`.
+    poses
+        Labels of the poses.
+    """
+
+    robot: Robot
+    a: Array
+    wrench: Array
+    rotation: Array
+    point: Array
+    force_point: Array
+    reading_axes: Array
+    order: Array | None
+    time: Array | None
+    branch: Array
+    pose: NDArray[np.intp]
+    poses: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        """Number of readings N."""
+        return len(self.a)
+
+    @cached_property
+    def gravity_torque(self) -> Array:
+        """(N, n) torque of the arm's own weight on the actuated joints [N·m or N]."""
+        if self.robot.total_mass == 0.0:
+            return np.zeros_like(self.a)
+        unique, inverse = np.unique(self.a, axis=0, return_inverse=True)
+        return self.robot.gravity_torque(unique)[inverse.reshape(-1)]
+
+    @cached_property
+    def nominal(self) -> Screws:
+        """`Screws` of the unloaded, rigid robot at the measured point."""
+        return self.robot.screws(self.a, point=self.point)
+
+    def rows(self, pick: slice | NDArray[np.intp] | NDArray[np.bool_]) -> Situation:
+        """Part of the readings."""
+
+        def part(x: Array | None) -> Array | None:
+            return None if x is None else x[pick]
+
+        return replace(
+            self,
+            a=self.a[pick],
+            wrench=self.wrench[pick],
+            rotation=self.rotation[pick],
+            reading_axes=self.reading_axes[pick],
+            order=part(self.order),
+            time=part(self.time),
+            branch=self.branch[pick],
+            pose=self.pose[pick],
+        )
+
+
+def situation_of_load(
+    robot: Robot,
+    a: ArrayLike,
+    wrench: ArrayLike,
+    *,
+    point: ArrayLike | None = None,
+    force_point: ArrayLike | None = None,
+) -> Situation:
+    """Readings made of coordinates (N, n) and base-axes wrenches (N, 6) alone."""
+    coordinates = np.atleast_2d(robot.coordinates(a))
+    load = np.atleast_2d(np.asarray(wrench, dtype=float))
+    count = max(len(coordinates), len(load))
+    coordinates = np.broadcast_to(coordinates, (count, robot.n))
+    load = np.broadcast_to(load, (count, 6))
+    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    return Situation(
+        robot=robot,
+        a=coordinates,
+        wrench=load,
+        rotation=robot.screws(coordinates).rotation,
+        point=at,
+        force_point=at if force_point is None else np.asarray(force_point, dtype=float),
+        reading_axes=np.broadcast_to(np.eye(3), (count, 3, 3)),
+        order=None,
+        time=None,
+        branch=np.ones(count),
+        pose=np.arange(count),
+        poses=tuple(str(k + 1) for k in range(count)),
+    )
+
+
+def situation_of(robot: Robot, measurements: Measurements) -> Situation:
+    """Readings of a measurement file on a robot.
+
+    Raises
+    ------
+    InputError
+        The file's joints are not the robot's actuated joints.
+    """
+    order = _columns_of(robot, measurements.joint_names)
+    a = measurements.joints[:, order]
+    rotation = robot.screws(a).rotation
+    wrench = measurements.wrench
+    if measurements.force_frame == "tool":
+        wrench = np.concatenate(
+            [
+                np.einsum("nij,nj->ni", rotation, wrench[:, :3]),
+                np.einsum("nij,nj->ni", rotation, wrench[:, 3:]),
+            ],
+            axis=1,
+        )
+    identity = np.broadcast_to(np.eye(3), rotation.shape)
+    labels = measurements.poses
+    index = {label: k for k, label in enumerate(labels)}
+    return Situation(
+        robot=robot,
+        a=a,
+        wrench=wrench,
+        rotation=rotation,
+        point=measurements.point,
+        force_point=measurements.force_point,
+        reading_axes=rotation if measurements.displacement_frame == "tool" else identity,
+        order=measurements.elapsed_order,
+        time=measurements.elapsed_time,
+        branch=_branch_signs(measurements),
+        pose=np.array([index[label] for label in measurements.pose], dtype=np.intp),
+        poses=labels,
+    )
+
+
+def _columns_of(robot: Robot, names: tuple[str, ...]) -> list[int]:
+    missing = [name for name in robot.actuated if name not in names]
+    unknown = [name for name in names if name not in robot.actuated]
+    if missing or unknown:
+        raise InputError(
+            "the measurements' joint columns are not the robot's actuated joints"
+            + (f"; missing: {', '.join(missing)}" if missing else "")
+            + (f"; unknown: {', '.join(unknown)}" if unknown else ""),
+            where=robot.name,
+            remedy=f"Name one column for each of: {', '.join(robot.actuated)}.",
+        )
+    return [names.index(name) for name in robot.actuated]
+
+
+def _branch_signs(measurements: Measurements) -> Array:
+    if measurements.branch is None:
+        return np.ones(measurements.n_readings)
+    return np.array([-1.0 if branch == "unload" else 1.0 for branch in measurements.branch])

@@ -1,0 +1,155 @@
+"""The tracker misreads displacements. Everything is stated in axes of the base frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import ParameterSpec, ReadingError
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+from sk120stiff.robot.chain import skew
+from sk120stiff.robot.coupling import Array
+
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class TrackerEffect(ReadingError):
+    """A property of the one measuring instrument."""
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """The tracker."""
+        return ("tracker",)
+
+
+@dataclass(frozen=True)
+class ReadingRotation(TrackerEffect):
+    """The tracker's frame was aligned to the base with a small error: d_read = d + ω × d."""
+
+    name: ClassVar[str] = "reading_rotation"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Misalignment about the base axes."""
+        return tuple(
+            ParameterSpec(f"angle_{axis}", "rad", "rad", plausible=0.06, typical=0.003)
+            for axis in AXES
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The tracker's frame is turned against the robot's base frame."
+
+    @cached_property
+    def generators(self) -> Array:
+        """ω ×."""
+        return np.array([skew(axis) for axis in np.eye(3)])
+
+
+@dataclass(frozen=True)
+class ReadingScale(TrackerEffect):
+    """Every displacement is read too large or too small by the same share."""
+
+    name: ClassVar[str] = "reading_scale"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Relative scale error."""
+        return (ParameterSpec("scale", "1", "1", plausible=0.01, typical=1e-5),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The tracker's scale is wrong."
+
+    @cached_property
+    def generators(self) -> Array:
+        """The identity."""
+        return np.eye(3)[None]
+
+    def aliases(self, robot: Robot) -> tuple[str, ...]:
+        """A scale is what all compliances together are."""
+        return ("joint_springs:all",)
+
+
+@dataclass(frozen=True)
+class ReadingDrift(TrackerEffect):
+    """Readings wander with time (or with their order, where no time is known) since the zero."""
+
+    per_second: bool = False
+    name: ClassVar[str] = "reading_drift"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Drift rates along the base axes."""
+        unit, typical = ("m/s", 1e-8) if self.per_second else ("m", 1e-6)
+        return tuple(
+            ParameterSpec(f"rate_{axis}", unit, unit, plausible=100 * typical, typical=typical)
+            for axis in AXES
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The readings drift as the measurement goes on."
+
+    def applies_to(self, situation: Situation) -> bool:
+        """The file must say in which order, or when, it was read."""
+        return self._clock(situation) is not None
+
+    def _clock(self, situation: Situation) -> Array | None:
+        return situation.time if self.per_second else situation.order
+
+    @cached_property
+    def generators(self) -> Array:
+        """It does not depend on the displacement."""
+        return np.zeros((3, 3, 3))
+
+    def offsets(self, situation: Situation) -> Array:
+        """Time or steps since the zero reading."""
+        clock = self._clock(situation)
+        elapsed = np.zeros(situation.count) if clock is None else clock
+        return elapsed[:, None, None] * np.eye(3)
+
+
+@dataclass(frozen=True)
+class ZeroOffset(TrackerEffect):
+    """The unloaded reading of a pose was off: a constant on all readings of that pose."""
+
+    poses: tuple[str, ...] = ()
+    name: ClassVar[str] = "zero_offset"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Offset of each pose along the base axes."""
+        return tuple(
+            ParameterSpec(f"{pose}.{axis}", "m", "m", plausible=2e-4, typical=1e-5)
+            for pose in self.poses
+            for axis in AXES
+        )
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The unloaded readings of the poses are off by more than the noise."
+
+    def applies_to(self, situation: Situation) -> bool:
+        """Poses need several readings each, else the offset takes everything."""
+        return bool(self.poses) and situation.count > len(self.poses)
+
+    @cached_property
+    def generators(self) -> Array:
+        """It does not depend on the displacement."""
+        return np.zeros((3 * len(self.poses), 3, 3))
+
+    def offsets(self, situation: Situation) -> Array:
+        """One on the readings of the pose that the parameter belongs to."""
+        known = {pose: k for k, pose in enumerate(self.poses)}
+        out = np.zeros((situation.count, 3, len(self.poses), 3))
+        for row, index in enumerate(situation.pose):
+            k = known.get(situation.poses[index])
+            if k is not None:
+                out[row, :, k, :] = np.eye(3)
+        return out.reshape(situation.count, 3, -1)

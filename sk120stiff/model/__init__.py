@@ -1,0 +1,24 @@
+"""Robot + effects with values: predict, differentiate, read, write."""
+
+from sk120stiff.model.assembly import Assembly, Solution
+from sk120stiff.model.file import (
+    base_model,
+    model_from_text,
+    model_text,
+    read_model,
+    write_model,
+)
+from sk120stiff.model.model import Model, Parameter, joint_spring_model
+
+__all__ = [
+    "Assembly",
+    "Model",
+    "Parameter",
+    "Solution",
+    "base_model",
+    "joint_spring_model",
+    "model_from_text",
+    "model_text",
+    "read_model",
+    "write_model",
+]

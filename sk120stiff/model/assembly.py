@@ -1,0 +1,281 @@
+"""A robot with effects as one mechanism: prediction and its exact derivatives.
+
+Coordinates are z = [a; v], actuated and virtual. A reading is made in five steps:
+
+1. the load errors turn the reported wrench into the true one, in sensor axes;
+2. the geometric effects shift the unloaded coordinates z₀;
+3. the elastic effects find their common equilibrium z = z₀ + e(J(z)ᵀ W);
+4. the displacement is x(z) − x(z₀);
+5. the reading errors turn it into what the instrument says.
+
+Derivatives follow from one adjoint solve per reading: with N = I − C K_C at the equilibrium,
+∂x/∂p = (J N⁻¹) ∂e/∂p.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.effects import (
+    Effect,
+    Elastic,
+    Geometric,
+    LinearElastic,
+    LoadError,
+    ReadingError,
+    Situation,
+)
+from sk120stiff.effects.base import Misreading
+from sk120stiff.robot import Mechanism, Robot, Screws
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness import ElasticLaw, Equilibrium, equilibrium
+
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """Effects put together on a robot; values of their parameters are given at each call.
+
+    Attributes
+    ----------
+    robot
+        The rigid robot.
+    effects
+        The effects, in the order of their parameters in the vector of values.
+    """
+
+    robot: Robot
+    effects: tuple[Effect, ...]
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """Each effect's part of the vector of values."""
+        ends = np.cumsum([0, *(len(effect.parameters) for effect in self.effects)])
+        return tuple(slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False))
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The robot with all virtual joints."""
+        virtual = [
+            joint
+            for effect in self.effects
+            if isinstance(effect, Elastic | Geometric)
+            for joint in effect.virtual_joints(self.robot)
+        ]
+        rigid = self.robot.mechanism()
+        return rigid.with_virtual_joints(virtual) if virtual else rigid
+
+    @cached_property
+    def _coordinate(self) -> dict[str, int]:
+        names = [*self.robot.actuated, *(joint.name for joint in self.mechanism.virtual)]
+        return {name: k for k, name in enumerate(names)}
+
+    @cached_property
+    def _elastic(self) -> tuple[tuple[Elastic, slice, Index], ...]:
+        return tuple(
+            (effect, part, self._indices(effect.coordinates(self.robot)))
+            for effect, part in zip(self.effects, self.slices, strict=True)
+            if isinstance(effect, Elastic)
+        )
+
+    @cached_property
+    def _geometric(self) -> tuple[tuple[slice, Index], ...]:
+        return tuple(
+            (part, self._indices(effect.coordinates(self.robot)))
+            for effect, part in zip(self.effects, self.slices, strict=True)
+            if isinstance(effect, Geometric)
+        )
+
+    def _indices(self, names: Sequence[str]) -> Index:
+        return np.array([self._coordinate[name] for name in names], dtype=np.intp)
+
+    def start(self, situation: Situation, values: Array) -> Array:
+        """(N, n_z) unloaded coordinates z₀ [rad or m]."""
+        z_0 = np.zeros((situation.count, self.mechanism.n))
+        z_0[:, : self.robot.n] = situation.a
+        for part, index in self._geometric:
+            z_0[:, index] += values[part]
+        return z_0
+
+    def solve(self, situation: Situation, values: Array) -> Solution:
+        """Equilibrium and reading for N readings and parameter values (P,).
+
+        Raises
+        ------
+        Refusal
+            The springs cannot hold the load.
+        """
+        loads = _misread(self._of(LoadError), situation, values, _to_sensor(situation))
+        wrench = _rotate(situation.rotation, loads.value)
+        z_0 = self.start(situation, values)
+        rest = equilibrium(
+            self.mechanism,
+            z_0,
+            wrench,
+            self._law(situation, values),
+            point=situation.point,
+            force_point=situation.force_point,
+            soft=self._soft(values),
+        )
+        unloaded = self.mechanism.screws(z_0, situation.point)
+        displacement = rest.screws.position - unloaded.position
+        readings = _misread(self._of(ReadingError), situation, values, displacement)
+        return Solution(situation, wrench, loads, unloaded, rest, readings)
+
+    def _of(self, kind: type[Misreading]) -> list[tuple[Misreading, slice]]:
+        pairs = zip(self.effects, self.slices, strict=True)
+        return [(effect, part) for effect, part in pairs if isinstance(effect, kind)]
+
+    def _soft(self, values: Array) -> Index:
+        """Coordinates that yield at all: the equilibrium is sought in these alone."""
+        found = [index for _, part, index in self._elastic if values[part].any()]
+        return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.intp)
+
+    def _law(self, situation: Situation, values: Array) -> ElasticLaw:
+        """Elongation of all coordinates; patterns of linear effects are evaluated only once."""
+        n = self.mechanism.n
+        constant = np.zeros((n, n))
+        varying: Array | None = None
+        nonlinear: list[tuple[Elastic, slice, Index]] = []
+        for effect, part, index in self._elastic:
+            if not values[part].any():
+                continue
+            if not isinstance(effect, LinearElastic):
+                nonlinear.append((effect, part, index))
+                continue
+            patterns = effect.patterns(situation)
+            block = np.tensordot(values[part], patterns, axes=1)
+            if patterns.ndim == 3:
+                constant[np.ix_(index, index)] += block
+            else:
+                if varying is None:
+                    varying = np.zeros((situation.count, n, n))
+                varying[:, index[:, None], index] += block
+        linear = constant if varying is None else constant + varying
+
+        def law(torques: Array) -> tuple[Array, Array]:
+            elongation = (linear @ torques[..., None])[..., 0]
+            if not nonlinear:
+                return elongation, linear
+            tangent = np.broadcast_to(linear, (situation.count, n, n)).copy()
+            for effect, part, index in nonlinear:
+                found = effect.elongation(torques[:, index], situation, values[part])
+                elongation[:, index] += found.value
+                tangent[:, index[:, None], index] += found.by_torque
+            return elongation, tangent
+
+        return law
+
+    def sensitivities(self, solution: Solution, values: Array) -> Array:
+        """(N, 3, P) exact derivative of the readings by the internal parameter values."""
+        situation, rest = solution.situation, solution.rest
+        J = rest.screws.linear_jacobian
+        soft = self._soft(values)
+        adjoint = _adjoint(J, rest.compliance, rest.K_C, soft)  # (N, 3, n_z) = J N⁻¹
+        out = np.zeros((situation.count, 3, int(self.slices[-1].stop) if self.slices else 0))
+        for effect, part, index in self._elastic:
+            found = effect.elongation(rest.torques[:, index], situation, values[part])
+            out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
+        J_0 = solution.unloaded.linear_jacobian
+        for part, index in self._geometric:
+            out[:, :, part] += adjoint[:, :, index] - J_0[:, :, index]
+        loaded = rest.screws.at(situation.force_point)
+        per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, 3, 6)
+        for part, columns in solution.loads.columns:
+            turned = np.concatenate(
+                [
+                    np.einsum("nij,njp->nip", situation.rotation, columns[:, :3]),
+                    np.einsum("nij,njp->nip", situation.rotation, columns[:, 3:]),
+                ],
+                axis=1,
+            )
+            out[:, :, part] += per_wrench @ turned
+        out = solution.readings.matrix @ out
+        for part, columns in solution.readings.columns:
+            out[:, :, part] += columns
+        return np.swapaxes(situation.reading_axes, -1, -2) @ out
+
+
+@dataclass(frozen=True, eq=False)
+class Misread:
+    """Values after a series of misreadings, and their derivatives.
+
+    Attributes
+    ----------
+    value
+        (N, d) what comes out.
+    matrix
+        (d, d) derivative of the output by the input.
+    columns
+        For each effect its part of the vector of values, and (N, d, p) derivatives.
+    """
+
+    value: Array
+    matrix: Array
+    columns: tuple[tuple[slice, Array], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A solved set of readings; what `Assembly.sensitivities` builds on."""
+
+    situation: Situation
+    wrench: Array
+    loads: Misread
+    unloaded: Screws
+    rest: Equilibrium
+    readings: Misread
+
+    @property
+    def displacement(self) -> Array:
+        """(N, 3) predicted readings in the axes of the measurements [m]."""
+        axes = np.swapaxes(self.situation.reading_axes, -1, -2)
+        return np.einsum("nij,nj->ni", axes, self.readings.value)
+
+
+def _misread(
+    effects: list[tuple[Misreading, slice]], situation: Situation, values: Array, x: Array
+) -> Misread:
+    matrix = np.eye(x.shape[-1])
+    columns: list[tuple[slice, Array]] = []
+    for effect, part in effects:
+        own = effect.columns(x, situation)
+        step = effect.matrix(values[part])
+        x = x + own @ values[part]
+        columns = [(earlier, step @ found) for earlier, found in columns]
+        columns.append((part, own))
+        matrix = step @ matrix
+    return Misread(x, matrix, tuple(columns))
+
+
+def _to_sensor(situation: Situation) -> Array:
+    """(N, 6) the reported wrench in sensor axes."""
+    return _rotate(np.swapaxes(situation.rotation, -1, -2), situation.wrench)
+
+
+def _rotate(rotation: Array, wrench: Array) -> Array:
+    force = np.einsum("nij,nj->ni", rotation, wrench[:, :3])
+    moment = np.einsum("nij,nj->ni", rotation, wrench[:, 3:])
+    return np.concatenate([force, moment], axis=1)
+
+
+def _adjoint(J: Array, C: Array, K_C: Array, soft: Index) -> Array:
+    """(N, 3, n_z) J (I − C K_C)⁻¹, solved in the soft coordinates only.
+
+    With Y = J N⁻¹: Y = J + Y C K_C, and C has entries between soft coordinates only.
+    """
+    if not len(soft):
+        return J
+    C_soft = C[..., soft[:, None], soft]
+    K_soft = K_C[..., soft[:, None], soft]
+    newton = np.eye(len(soft)) - C_soft @ K_soft
+    Y_soft = np.swapaxes(
+        np.linalg.solve(np.swapaxes(newton, -1, -2), np.swapaxes(J[..., soft], -1, -2)), -1, -2
+    )
+    return J + Y_soft @ C_soft @ K_C[..., soft, :]

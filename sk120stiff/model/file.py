@@ -1,0 +1,195 @@
+"""Models as YAML: written by the program, meant for people too.
+
+::
+
+    robot: motoman_sk120
+    effects:
+      - name: joint_springs
+        where: joint_1_s
+        parameters:
+          stiffness: {value: 1409800.0, unit: N*m/rad, std: null, free: true, origin: "..."}
+    provenance: {command: ..., data: sha256:..., date: ...}
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sk120stiff.effects import effect
+from sk120stiff.errors import InputError
+from sk120stiff.files import read_text, write_atomically
+from sk120stiff.model.model import Model, Parameter
+from sk120stiff.robot import Robot, find_robot, load_robot
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=True)
+
+
+class _Value(_Strict):
+    value: float
+    unit: str
+    std: float | None = None
+    free: bool = True
+    origin: str = ""
+
+
+class _Effect(_Strict):
+    name: str
+    where: str
+    parameters: dict[str, _Value]
+
+
+class _File(_Strict):
+    robot: str
+    effects: list[_Effect] = Field(default_factory=list)
+    provenance: dict[str, str] = Field(default_factory=dict)
+
+
+def model_text(model: Model) -> str:
+    """The model as YAML text; `model_from_text` gives the same model back."""
+    document = {
+        "robot": model.robot.source,
+        "effects": [
+            {
+                "name": item.name,
+                "where": item.where,
+                "parameters": {
+                    p.spec.name: _written(p) for p in model.parameters if p.effect == item
+                },
+            }
+            for item in model.effects
+        ],
+        "provenance": dict(model.provenance),
+    }
+    return yaml.safe_dump(document, sort_keys=False, allow_unicode=True, width=100)
+
+
+def write_model(model: Model, path: str | os.PathLike[str]) -> Path:
+    """Write the model; an interrupted write leaves an old file as it was."""
+    return write_atomically(path, model_text(model))
+
+
+def read_model(path: str | os.PathLike[str], robot: Robot | None = None) -> Model:
+    """Read a model file, and its robot unless one is given.
+
+    Raises
+    ------
+    InputError
+        Not a model, or an effect, place, parameter or unit that does not exist; file and key are
+        named.
+    """
+    source = Path(path)
+    return model_from_text(read_text(source), where=str(source), folder=source.parent, robot=robot)
+
+
+def model_from_text(
+    text: str, *, where: str = "model", folder: Path | None = None, robot: Robot | None = None
+) -> Model:
+    """Read a model from YAML text; a relative robot path is tried from `folder` first."""
+    content = _parsed(text, where)
+    arm = robot or load_robot(content.robot, relative_to=folder)
+    parameters: list[Parameter] = []
+    model = Model(arm, provenance=content.provenance)
+    for entry in content.effects:
+        place = f"{where}, effect {entry.name}:{entry.where}"
+        try:
+            found = effect(
+                arm,
+                entry.name,
+                entry.where,
+                poses=tuple(dict.fromkeys(key.rpartition(".")[0] for key in entry.parameters)),
+                timed=any(item.unit == "m/s" for item in entry.parameters.values()),
+            )
+        except InputError as error:
+            raise InputError(error.what, where=place, remedy=error.remedy) from error
+        parameters = [_read(found, spec.name, entry, place) for spec in found.parameters]
+        unknown = set(entry.parameters) - {spec.name for spec in found.parameters}
+        if unknown:
+            raise InputError(
+                f"unknown parameter {sorted(unknown)[0]!r}",
+                where=place,
+                remedy=f"Parameters are: {', '.join(s.name for s in found.parameters)}.",
+            )
+        model = model + parameters
+    return model
+
+
+def base_model(robot: Robot) -> Model | None:
+    """The `model.yaml` that lies beside a robot's `robot.yaml`, if there is one."""
+    source = find_robot(robot.source)
+    return None if source.model_file is None else read_model(source.model_file, robot)
+
+
+def _parsed(text: str, where: str) -> _File:
+    try:
+        return _File.model_validate(yaml.safe_load(text) or {})
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f", line {mark.line + 1}" if mark else ""
+        raise InputError(
+            f"this is not valid YAML ({getattr(error, 'problem', error)})",
+            where=f"{where}{line}",
+            remedy="Mend the syntax at that line.",
+        ) from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(
+            f"key {key!r}: {first['msg'].lower()}",
+            where=where,
+            remedy="A model file has the keys robot, effects and provenance; each effect has name, "
+            "where and parameters.",
+        ) from error
+
+
+def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:
+    spec = next(spec for spec in found.parameters if spec.name == name)
+    if name not in entry.parameters:
+        raise InputError(
+            f"the parameter {name!r} is missing",
+            where=place,
+            remedy=f"Write: {name}: {{value: ..., unit: {spec.unit}}}",
+        )
+    given = entry.parameters[name]
+    if given.unit != spec.unit:
+        raise InputError(
+            f"the parameter {name!r} is given in {given.unit!r}, not in {spec.unit!r}",
+            where=place,
+            remedy=f"Convert the value to {spec.unit}.",
+        )
+    if math.isnan(given.value) or (spec.reciprocal and given.value == 0.0):
+        raise InputError(f"the parameter {name!r} has no usable value", where=place)
+    internal = spec.internal(given.value)
+    if not spec.lower <= internal <= spec.upper:
+        raise InputError(
+            f"the parameter {name!r} has the value {given.value:g} {spec.unit}, which physics "
+            "forbids",
+            where=place,
+            remedy="A compliance or a width is never negative.",
+        )
+    std = None if given.std is None else _internal_std(spec, internal, given.std)
+    return Parameter(found, spec, internal, std, given.free, given.origin)
+
+
+def _internal_std(spec: Any, internal: float, public_std: float) -> float:
+    if not spec.reciprocal:
+        return public_std
+    return 0.0 if math.isinf(public_std) else public_std * internal**2
+
+
+def _written(parameter: Parameter) -> dict[str, Any]:
+    std = parameter.public_std
+    return {
+        "value": parameter.public_value,
+        "unit": parameter.spec.unit,
+        "std": None if std is None or math.isinf(std) else std,
+        "free": parameter.free,
+        "origin": parameter.origin,
+    }

@@ -1,0 +1,282 @@
+"""Robot + effects with values: what is believed about an arm, and what it predicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff.effects import (
+    Effect,
+    LoadError,
+    ParameterSpec,
+    ReadingError,
+    Situation,
+    situation_of_load,
+)
+from sk120stiff.errors import InputError
+from sk120stiff.model.assembly import Assembly, Solution
+from sk120stiff.robot import Robot
+from sk120stiff.robot.coupling import Array
+
+BLOCK = 2048  # readings solved together: large enough for array work, small enough for the cache
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a model.
+
+    Attributes
+    ----------
+    effect
+        The effect that it belongs to.
+    spec
+        Its name, unit, bounds.
+    value
+        Internal value (a compliance where people say stiffness).
+    std
+        Standard error of the internal value, None where it was not estimated.
+    free
+        Estimated by identification unless it is told otherwise.
+    origin
+        Where the value came from, in words.
+    """
+
+    effect: Effect
+    spec: ParameterSpec
+    value: float = 0.0
+    std: float | None = None
+    free: bool = True
+    origin: str = ""
+
+    @property
+    def name(self) -> str:
+        """``effect:where.parameter``."""
+        return f"{self.effect.id}.{self.spec.name}"
+
+    @property
+    def public_value(self) -> float:
+        """The value as people write it, in `spec.unit`."""
+        return self.spec.public(self.value)
+
+    @property
+    def public_std(self) -> float | None:
+        """Standard error of the public value."""
+        return None if self.std is None else self.spec.public_std(self.value, self.std)
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A robot with named effects; immutable, every change makes a new one.
+
+    Attributes
+    ----------
+    robot
+        The rigid robot.
+    parameters
+        All parameters, effect by effect.
+    provenance
+        Where the whole came from: data hash, command, date.
+    """
+
+    robot: Robot
+    parameters: tuple[Parameter, ...] = ()
+    provenance: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects, in order."""
+        return tuple(dict.fromkeys(parameter.effect for parameter in self.parameters))
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """The mechanism that the effects make of the robot."""
+        return Assembly(self.robot, self.effects)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Full names of the parameters."""
+        return tuple(parameter.name for parameter in self.parameters)
+
+    @cached_property
+    def values(self) -> Array:
+        """(P,) internal values."""
+        return np.array([parameter.value for parameter in self.parameters])
+
+    @cached_property
+    def free(self) -> NDArray[np.intp]:
+        """Indices of the free parameters."""
+        return np.flatnonzero([parameter.free for parameter in self.parameters])
+
+    def parameter(self, name: str) -> Parameter:
+        """The parameter of that full name.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        if name not in self.names:
+            raise InputError(
+                f"the model has no parameter {name!r}",
+                remedy=f"Parameters are: {', '.join(self.names)}.",
+            )
+        return self.parameters[self.names.index(name)]
+
+    def __add__(self, other: Effect | Iterable[Parameter]) -> Model:
+        """The model with one effect more, absent yet (all its parameters internally zero).
+
+        Raises
+        ------
+        InputError
+            The effect is already in the model at that place.
+        """
+        if isinstance(other, Effect):
+            added = tuple(Parameter(other, spec) for spec in other.parameters)
+        else:
+            added = tuple(other)
+        present = {effect.id for effect in self.effects}
+        for effect in dict.fromkeys(parameter.effect for parameter in added):
+            if effect.id in present:
+                raise InputError(
+                    f"the effect {effect.id!r} is already in the model",
+                    remedy="Change its values instead of adding it twice.",
+                )
+        return replace(self, parameters=self.parameters + added)
+
+    def without(self, effect_id: str) -> Model:
+        """The model without one effect (``name:where``).
+
+        Raises
+        ------
+        InputError
+            It is not in the model.
+        """
+        kept = tuple(p for p in self.parameters if p.effect.id != effect_id)
+        if len(kept) == len(self.parameters):
+            raise InputError(
+                f"the effect {effect_id!r} is not in the model",
+                remedy=f"Effects are: {', '.join(effect.id for effect in self.effects)}.",
+            )
+        return replace(self, parameters=kept)
+
+    def with_values(
+        self, values: Array, std: Sequence[float | None] | None = None, origin: str | None = None
+    ) -> Model:
+        """The model with other internal values (P,), their errors, and where they came from."""
+        if len(values) != len(self.parameters):
+            raise ValueError(f"{len(values)} values for {len(self.parameters)} parameters")
+        errors = [p.std for p in self.parameters] if std is None else list(std)
+        changed = tuple(
+            replace(
+                parameter,
+                value=float(value),
+                std=error,
+                origin=parameter.origin if origin is None or not parameter.free else origin,
+            )
+            for parameter, value, error in zip(self.parameters, values, errors, strict=True)
+        )
+        return replace(self, parameters=changed)
+
+    def with_public(self, **values: float) -> Model:
+        """The model with public values by full name (use ``**{"a:b.c": 1.0}``)."""
+        new = self.values.copy()
+        for name, value in values.items():
+            new[self.names.index(self.parameter(name).name)] = self.parameter(name).spec.internal(
+                value
+            )
+        return self.with_values(new)
+
+    def solve(self, situation: Situation, values: Array | None = None) -> Solution:
+        """Equilibrium of all readings at once; see `predict` for many."""
+        return self.assembly.solve(situation, self.values if values is None else values)
+
+    def predict(self, situation: Situation, values: Array | None = None) -> Array:
+        """(N, 3) predicted readings in the axes of the measurements [m].
+
+        Raises
+        ------
+        Refusal
+            The springs cannot hold a load.
+        """
+        given = self.values if values is None else values
+        return np.concatenate(
+            [self.assembly.solve(part, given).displacement for part in _blocks(situation)]
+            or [np.zeros((0, 3))]
+        )
+
+    def predict_with_sensitivities(
+        self, situation: Situation, values: Array | None = None
+    ) -> tuple[Array, Array]:
+        """(N, 3) predicted readings [m] and (N, 3, P) derivatives by the internal values."""
+        given = self.values if values is None else values
+        displacement, derivative = [], []
+        for part in _blocks(situation):
+            solution = self.assembly.solve(part, given)
+            displacement.append(solution.displacement)
+            derivative.append(self.assembly.sensitivities(solution, given))
+        return np.concatenate(displacement), np.concatenate(derivative)
+
+    def deflect(
+        self,
+        a: ArrayLike,
+        wrench: ArrayLike,
+        *,
+        point: ArrayLike | None = None,
+        force_point: ArrayLike | None = None,
+    ) -> Array:
+        """(N, 3) true displacement of a point under base-axes wrenches (N, 6) [m].
+
+        Instruments have no say here: the model's load and reading errors are left out.
+        """
+        physical = replace(
+            self,
+            parameters=tuple(
+                p for p in self.parameters if not isinstance(p.effect, LoadError | ReadingError)
+            ),
+        )
+        situation = situation_of_load(
+            self.robot, a, wrench, point=point, force_point=force_point
+        )
+        return physical.predict(situation)
+
+    def joint_stiffness(self) -> Array:
+        """(n,) springs of the actuated joints [N·m/rad or N/m]; infinite where rigid."""
+        springs = np.full(self.robot.n, np.inf)
+        for parameter in self.parameters:
+            if parameter.effect.name == "joint_springs":
+                springs[self.robot.actuated.index(parameter.effect.where)] = parameter.public_value
+        return springs
+
+
+def joint_spring_model(robot: Robot, stiffness: ArrayLike | None = None) -> Model:
+    """The base model: one linear spring in every actuated joint.
+
+    Parameters
+    ----------
+    robot
+        The rigid robot.
+    stiffness
+        (n,) [N·m/rad or N/m]; an infinite one is left out. Default: all joints, at a stiffness that
+        is typical of large arms and only a start for identification.
+    """
+    from sk120stiff.effects import effect  # noqa: PLC0415
+
+    model = Model(robot)
+    for k, joint in enumerate(robot.actuated):
+        spring = effect(robot, "joint_springs", joint)
+        spec = spring.parameters[0]
+        value = spec.typical if stiffness is None else spec.internal(float(np.asarray(stiffness)[k]))
+        if value != 0.0:
+            origin = "starting value" if stiffness is None else "given"
+            model = model + [Parameter(spring, spec, value, origin=origin)]
+    return model
+
+
+def _blocks(situation: Situation) -> list[Situation]:
+    if situation.count <= BLOCK:
+        return [situation]
+    return [situation.rows(slice(k, k + BLOCK)) for k in range(0, situation.count, BLOCK)]

@@ -1,0 +1,114 @@
+"""The arm's parts by the names a user knows, with the place of each in the kinematic chain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.robot.coupling import Array
+from sk120stiff.robot.robot import Robot
+
+SHORTEST_LINK = 1e-3  # m; what is shorter has no length to bend along
+
+
+@dataclass(frozen=True, eq=False)
+class ArmJoint:
+    """A joint of the chain from base to tool.
+
+    Attributes
+    ----------
+    name
+        URDF name.
+    link
+        The URDF link that it moves.
+    index
+        Position in the chain.
+    actuated
+        Position among the actuated joints, or None for a coupled one.
+    revolute
+        Turns rather than slides.
+    axis
+        (3,) its direction in its own frame.
+    along
+        (3,) from its origin to the next joint's origin (the tool's, for the last), own frame [m].
+    """
+
+    name: str
+    link: str
+    index: int
+    actuated: int | None
+    revolute: bool
+    axis: Array
+    along: Array
+
+    @property
+    def length(self) -> float:
+        """Length of the link it moves [m]."""
+        return float(np.linalg.norm(self.along))
+
+    def directions(self) -> tuple[Array, Array, Array]:
+        """Three unit directions in the joint frame: along the link, and two across it.
+
+        The second one is normal to the joint axis wherever the link leaves the axis.
+        """
+        along = self.along / self.length if self.length > SHORTEST_LINK else self.axis
+        across = np.cross(self.axis, along)
+        if np.linalg.norm(across) < 1e-6:
+            across = np.cross(np.eye(3)[np.argmin(np.abs(along))], along)
+        across = across / np.linalg.norm(across)
+        return along, across, np.cross(along, across)
+
+    def tilt_axes(self) -> tuple[Array, Array]:
+        """Two unit directions normal to the joint axis: as far along the link as can be, across."""
+        flat = self.along - self.axis * (self.axis @ self.along)
+        if np.linalg.norm(flat) < SHORTEST_LINK:
+            flat = np.eye(3)[np.argmin(np.abs(self.axis))]
+            flat = flat - self.axis * (self.axis @ flat)
+        flat = flat / np.linalg.norm(flat)
+        return flat, np.cross(self.axis, flat)
+
+
+def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
+    """Joints from base to tool, coupled ones included."""
+    chain = robot.mechanism().chain
+    moved = {joint.name: joint.child for joint in robot.document.joints}
+    position = {name: k for k, name in enumerate(robot.actuated)}
+    return tuple(
+        ArmJoint(
+            name=name,
+            link=moved[name],
+            index=k,
+            actuated=position.get(name),
+            revolute=bool(chain.revolute[k]),
+            axis=chain.axes[k],
+            along=chain.placements[k + 1][:3, 3],
+        )
+        for k, name in enumerate(chain.names)
+    )
+
+
+def arm_links(robot: Robot) -> tuple[ArmJoint, ...]:
+    """Joints whose link is long enough to bend, twist or have the wrong length."""
+    return tuple(joint for joint in arm_joints(robot) if joint.length > SHORTEST_LINK)
+
+
+def arm_joint(robot: Robot, name: str) -> ArmJoint:
+    """The joint of that name, or the joint that moves the link of that name."""
+    return next(joint for joint in arm_joints(robot) if name in (joint.name, joint.link))
+
+
+def passed_on(robot: Robot, link: ArmJoint) -> tuple[tuple[int, float], ...]:
+    """Coupled joints at the far end of a link that follow its rotation about the joint axis.
+
+    Where a later joint of the chain mimics the joint that moves `link` about a parallel axis, a
+    rod ties it to that link's direction. The rod does not know why the link turned: a bend in the
+    plane of the linkage is passed on just as a turn of the motor.
+    """
+    rules = robot.followers
+    chain = robot.mechanism().chain
+    return tuple(
+        (int(chain.coordinates[k]), rules[name].multiplier)
+        for k, name in enumerate(chain.names)
+        if k > link.index and name in rules and rules[name].driver == link.name
+    )

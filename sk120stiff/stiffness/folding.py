@@ -1,0 +1,270 @@
+"""The constants of an elastic mechanism, folded into the form in which the batch kernel reads them.
+
+Joint frames are turned so that every joint moves along or about its own z, and every rotation
+between two joints is split as Rz(θ) Rx(α) Rz(φ), of which both Rz join the joint angles beside
+them. What remains between two joints is a shift and a turn about x. Nothing is lost or
+approximated, and no common normal of nearly parallel axes is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.robot import LinearCoupling, Mechanism
+from sk120stiff.robot.coupling import Array
+
+Indices = NDArray[np.int64]
+VARIABLE, CONSTANT, NONE = 0, 1, 2  # does the turn about a joint's z depend on the pose?
+
+
+class Fold(NamedTuple):
+    """Constants of a chain of m joints, n coordinates and s of them soft.
+
+    Attributes
+    ----------
+    start
+        (9,) columns of the rotation before the first joint.
+    shift
+        (m + 1, 3) translation before each joint, and to the point after the last [m].
+    tilt
+        (m, 2) cosine and sine of the turn about x before each joint.
+    pose_map, value
+        (m, n_a) and (m,): joint values q = pose_map a + value.
+    offset
+        (m,) constant angle beside each joint's value [rad].
+    slides
+        (m,) 1 for a joint that slides, 0 for one that turns.
+    kind, constant
+        (m,) VARIABLE, CONSTANT or NONE, and (m, 2) cosine and sine where constant.
+    column_joint, column_coordinate, column_factor
+        Entries of the map from coordinates to joints, q = Σ factor · z.
+    actuated
+        Number of coordinates that motors drive; the rest are virtual.
+    soft
+        (s,) coordinates with a finite spring.
+    springs
+        (s(s+1)/2,) lower triangle of their K_θ by rows.
+    whitener
+        (s, s) L⁻¹ with L Lᵀ = K_θ.
+    pair
+        (p, 2) pairs of joints, the first nearer to the base or the same.
+    pair_end
+        (p,) end of each pair's stretch in the following four.
+    row, factor
+        Element of the lower triangle of K_C that a pair adds to, and how much of it.
+    skew_row, skew_factor
+        The same for the skew part of K_C (strictly lower triangle); -1 for none.
+    """
+
+    start: Array
+    shift: Array
+    tilt: Array
+    pose_map: Array
+    value: Array
+    offset: Array
+    slides: Array
+    kind: Indices
+    constant: Array
+    column_joint: Indices
+    column_coordinate: Indices
+    column_factor: Array
+    actuated: int
+    soft: Indices
+    springs: Array
+    whitener: Array
+    pair: Indices
+    pair_end: Indices
+    row: Indices
+    factor: Array
+    skew_row: Indices
+    skew_factor: Array
+
+
+def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
+    """Fold a mechanism with springs for the kernel.
+
+    Parameters
+    ----------
+    mechanism
+        Chain and linear coupling, virtual joints allowed.
+    springs
+        (n,) spring of each coordinate [N·m/rad or N/m], or (n, n) their symmetric K_θ. Infinite
+        ones (on the diagonal) are rigid.
+    point
+        (3,) the point in the end frame [m].
+
+    Raises
+    ------
+    InputError
+        The coupling is not linear, or the springs are no positive definite stiffness.
+    """
+    coupling = mechanism.coupling
+    if not isinstance(coupling, LinearCoupling):
+        raise InputError(
+            "the batch kernel takes linear couplings q = A a + b only",
+            remedy="Use the functions of sk120stiff.stiffness, which take any coupling.",
+        )
+    soft, K_theta = _soft(springs, mechanism.n)
+    to_joints, pose_map, value = _maps(mechanism, coupling)
+    start, shift, tilt, offset = _frames(mechanism, point)
+    moves = (pose_map != 0.0).any(axis=1) | (value != 0.0)
+    slides = ~mechanism.chain.revolute
+    kind = np.where(moves & ~slides, VARIABLE, np.where(offset != 0.0, CONSTANT, NONE))
+    joints, coordinates = np.nonzero(to_joints)
+    return Fold(
+        start=start,
+        shift=shift,
+        tilt=tilt,
+        pose_map=pose_map,
+        value=value,
+        offset=offset,
+        slides=slides.astype(float),
+        kind=kind.astype(np.int64),
+        constant=np.stack([np.cos(offset), np.sin(offset)], axis=1),
+        column_joint=joints.astype(np.int64),
+        column_coordinate=coordinates.astype(np.int64),
+        column_factor=to_joints[joints, coordinates],
+        actuated=coupling.n,
+        soft=soft,
+        springs=K_theta[np.tril_indices(len(soft))],
+        whitener=np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(K_theta))),
+        **_pairs(to_joints[:, soft]),
+    )
+
+
+def _soft(springs: Array, n: int) -> tuple[Indices, Array]:
+    """Indices of the coordinates with a finite spring, and their (s, s) K_θ."""
+    if springs.shape not in ((n,), (n, n)):
+        raise InputError(
+            f"springs of shape {springs.shape} given for {n} coordinates",
+            remedy=f"Give {n} spring values, infinite for a rigid joint.",
+        )
+    diagonal = springs if springs.ndim == 1 else np.diagonal(springs)
+    soft = np.flatnonzero(np.isfinite(diagonal)).astype(np.int64)
+    K_theta = np.diag(springs[soft]) if springs.ndim == 1 else springs[np.ix_(soft, soft)]
+    if np.isnan(diagonal).any() or not len(soft) or not np.isfinite(K_theta).all():
+        raise InputError(
+            "no joint has a finite spring" if not len(soft) else "a spring is not a number",
+            remedy="Give at least one finite spring in N·m/rad.",
+        )
+    if not np.allclose(K_theta, K_theta.T, rtol=1e-12) or np.linalg.eigvalsh(K_theta)[0] <= 0.0:
+        raise InputError(
+            "the springs are no positive definite stiffness",
+            remedy="Every spring must be greater than zero, and their matrix symmetric.",
+        )
+    return soft, K_theta
+
+
+def _maps(mechanism: Mechanism, coupling: LinearCoupling) -> tuple[Array, Array, Array]:
+    """(m, n) factors of the chain joints by all coordinates; (m, n_a) and (m,) of the pose."""
+    total, actuated = coupling.A.shape
+    wide = np.zeros((total + len(mechanism.virtual), mechanism.n))
+    wide[:total, :actuated] = coupling.A
+    wide[total:, actuated:] = np.eye(len(mechanism.virtual))
+    at_rest = np.concatenate([coupling.b, np.zeros(len(mechanism.virtual))])
+    pick = mechanism.chain.coordinates
+    return wide[pick], np.ascontiguousarray(wide[pick][:, :actuated]), at_rest[pick]
+
+
+def _frames(mechanism: Mechanism, point: Array) -> tuple[Array, Array, Array, Array]:
+    """start, shift, tilt and offset of `Fold`."""
+    chain = mechanism.chain
+    m = chain.m
+    shift, tilt, offset = np.empty((m + 1, 3)), np.empty((m, 2)), np.zeros(m)
+    start = np.eye(3)
+    before = np.eye(3)  # turns the frame after the previous joint so that its axis is z
+    for k in range(m):
+        upright = _rotation_to(chain.axes[k])
+        rotation = before.T @ chain.placements[k, :3, :3] @ upright
+        shift[k] = before.T @ chain.placements[k, :3, 3]
+        before = upright
+        if k == 0:
+            tilt[0] = (1.0, 0.0)
+            start = rotation
+            continue
+        theta, tilt[k], phi = _split(rotation)
+        offset[k - 1] += theta
+        offset[k] += phi
+        c, s = np.cos(theta), np.sin(theta)
+        x, y, z = shift[k]
+        shift[k] = (c * x + s * y, c * y - s * x, z)
+    shift[m] = before.T @ (chain.placements[m, :3, 3] + chain.placements[m, :3, :3] @ point)
+    if m:
+        shift[0] = start.T @ shift[0]
+    return start.T.reshape(9).copy(), shift, tilt, offset
+
+
+def _rotation_to(axis: Array) -> Array:
+    """A rotation whose third column is the unit vector `axis`."""
+    helper = np.zeros(3)
+    helper[np.argmin(np.abs(axis))] = 1.0
+    x = np.cross(helper, axis)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(axis, x), axis], axis=1)
+
+
+def _split(rotation: Array) -> tuple[float, tuple[float, float], float]:
+    """θ, (cos α, sin α) and φ of a rotation Rz(θ) Rx(α) Rz(φ)."""
+    s = float(np.hypot(rotation[0, 2], rotation[1, 2]))
+    c = float(rotation[2, 2])
+    theta = float(np.arctan2(rotation[0, 2], -rotation[1, 2])) if s > 1e-15 else 0.0
+    if s <= 1e-15:
+        s, c = 0.0, float(np.sign(c))
+    ct, st = np.cos(theta), np.sin(theta)
+    back = np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]]) @ np.array(
+        [[ct, st, 0.0], [-st, ct, 0.0], [0.0, 0.0, 1.0]]
+    )
+    turn = back @ rotation
+    return theta, (c, s), float(np.arctan2(turn[1, 0], turn[0, 0]))
+
+
+def _pairs(to_joints: Array) -> dict[str, NDArray[np.generic]]:
+    """Which pair of joints adds to which element of K_C, for (m, s) factors of soft coordinates."""
+    pairs: list[tuple[int, int]] = []
+    ends: list[int] = []
+    adds: list[tuple[int, float, int, float]] = []
+    for first, second in _joint_pairs(to_joints):
+        before = len(adds)
+        adds.extend(_additions(to_joints[first], to_joints[second], same=first == second))
+        if len(adds) > before:
+            pairs.append((first, second))
+            ends.append(len(adds))
+    table = np.array(adds, dtype=float).reshape(-1, 4)
+    return {
+        "pair": np.array(pairs, dtype=np.int64).reshape(-1, 2),
+        "pair_end": np.array(ends, dtype=np.int64),
+        "row": table[:, 0].astype(np.int64),
+        "factor": table[:, 1].copy(),
+        "skew_row": table[:, 2].astype(np.int64),
+        "skew_factor": table[:, 3].copy(),
+    }
+
+
+def _joint_pairs(to_joints: Array) -> Iterator[tuple[int, int]]:
+    moved = np.flatnonzero((to_joints != 0.0).any(axis=1)).tolist()
+    return ((first, second) for k, first in enumerate(moved) for second in moved[k:])
+
+
+def _additions(
+    first: Array, second: Array, *, same: bool
+) -> Iterator[tuple[int, float, int, float]]:
+    """Aᵀ K A for one symmetric pair of elements of K: (row, factor, skew row, skew factor)."""
+    for i in np.flatnonzero(first).tolist():
+        for j in np.flatnonzero(second).tolist():
+            value = float(first[i] * second[j])
+            high, low = max(i, j), min(i, j)
+            row = high * (high + 1) // 2 + low
+            if same:
+                if i >= j:
+                    yield row, value, -1, 0.0
+            elif i == j:
+                yield row, 2.0 * value, -1, 0.0
+            else:
+                skew = high * (high - 1) // 2 + low
+                # K[second, first] carries + half of the moment's part, K[first, second] minus that.
+                yield row, value, skew, value if j > i else -value
