@@ -1,0 +1,110 @@
+"""The least-squares problem: whitened gap and its derivative, as functions of scaled parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.effects import Situation, situation_of
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.noise import NoiseModel, Whitener
+from sk120stiff.model import Model
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A model, readings and their noise.
+
+    Attributes
+    ----------
+    model
+        Gives the starting values and says which parameters are free.
+    measurements
+        N readings in use, with displacements.
+    noise
+        Covariance of the readings.
+    """
+
+    model: Model
+    measurements: Measurements
+    noise: NoiseModel
+
+    def __post_init__(self) -> None:
+        if self.measurements.displacement is None:
+            raise InputError(
+                "there are no measured displacements",
+                where=str(self.measurements.path or "measurements"),
+                remedy="Add the columns dx, dy, dz (or x, y, z) with their unit.",
+            )
+
+    @cached_property
+    def situation(self) -> Situation:
+        """The readings as the model sees them."""
+        return situation_of(self.model.robot, self.measurements)
+
+    @cached_property
+    def measured(self) -> Array:
+        """(N, 3) displacements [m]."""
+        found = self.measurements.displacement
+        return np.zeros((0, 3)) if found is None else found
+
+    @cached_property
+    def whitener(self) -> Whitener:
+        """V^(-1/2), with V from the noise and the measured sizes."""
+        return self.noise.whitener(self.measurements, np.linalg.norm(self.measured, axis=1))
+
+    @cached_property
+    def free(self) -> NDArray[np.intp]:
+        """Indices of the estimated parameters."""
+        return self.model.free
+
+    @cached_property
+    def scale(self) -> Array:
+        """(P_free,) typical sizes; the solvers work with values in these units."""
+        return np.array([self.model.parameters[k].spec.typical for k in self.free])
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """(P_free,) physical bounds in scaled units."""
+        specs = [self.model.parameters[k].spec for k in self.free]
+        lower = np.array([spec.lower for spec in specs]) / self.scale
+        upper = np.array([spec.upper for spec in specs]) / self.scale
+        return lower, upper
+
+    @cached_property
+    def start(self) -> Array:
+        """(P_free,) starting values in scaled units."""
+        return self.model.values[self.free] / self.scale
+
+    def values(self, x: Array) -> Array:
+        """(P,) internal values for scaled free parameters `x`."""
+        full = self.model.values.copy()
+        full[self.free] = x * self.scale
+        return full
+
+    def gap(self, x: Array) -> Array:
+        """(N, 3) measured minus predicted [m]."""
+        return self.measured - self.model.predict(self.situation, self.values(x))
+
+    def evaluate(self, x: Array) -> tuple[Array, Array]:
+        """Whitened gap (3N,) and its derivative (3N, P_free) by `x`, at exact equilibrium."""
+        predicted, derivative = self.model.predict_with_sensitivities(
+            self.situation, self.values(x)
+        )
+        residual = self.whitener.apply(self.measured - predicted)
+        return residual, -self.whitener.apply(derivative[:, :, self.free] * self.scale)
+
+    @cached_property
+    def first_order(self) -> tuple[Array, Array]:
+        """Whitened gap and derivative of the model without its free effects.
+
+        To first order in load every prediction is linear in these parameters, from any start; this
+        carries the solvers from wild starting values to where the exact equilibrium exists.
+        """
+        nothing = np.zeros(len(self.free))
+        return self.evaluate(nothing)
