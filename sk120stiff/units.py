@@ -265,7 +265,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 @lru_cache(maxsize=1024)
-def _quantity(text: str) -> tuple[float, tuple[tuple[str, float], ...]] | None:
+def _quantity(text: str) -> tuple[float, tuple[str, ...]] | None:
     """Size in base units and dimensions of a unit as written; None where it is unknown."""
     plain = text.strip()
     for spelling, meaning in _SPELLINGS.items():
@@ -281,7 +281,7 @@ def _quantity(text: str) -> tuple[float, tuple[tuple[str, float], ...]] | None:
         size = registry.Quantity(1.0, registry.parse_units(plain)).to_root_units()
     except (pint.UndefinedUnitError, OverflowError):
         return None
-    dimensions = tuple(sorted((str(k), float(v)) for k, v in size.dimensionality.items()))
+    dimensions = tuple(sorted(f"{name}:{power:g}" for name, power in size.dimensionality.items()))
     return float(np.asarray(size.magnitude)), dimensions
 
 
@@ -350,26 +350,19 @@ def _numbers_with_units(
         unit = rest.strip()
         if _NOT_FINITE.match(unit) or not np.all(np.isfinite(numbers)):
             raise InputError(f"{piece.strip()!r} is not a finite number", where=where)
-        if not unit and not fresh:
+        if not fresh and not (unit and numbers):
             raise InputError(
-                f"an empty place between commas in {text!r}",
+                f"{unit!r} is not a number" if unit else f"{text!r} has an empty place",
                 where=where,
                 remedy=f"Write numbers with a unit: '{example}'.",
             )
         if unit and fresh:
             units = [unit if u is None else u for u in units]
-        elif unit and not numbers:
-            raise InputError(
-                f"{unit!r} is not a number",
-                where=where,
-                remedy=f"Write numbers with a unit: '{example}'.",
-            )
         elif unit:
             spare.append(unit)
     if any(u is None for u in units):
-        written = text.strip()
         raise InputError(
-            f"{written!r} has no unit",
+            f"{text.strip()!r} has no unit",
             where=where,
             remedy=f"Write the unit after the numbers: '{example}'.",
         )

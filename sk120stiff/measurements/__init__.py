@@ -1,0 +1,19 @@
+"""Measurements: what was pressed, what moved, and how well that is known."""
+
+from sk120stiff.measurements.data import Measurements, NoiseStatement
+from sk120stiff.measurements.noise import NoiseModel, candidates
+from sk120stiff.measurements.reading import read_measurements
+from sk120stiff.measurements.repeats import pure_error
+from sk120stiff.measurements.whitening import Whitener
+from sk120stiff.measurements.writing import write_measurements
+
+__all__ = [
+    "Measurements",
+    "NoiseModel",
+    "NoiseStatement",
+    "Whitener",
+    "candidates",
+    "pure_error",
+    "read_measurements",
+    "write_measurements",
+]

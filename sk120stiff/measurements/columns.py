@@ -1,0 +1,155 @@
+"""Which column of a measurement file is what."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from sk120stiff import units
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.table import Table
+
+FORCES = ("fx", "fy", "fz")
+MOMENTS = ("mx", "my", "mz")
+DISPLACEMENTS = ("dx", "dy", "dz")
+POSITIONS = ("x", "y", "z")
+UNCERTAINTIES = ("sx", "sy", "sz")
+ZEROS = ("zero_group", "zero_count", "zero_order", "zero_time")
+# Columns that are words or counts and carry no unit.
+_BARE = ("pose", "order", "branch", "repeat", "use", "zero_group", "zero_count", "zero_order")
+_WORDS = (
+    *FORCES, *MOMENTS, *DISPLACEMENTS, *POSITIONS, *UNCERTAINTIES, *_BARE, "time", "zero_time",
+)  # fmt: skip
+
+
+_UNITS = {
+    FORCES: "N", MOMENTS: "N*m", DISPLACEMENTS: "mm", POSITIONS: "mm", UNCERTAINTIES: "um",
+    ("time", "zero_time"): "s",
+}  # fmt: skip
+_OTHER_DRESS = re.compile(r"(?P<name>[A-Za-z]+)\s*(?P<mark>[ (/_])(?P<unit>[^)]*)\)?")
+
+
+@dataclass(frozen=True)
+class Roles:
+    """What the columns of a file are.
+
+    Parameters
+    ----------
+    joints
+        Name of each joint column → ``"angle"`` or ``"length"``, in the file's order.
+    has
+        The known words that are there.
+    extra
+        Further columns, kept as notes.
+    measured
+        `DISPLACEMENTS`, `POSITIONS`, or nothing for a plan.
+    """
+
+    joints: dict[str, str]
+    has: frozenset[str]
+    extra: tuple[str, ...]
+    measured: tuple[str, ...]
+
+
+def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
+    """Tell joint columns from loads, readings and notes.
+
+    A column that is no known word is a joint if its unit is one of angle or length, else a note.
+    Names in `actuated` are joints even where they are a known word (a gantry's ``x``).
+
+    Raises
+    ------
+    InputError
+        A column is missing or misspelt, has a unit where none belongs, or both displacements and
+        positions are given.
+    """
+    joints: dict[str, str] = {}
+    has: set[str] = set()
+    extra: list[str] = []
+    for name, unit in table.column_units.items():
+        if name in _WORDS and name not in actuated:
+            has.add(name)
+            if name in _BARE and unit is not None:
+                raise InputError(
+                    f"the column {name!r} takes no unit",
+                    where=table.place(name),
+                    remedy=f"Write its header as {name}.",
+                )
+            continue
+        _refuse_misspelt(table, name, actuated)
+        kind = next((k for k in ("angle", "length") if unit and units.is_kind(unit, k)), None)
+        if kind is not None:
+            joints[name] = kind
+        else:
+            extra.append(name)
+    _require(table, has, ("pose",))
+    _require(table, has, FORCES)
+    measured = _measured(table, has)
+    for group in (MOMENTS, UNCERTAINTIES, measured):
+        if has & set(group):
+            _require(table, has, group)
+    if not joints:
+        unitless = [n for n in extra if table.column_units[n] is None]
+        shown = unitless[0] if unitless else "joint_1_s"
+        raise InputError(
+            "no column holds a joint value",
+            where=f"{table.path}, line {table.header_line}",
+            remedy="Add a column for each actuated joint, named as in the URDF, "
+            f"with its unit: {shown}[deg].",
+        )
+    return Roles(joints, frozenset(has), tuple(extra), measured)
+
+
+def _measured(table: Table, has: set[str]) -> tuple[str, ...]:
+    displacements, positions = has & set(DISPLACEMENTS), has & set(POSITIONS)
+    if displacements and positions:
+        raise InputError(
+            f"both displacements ({', '.join(sorted(displacements))}) "
+            f"and positions ({', '.join(sorted(positions))}) are given",
+            where=table.place(sorted(positions)[0]),
+            remedy="Keep one kind: dx dy dz, or x y z with rows without load.",
+        )
+    if displacements:
+        return DISPLACEMENTS
+    return POSITIONS if positions else ()
+
+
+def _require(table: Table, has: set[str], group: tuple[str, ...]) -> None:
+    for name in group:
+        if name not in has:
+            together = f" {', '.join(group)} come together." if len(group) > 1 else ""
+            raise InputError(
+                f"the column {name!r} is missing",
+                where=f"{table.path}, line {table.header_line}",
+                remedy=f"Add the column {_example(name)}.{together}",
+            )
+
+
+def _bare(name: str) -> str:
+    """``fx`` from ``fx (N)``, ``fx/N`` or ``FX_N``: the unit in another dress; else the name."""
+    match = _OTHER_DRESS.fullmatch(name)
+    if match and (match["mark"] != "_" or units.is_unit(match["unit"])):
+        return match["name"].lower()
+    return name.lower()
+
+
+def _refuse_misspelt(table: Table, name: str, actuated: tuple[str, ...]) -> None:
+    """A column may have any name but that of a known one with a slip in it."""
+    bare = _bare(name)
+    if name in actuated or (bare not in _WORDS and table.column_units[name] is not None):
+        return
+    longer = [word for word in _WORDS if len(word) > 3]
+    close = [bare] if bare in _WORDS else get_close_matches(bare, longer, n=1, cutoff=0.85)
+    if close and close[0] not in table.headers:
+        raise InputError(
+            f"the column {table.headers[name]!r} is not known (did you mean {close[0]!r}?)",
+            where=table.place(name),
+            remedy=f"Write {_example(close[0])}, or rename the column if it is a note.",
+        )
+
+
+def _example(word: str) -> str:
+    """The header to write for a known word."""
+    unit = next((unit for group, unit in _UNITS.items() if word in group), None)
+    return f"{word}[{unit}]" if unit else word

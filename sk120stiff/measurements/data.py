@@ -1,0 +1,380 @@
+"""`Measurements`: poses, applied wrenches and measured displacements, checked once at birth."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.poses import refuse_differing_joints
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+Frame = Literal["base", "tool"]
+Zero = Literal["shared", "separate", "unknown"]
+
+_ARTICLE = {"angle": "an angle", "length": "a length"}
+# Row fields, cut together by `select`.
+_PER_ROW = (
+    "pose", "joints", "wrench", "displacement", "sigma", "order", "time", "branch", "repeat",
+    "use", "zero_group", "zero_count", "zero_order", "zero_time", "line",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class NoiseStatement:
+    """What the data say of their own noise; None stands for "not said".
+
+    Parameters
+    ----------
+    sigma
+        Standard uncertainty of one reading per axis, m.
+    growth
+        Part that grows with the displacement: standard uncertainty per metre of displacement.
+    """
+
+    sigma: float | None = None
+    growth: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.sigma is not None and not 0 < self.sigma < np.inf:
+            raise InputError(f"a noise sigma of {self.sigma} m is not positive")
+        if self.growth is not None and not 0 <= self.growth < 1:
+            raise InputError(f"a noise growth of {self.growth} is not between 0 and 1")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurements:
+    """N readings of one robot; arrays are read-only, SI throughout.
+
+    Parameters
+    ----------
+    pose
+        N labels; rows of one label have the same joint values.
+    joint_names, joint_kinds
+        The n joint columns and whether each is an ``"angle"`` or a ``"length"``.
+    joints
+        (N, n) coordinates, rad or m.
+    wrench
+        (N, 6) force and moment as reported, N and N·m, in axes of `force_frame`.
+    displacement
+        (N, 3) loaded minus unloaded, m, in axes of `displacement_frame`; None in a plan.
+    point, force_point
+        (3,) measured point and point of attack in the tool frame, m; the force acts at the
+        measured point unless said otherwise.
+    noise
+        What the data say of the uncertainty of one reading.
+    zero
+        ``"shared"``: rows of equal `zero_group` subtract the same zero reading;
+        ``"separate"``: each row its own; ``"unknown"``: nobody said (then `zero_group` is what
+        sharing within a pose would mean).
+    sigma
+        (N, 3) standard uncertainty of the loaded reading of each row, m, or None.
+    order, time, branch, repeat
+        When and how each row was read, or None. `branch` holds load, unload or "".
+    use
+        (N,) False masks a row. Nothing is deleted.
+    zero_group, zero_count, zero_order, zero_time
+        (N,) which zero reading a row subtracts, of how many readings it is the mean, and their
+        mean order and time (NaN where not known).
+    line
+        (N,) line in the file, 0 where there is none.
+    extra
+        Further columns as text, under their header as written.
+    notes
+        What reading the file decided, in sentences.
+    data_hash
+        SHA-256 of the bytes of both files.
+
+    Raises
+    ------
+    InputError
+        A shape, a sign, a label or a number that does not fit.
+    """
+
+    pose: tuple[str, ...]
+    joint_names: tuple[str, ...]
+    joints: Floats
+    wrench: Floats
+    displacement: Floats | None
+    path: Path | None = None
+    robot: str | None = None
+    base_frame: str | None = None
+    tool_frame: str | None = None
+    joint_kinds: tuple[str, ...] = ()
+    point: Floats = field(default_factory=lambda: np.zeros(3))
+    force_point: Floats = field(default_factory=lambda: np.zeros(0))
+    force_frame: Frame = "base"
+    displacement_frame: Frame = "base"
+    noise: NoiseStatement = NoiseStatement()
+    zero: Zero = "unknown"
+    sigma: Floats | None = None
+    order: Floats | None = None
+    time: Floats | None = None
+    branch: tuple[str, ...] | None = None
+    repeat: Integers | None = None
+    use: Mask = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    zero_group: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    zero_count: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    zero_order: Floats | None = None
+    zero_time: Floats | None = None
+    line: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    source: str = ""
+    extra: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    data_hash: str = ""
+
+    def __post_init__(self) -> None:
+        count, n = len(self.pose), len(self.joint_names)
+        if count == 0:
+            raise InputError("there is no reading", where=self._file())
+        self._put("pose", tuple(self.pose))
+        self._put("joint_names", tuple(self.joint_names))
+        self._put("joint_kinds", tuple(self.joint_kinds) or ("angle",) * n)
+        if len(self.joint_kinds) != n or set(self.joint_kinds) - {"angle", "length"}:
+            raise InputError(f"joint_kinds {self.joint_kinds} do not fit {n} joints")
+        self._array("joints", (count, n))
+        self._array("wrench", (count, 6))
+        self._array("point", (3,))
+        self._array("force_point", (3,), default=self.point)
+        for name in ("displacement", "sigma"):
+            self._array(name, (count, 3))
+        for name in ("order", "time"):
+            self._array(name, (count,))
+        for name in ("zero_order", "zero_time"):
+            self._array(name, (count,), may_be_nan=True)
+        self._array("use", (count,), np.bool_, np.ones(count))
+        self._array("line", (count,), np.int64, np.zeros(count))
+        self._array("repeat", (count,), np.int64)
+        own = np.arange(count) if self.zero == "separate" else self.pose_index
+        self._array("zero_group", (count,), np.int64, own)
+        self._array("zero_count", (count,), np.int64, np.ones(count))
+        self._check_words(count)
+        self._check_joints()
+        self._check_zero()
+
+    def __repr__(self) -> str:
+        masked = int((~self.use).sum())
+        return (
+            f"<Measurements: {self.n_readings} readings at {len(self.poses)} poses"
+            + (f", {masked} masked" if masked else "")
+            + (", a plan" if self.displacement is None else "")
+            + (f", {self.path}>" if self.path else ">")
+        )
+
+    @property
+    def n_readings(self) -> int:
+        """Number of rows N, masked ones included."""
+        return len(self.pose)
+
+    @cached_property
+    def poses(self) -> tuple[str, ...]:
+        """The pose labels in the order of their first row."""
+        return tuple(dict.fromkeys(self.pose))
+
+    @cached_property
+    def pose_index(self) -> Integers:
+        """(N,) position of each row's label in `poses`."""
+        position = {label: k for k, label in enumerate(self.poses)}
+        return np.array([position[label] for label in self.pose], dtype=np.int64)
+
+    @cached_property
+    def since_zero(self) -> Floats | None:
+        """(N,) time (s), else order, that passed since the row's zero reading; None if unknown.
+
+        Where the zero reading's own time is not known, the first row that uses it stands for it.
+        """
+        for when, zero in ((self.time, self.zero_time), (self.order, self.zero_order)):
+            if when is not None:
+                _, group = np.unique(self.zero_group, return_inverse=True)
+                first = np.full(group.max() + 1, np.inf)
+                np.minimum.at(first, group, when)
+                known = np.full(len(when), np.nan) if zero is None else zero
+                since: Floats = when - np.where(np.isnan(known), first[group], known)
+                return since
+        return None
+
+    def rows_of(self, pose: str) -> Integers:
+        """Indices of the rows with this label.
+
+        Raises
+        ------
+        InputError
+            No row has the label; the message lists those that exist.
+        """
+        if pose not in self.poses:
+            close = get_close_matches(pose, self.poses, n=1)
+            meant = f" (did you mean {close[0]!r}?)" if close else ""
+            shown = ", ".join(self.poses[:20]) + (", ..." if len(self.poses) > 20 else "")
+            raise InputError(
+                f"no row has the pose {pose!r}{meant}",
+                where=self._file(),
+                remedy=f"The poses are {shown}.",
+            )
+        return np.flatnonzero(self.pose_index == self.poses.index(pose))
+
+    def select(self, rows: ArrayLike) -> Measurements:
+        """The chosen rows as measurements of their own: a mask (N,) or indices.
+
+        Zero groups keep their numbers, so chosen rows share a zero reading as they did before.
+        """
+        chosen = np.asarray(rows)
+        index = np.flatnonzero(chosen) if chosen.dtype == bool else chosen.astype(np.int64)
+        changes: dict[str, Any] = {}
+        for name in _PER_ROW:
+            value = getattr(self, name)
+            if isinstance(value, tuple):
+                changes[name] = tuple(value[i] for i in index)
+            elif value is not None:
+                changes[name] = value[index]
+        changes["extra"] = {k: tuple(v[i] for i in index) for k, v in self.extra.items()}
+        return dataclasses.replace(self, **changes)
+
+    def masked(self) -> Measurements:
+        """The rows in use, without the masked ones."""
+        return self if bool(self.use.all()) else self.select(self.use)
+
+    def with_joints(self, names: Sequence[str], kinds: Sequence[str] | None = None) -> Measurements:
+        """The same readings with the joint columns in the order of a robot's actuated joints.
+
+        Parameters
+        ----------
+        names
+            The robot's actuated joints.
+        kinds
+            ``"angle"`` or ``"length"`` for each; None takes the file's word.
+
+        Raises
+        ------
+        InputError
+            A column is no actuated joint, a joint has no column, or its unit is of another kind.
+        """
+        listed = f"The actuated joints are {', '.join(names)}."
+        for name in self.joint_names:
+            if name not in names:
+                close = get_close_matches(name, names, n=1)
+                meant = f" (did you mean {close[0]!r}?)" if close else ""
+                raise InputError(
+                    f"no actuated joint is called {name!r}{meant}",
+                    where=self._file(f"column {name}"),
+                    remedy=f"{listed} A column that is no joint is kept as a note "
+                    "when its header has no unit in brackets.",
+                )
+        for k, name in enumerate(names):
+            kind = kinds[k] if kinds is not None else None
+            self._check_joint_column(name, kind, listed)
+        index = [self.joint_names.index(name) for name in names]
+        return dataclasses.replace(
+            self,
+            joint_names=tuple(names),
+            joint_kinds=tuple(self.joint_kinds[i] for i in index),
+            joints=self.joints[:, index],
+        )
+
+    def _check_joint_column(self, name: str, kind: str | None, listed: str) -> None:
+        units = {"angle": "deg", "length": "mm", None: "deg"}
+        header = f"{name}[{units[kind]}]"
+        if name not in self.joint_names:
+            as_written = next((key for key in self.extra if key.startswith(name)), None)
+            what = f"the joint {name!r} has no column"
+            if as_written is not None:
+                what = f"the column {as_written!r} is a joint without a unit that is known"
+            raise InputError(
+                what,
+                where=self._file(),
+                remedy=f"Add the column {header}; no joint value is assumed. {listed}"
+                if as_written is None
+                else f"Write its header as {header}.",
+            )
+        written = self.joint_kinds[self.joint_names.index(name)]
+        if kind is not None and written != kind:
+            raise InputError(
+                f"the joint {name!r} takes {_ARTICLE[kind]}, its column holds {_ARTICLE[written]}",
+                where=self._file(f"column {name}"),
+                remedy=f"Write its header as {header}.",
+            )
+
+    def _put(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def _array(
+        self,
+        name: str,
+        shape: tuple[int, ...],
+        dtype: type[np.generic] = np.float64,
+        default: ArrayLike | None = None,
+        may_be_nan: bool = False,
+    ) -> None:
+        value = getattr(self, name)
+        if value is None:
+            return
+        array = np.array(value, dtype=dtype)
+        if array.size == 0 and default is not None:
+            array = np.array(default, dtype=dtype)
+        if array.shape != shape:
+            raise InputError(f"{name} has shape {array.shape}, expected {shape}", where=name)
+        if dtype is np.float64 and not may_be_nan and not np.all(np.isfinite(array)):
+            raise InputError(f"{name} holds a number that is not finite", where=name)
+        array.setflags(write=False)
+        self._put(name, array)
+
+    def _check_words(self, count: int) -> None:
+        for name, value, words in (
+            ("force_frame", self.force_frame, ("base", "tool")),
+            ("displacement_frame", self.displacement_frame, ("base", "tool")),
+            ("zero", self.zero, ("shared", "separate", "unknown")),
+        ):
+            if value not in words:
+                raise InputError(f"{name} is {value!r}", remedy=f"It is one of {', '.join(words)}.")
+        if self.branch is not None:
+            self._put("branch", tuple(self.branch))
+            if len(self.branch) != count or set(self.branch) - {"load", "unload", ""}:
+                raise InputError("branch holds load, unload or nothing for each row")
+        if self.sigma is not None and np.any(self.sigma <= 0):
+            raise InputError("a standard uncertainty is not positive", where="sigma")
+        for label in self.poses:
+            if (
+                not label
+                or label != label.strip()
+                or label[0] == "#"
+                or len(label.splitlines()) > 1
+            ):
+                raise InputError(f"{label!r} cannot be a pose label")
+        extra = {key: tuple(value) for key, value in self.extra.items()}
+        if any(len(value) != count for value in extra.values()):
+            raise InputError(f"an extra column has not {count} rows")
+        self._put("extra", extra)
+
+    def _check_joints(self) -> None:
+        refuse_differing_joints(
+            self.pose,
+            self.pose_index,
+            self.joints,
+            self.joint_names,
+            self.joint_kinds,
+            self.line,
+            self._file(),
+        )
+
+    def _check_zero(self) -> None:
+        group, count = self.zero_group, self.zero_count
+        if np.any(count < 1):
+            raise InputError("zero_count is the number of zero readings, at least 1")
+        _, first, back = np.unique(group, return_index=True, return_inverse=True)
+        if np.any(self.pose_index != self.pose_index[first][back]):
+            raise InputError("a zero reading belongs to one pose", where=self._file("zero_group"))
+        if np.any(count != count[first][back]):
+            raise InputError("rows with the same zero reading differ in zero_count")
+
+    def _file(self, place: str | None = None) -> str | None:
+        parts = [str(self.path) if self.path else None, place]
+        return ", ".join(part for part in parts if part) or None

@@ -1,0 +1,58 @@
+"""Rows of one pose have one set of joint values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff import units
+from sk120stiff.errors import InputError
+
+# Joint values of one pose that differ by less are the same value written twice.
+SAME_JOINT = 1e-9  # rad or m
+
+
+def refuse_differing_joints(
+    pose: Sequence[str],
+    pose_index: NDArray[np.int64],
+    joints: NDArray[np.float64],
+    names: Sequence[str],
+    kinds: Sequence[str],
+    lines: NDArray[np.int64],
+    file: str | None,
+) -> None:
+    """Compare every row with the first row of its pose.
+
+    Parameters
+    ----------
+    pose, pose_index
+        N labels, and (N,) their numbers in the order of the first row.
+    joints, names, kinds
+        (N, n) values in SI, and each column's name and kind (angle or length).
+    lines, file
+        (N,) line numbers (0: none) and the file, for the message.
+
+    Raises
+    ------
+    InputError
+        Two rows of a pose differ in a joint.
+    """
+    _, first = np.unique(pose_index, return_index=True)
+    differs = np.abs(joints - joints[first][pose_index]) > SAME_JOINT
+    if not differs.any():
+        return
+    row, column = (int(k) for k in np.argwhere(differs)[0])
+    start = int(first[pose_index[row]])
+    kind = kinds[column]
+    unit = units.KINDS[kind][1][0]
+    here, there = units.from_si(joints[[row, start], column], unit, kind)
+    place = [file, f"line {lines[row]}" if lines[row] else None, f"column {names[column]}"]
+    raise InputError(
+        f"the pose {pose[row]!r} has {here:.9g} {unit} here, but {there:.9g} {unit} "
+        + (f"in line {lines[start]}" if lines[start] else "in its first row"),
+        where=", ".join(part for part in place if part),
+        remedy="Rows of one pose have the same joint values: "
+        "correct the value, or give the row a pose label of its own.",
+    )

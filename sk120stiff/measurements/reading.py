@@ -1,0 +1,196 @@
+"""A CSV file and the YAML file of the same stem become `Measurements`."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff import units
+from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.measurements import columns
+from sk120stiff.measurements.columns import Roles
+from sk120stiff.measurements.data import Measurements, NoiseStatement
+from sk120stiff.measurements.poses import refuse_differing_joints
+from sk120stiff.measurements.rows import read_rows
+from sk120stiff.measurements.subtraction import displacements
+from sk120stiff.measurements.table import Table, read_table
+
+if TYPE_CHECKING:
+    from sk120stiff.measurements.settings import SettingsFile
+
+Floats = NDArray[np.float64]
+
+_YAML = {".yaml", ".yml"}
+_ROBOT_FILES = {".urdf", ".xacro", ".xml", *_YAML}
+# Beyond these sizes a wrong unit is likelier than the number.
+_LARGEST = (
+    ("displacement", "the largest displacement", 0.1, "m"),
+    ("force", "the largest force", 1e5, "N"),
+    ("moment", "the largest moment", 1e5, "N*m"),
+    ("angle", "the largest joint angle", 4 * np.pi, "rad"),
+    ("point", "the distance of the measured point from the tool frame", 5.0, "m"),
+)
+
+
+def read_measurements(
+    path: str | os.PathLike[str],
+    actuated: Sequence[str] | None = None,
+    prismatic: Sequence[str] | None = None,
+) -> Measurements:
+    """Read measurements, or a plan if no displacement is given.
+
+    Parameters
+    ----------
+    path
+        The CSV file: one row per reading, units in the headers. Settings come from the YAML file
+        of the same stem; without it every key has its default (`settings.Settings`).
+    actuated
+        The robot's actuated joints. The joint columns are then checked against them and put in
+        their order (`Measurements.with_joints` does the same later).
+    prismatic
+        Those of them that slide and take a length; None takes the file's word.
+
+    Raises
+    ------
+    InputError
+        Anything that is missing, misspelt, unclear or impossible, with file, line and column.
+
+    Warns
+    -----
+    ToolkitWarning
+        A number so large that its unit is in doubt.
+    """
+    from sk120stiff.measurements.settings import find_settings, read_settings
+
+    source = Path(path)
+    if source.suffix.lower() in _ROBOT_FILES:
+        raise InputError(
+            f"a {source.suffix} file holds no readings",
+            where=str(source),
+            remedy="Give the CSV file; its YAML file of the same stem is found by itself.",
+        )
+    table = read_table(source)
+    settings = read_settings(find_settings(source))
+    roles = columns.assign_roles(table, tuple(actuated or ()))
+    measurements = _assemble(table, roles, settings)
+    if actuated is not None:
+        kinds = None
+        if prismatic is not None:
+            kinds = ["length" if name in prismatic else "angle" for name in actuated]
+        measurements = measurements.with_joints(actuated, kinds)
+    _doubt_units(measurements)
+    return measurements
+
+
+def _assemble(table: Table, roles: Roles, file: SettingsFile) -> Measurements:
+    settings = file.settings
+    rows = read_rows(table, roles)
+    refuse_differing_joints(
+        rows.pose,
+        rows.pose_index,
+        rows.joints,
+        tuple(roles.joints),
+        tuple(roles.joints.values()),
+        np.array(table.lines),
+        str(table.path),
+    )
+    noise = NoiseStatement(_sigma(file), settings.noise.growth)
+    point = np.zeros(3)
+    if settings.point is not None:
+        point = np.array(settings.point.in_metres(file.place("point.unit")))
+    force_point = point
+    if settings.force.point is not None:
+        force_point = np.array(settings.force.point.in_metres(file.place("force.point.unit")))
+    found = displacements(table, roles, rows, settings.displacement.zero)
+    kept = found.rows
+    return Measurements(
+        path=table.path,
+        robot=_robot(settings.robot, table.path.parent),
+        base_frame=settings.base_frame,
+        tool_frame=settings.tool_frame,
+        pose=tuple(rows.pose[i] for i in kept),
+        joint_names=tuple(roles.joints),
+        joint_kinds=tuple(roles.joints.values()),
+        joints=rows.joints[kept],
+        wrench=rows.wrench[kept],
+        point=point,
+        force_point=force_point,
+        force_frame=settings.force.frame,
+        displacement_frame=settings.displacement.frame,
+        noise=noise,
+        sigma=None if rows.sigma is None else rows.sigma[kept],
+        order=None if rows.order is None else rows.order[kept],
+        time=None if rows.time is None else rows.time[kept],
+        branch=None if rows.branch is None else tuple(rows.branch[i] for i in kept),
+        repeat=None if rows.repeat is None else rows.repeat[kept],
+        line=np.array(table.lines)[kept],
+        source=settings.source.strip(),
+        extra={
+            table.headers[name]: tuple(table.cells[name][i] for i in kept) for name in roles.extra
+        },
+        displacement=found.displacement,
+        zero=found.zero,
+        zero_group=found.group,
+        zero_count=found.count,
+        zero_order=found.order,
+        zero_time=found.time,
+        use=found.use,
+        notes=found.notes,
+        data_hash=_hash(table.path, file.path),
+    )
+
+
+def _sigma(file: SettingsFile) -> float | None:
+    noise = file.settings.noise
+    if noise.sigma is None:
+        return None
+    return float(units.to_si(noise.sigma, noise.unit, "length", where=file.place("noise.unit")))
+
+
+def _robot(text: str | None, folder: Path) -> str | None:
+    """A path is relative to the file it stands in; a bundled name stays as written."""
+    if text is None:
+        return None
+    path = folder / text
+    is_path = "/" in text or "\\" in text or path.suffix.lower() in _ROBOT_FILES or path.exists()
+    return str(path.resolve()) if is_path else text
+
+
+def _hash(*paths: Path | None) -> str:
+    digest = hashlib.sha256()
+    for path in paths:
+        if path is not None:
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _doubt_units(measurements: Measurements) -> None:
+    angles = [k for k, kind in enumerate(measurements.joint_kinds) if kind == "angle"]
+    sizes = {
+        "displacement": measurements.displacement,
+        "force": measurements.wrench[:, :3],
+        "moment": measurements.wrench[:, 3:],
+        "angle": measurements.joints[:, angles],
+        "point": measurements.point,
+    }
+    for key, name, limit, unit in _LARGEST:
+        values = sizes[key]
+        if values is None or values.size == 0:
+            continue
+        size = np.max(np.abs(values), axis=-1)
+        row = int(np.argmax(size))
+        if size.flat[row] > limit:
+            line = f", line {measurements.line[row]}" if values.ndim == 2 else ""
+            warnings.warn(
+                f"{measurements.path}{line}: {name} is {size.flat[row]:.4g} {unit}. "
+                "Check the unit in the header.",
+                ToolkitWarning,
+                stacklevel=3,
+            )

@@ -1,0 +1,161 @@
+"""What the cells of known columns mean: labels, flags, branches, counts, loads, uncertainties."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import FORCES, MOMENTS, UNCERTAINTIES, Roles
+from sk120stiff.measurements.table import Table
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+_FLAGS = {"1": True, "0": False, "true": True, "false": False, "1.0": True, "0.0": False}
+
+
+@dataclass(frozen=True)
+class Rows:
+    """All N rows of a file in SI, before any zero reading is subtracted.
+
+    Parameters
+    ----------
+    pose
+        N labels; `pose_index` (N,) numbers them in the order of their first row.
+    joints
+        (N, n) rad or m.
+    wrench
+        (N, 6) N and N·m; `loaded` (N,) is True where any component is not zero.
+    measured
+        (N, 3) displacements or positions, m; None in a plan.
+    sigma
+        (N, 3) m, or None.
+    order, time, branch, repeat
+        (N,) or None.
+    use
+        (N,) False where masked.
+    """
+
+    pose: tuple[str, ...]
+    pose_index: Integers
+    joints: Floats
+    wrench: Floats
+    loaded: Mask
+    measured: Floats | None
+    sigma: Floats | None
+    order: Floats | None
+    time: Floats | None
+    branch: tuple[str, ...] | None
+    repeat: Integers | None
+    use: Mask
+
+
+def read_rows(table: Table, roles: Roles) -> Rows:
+    """Turn cells into numbers.
+
+    Raises
+    ------
+    InputError
+        A cell that its column cannot hold, with line and column.
+    """
+    count = len(table.lines)
+    pose = _labels(table)
+    position = {label: k for k, label in enumerate(dict.fromkeys(pose))}
+    wrench = np.zeros((count, 6))
+    wrench[:, :3] = quantities(table, FORCES, "force")
+    if MOMENTS[0] in roles.has:
+        wrench[:, 3:] = quantities(table, MOMENTS, "moment")
+    loaded = np.any(wrench != 0.0, axis=1)
+    measured = quantities(table, roles.measured, "length") if roles.measured else None
+    return Rows(
+        pose=pose,
+        pose_index=np.array([position[label] for label in pose], dtype=np.int64),
+        joints=np.column_stack([table.quantity(name, kind) for name, kind in roles.joints.items()]),
+        wrench=wrench,
+        loaded=loaded,
+        measured=measured,
+        sigma=_uncertainties(table) if UNCERTAINTIES[0] in roles.has else None,
+        order=table.numbers("order") if "order" in roles.has else None,
+        time=table.quantity("time", "time") if "time" in roles.has else None,
+        branch=_branches(table, loaded) if "branch" in roles.has else None,
+        repeat=counts(table, "repeat", 0) if "repeat" in roles.has else None,
+        use=_flags(table) if "use" in roles.has else np.ones(count, dtype=np.bool_),
+    )
+
+
+def quantities(table: Table, names: tuple[str, ...], kind: str) -> Floats:
+    """Several columns of one kind side by side (N, k), SI."""
+    return np.column_stack([table.quantity(name, kind) for name in names])
+
+
+def counts(table: Table, name: str, least: int) -> Integers:
+    """A column (N,) of whole numbers that are at least `least`."""
+    values = table.numbers(name)
+    bad = (values != np.round(values)) | (values < least) | (values > 2**53)
+    if bad.any():
+        row = int(np.flatnonzero(bad)[0])
+        raise InputError(
+            f"{table.cells[name][row]!r} is not a whole number from {least} up",
+            where=table.place(name, row),
+            remedy="Count in whole numbers.",
+        )
+    return values.astype(np.int64)
+
+
+def _labels(table: Table) -> tuple[str, ...]:
+    for row, label in enumerate(table.cells["pose"]):
+        if not label or label.startswith("#"):
+            raise InputError(
+                "the pose label is empty" if not label else f"{label!r} reads as a comment",
+                where=table.place("pose", row),
+                remedy="Give every row a label; rows of one pose have the same.",
+            )
+    return table.cells["pose"]
+
+
+def _flags(table: Table) -> Mask:
+    values = []
+    for row, cell in enumerate(table.cells["use"]):
+        if cell.lower() not in _FLAGS:
+            raise InputError(
+                f"{cell!r} is neither 1 nor 0",
+                where=table.place("use", row),
+                remedy="Write 0 to mask the row, 1 to use it.",
+            )
+        values.append(_FLAGS[cell.lower()])
+    use = np.array(values, dtype=np.bool_)
+    if not use.any():
+        raise InputError(
+            "every row is masked",
+            where=table.place("use"),
+            remedy="Write 1 in the rows to be used.",
+        )
+    return use
+
+
+def _branches(table: Table, loaded: Mask) -> tuple[str, ...]:
+    for row, cell in enumerate(table.cells["branch"]):
+        if cell not in ("load", "unload") and not (cell == "" and not loaded[row]):
+            raise InputError(
+                f"{cell!r} is neither load nor unload",
+                where=table.place("branch", row),
+                remedy="Write load while the force grows, unload while it shrinks.",
+            )
+    return table.cells["branch"]
+
+
+def _uncertainties(table: Table) -> Floats:
+    values = quantities(table, UNCERTAINTIES, "length")
+    if np.any(values <= 0.0):
+        row, column = (int(k) for k in np.argwhere(values <= 0.0)[0])
+        name = UNCERTAINTIES[column]
+        raise InputError(
+            f"a standard uncertainty of {table.cells[name][row]} is not positive",
+            where=table.place(name, row),
+            remedy="Write the standard uncertainty of the reading, or leave the three columns out.",
+        )
+    return values

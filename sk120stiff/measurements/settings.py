@@ -1,0 +1,221 @@
+"""The YAML file beside the readings: every key, its default, and where a slip in it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sk120stiff import files, units
+from sk120stiff.errors import InputError
+
+_Frame = Literal["base", "tool"]
+_Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _Entry(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PointEntry(_Entry):
+    """A point in the tool frame."""
+
+    xyz: tuple[_Finite, _Finite, _Finite]
+    unit: str
+
+    def in_metres(self, where: str) -> tuple[float, float, float]:
+        """The coordinates in m."""
+        x, y, z = units.to_si(self.xyz, self.unit, "length", where=where)
+        return float(x), float(y), float(z)
+
+
+class ForceEntry(_Entry):
+    """Axes of the reported wrench, and its point of attack if that is not the measured point."""
+
+    frame: _Frame = "base"
+    point: PointEntry | None = None
+
+
+class DisplacementEntry(_Entry):
+    """Axes of the readings, and how the zero reading is shared."""
+
+    frame: _Frame = "base"
+    zero: Literal["shared", "separate", "unknown"] = "unknown"
+
+
+class NoiseEntry(_Entry):
+    """Standard uncertainty of one reading per axis, and the part that grows with displacement."""
+
+    sigma: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+    unit: str | None = None
+    growth: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
+
+
+class Settings(_Entry):
+    """All keys of the file. An absent file and an absent key mean the defaults below.
+
+    The robot and its frames default to what the command or the robot says, the point to the
+    origin of the tool frame, both frames to the base, the zero to unknown (positions: shared),
+    the noise to "estimate it".
+    """
+
+    robot: str | None = None
+    base_frame: str | None = None
+    tool_frame: str | None = None
+    point: PointEntry | None = None
+    force: ForceEntry = ForceEntry()
+    displacement: DisplacementEntry = DisplacementEntry()
+    noise: NoiseEntry = NoiseEntry()
+    source: str = ""
+
+
+_SECTIONS: dict[str, type[_Entry]] = {
+    "": Settings,
+    "point": PointEntry,
+    "force": ForceEntry,
+    "force.point": PointEntry,
+    "displacement": DisplacementEntry,
+    "noise": NoiseEntry,
+}
+_EXAMPLES = {
+    "point": "point: {xyz: [-60.0, 40.0, 150.0], unit: mm}",
+    "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
+    "displacement": "displacement: {frame: base, zero: shared}",
+    "noise": "noise: {sigma: 10, unit: um}",
+}
+
+
+@dataclass(frozen=True)
+class SettingsFile:
+    """Settings, the file they come from (None: all defaults), and the line of each key."""
+
+    settings: Settings
+    path: Path | None
+    lines: dict[str, int]
+
+    def place(self, key: str) -> str:
+        """File, line and key for a message; a key that is not there has its section's line."""
+        section = key
+        while section and section not in self.lines:
+            section = section.rpartition(".")[0]
+        line = f", line {self.lines[section]}" if section else ""
+        return f"{self.path}{line}, key {key}"
+
+
+def find_settings(readings: Path) -> Path | None:
+    """The YAML file of the same stem as the CSV file, if there is one.
+
+    Raises
+    ------
+    InputError
+        Both ``.yaml`` and ``.yml`` exist.
+    """
+    found = [p for p in (readings.with_suffix(s) for s in (".yaml", ".yml")) if p.exists()]
+    if len(found) > 1:
+        raise InputError(
+            f"{found[0].name} and {found[1].name} stand side by side",
+            where=str(readings.parent),
+            remedy="Keep one of them.",
+        )
+    return found[0] if found else None
+
+
+def read_settings(path: Path | None) -> SettingsFile:
+    """Read and check the file; None gives the defaults.
+
+    Raises
+    ------
+    InputError
+        Text that is not YAML, an unknown, repeated or missing key, or a value that does not fit.
+    """
+    if path is None:
+        return SettingsFile(Settings(), None, {})
+    text = files.read_text(path)
+    try:
+        node = yaml.compose(text, Loader=yaml.SafeLoader)
+        content = yaml.safe_load(text)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        mark = getattr(error, "problem_mark", None)
+        place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        reason = str(getattr(error, "problem", None) or error).partition("\n")[0]
+        raise InputError(
+            f"this is not YAML ({reason})",
+            where=f"{path}{place}",
+            remedy="Write one 'key: value' per line, text with a colon in quotation marks.",
+        ) from error
+    lines = dict(_keys(node, str(path)))
+    if content is None:
+        content = {}
+    if not isinstance(content, dict):
+        raise InputError(
+            "the file holds no keys",
+            where=str(path),
+            remedy=f"Write one 'key: value' per line. The keys are {_names('')}.",
+        )
+    try:
+        settings = Settings.model_validate(_without_empty(content))
+    except ValidationError as error:
+        draft = SettingsFile(Settings(), path, lines)
+        raise _explain(error, draft) from None
+    return SettingsFile(settings, path, lines)
+
+
+def _keys(node: yaml.Node | None, path: str, above: str = "") -> Iterator[tuple[str, int]]:
+    """Dotted keys and their lines, two levels below the top at most."""
+    if not isinstance(node, yaml.MappingNode) or above.count(".") > 1:
+        return
+    seen: set[str] = set()
+    for name, value in node.value:
+        key = f"{above}.{name.value}" if above else f"{name.value}"
+        line = name.start_mark.line + 1
+        if key in seen:
+            raise InputError(
+                f"the key {key!r} stands there twice",
+                where=f"{path}, line {line}",
+                remedy="Keep one of them.",
+            )
+        seen.add(key)
+        yield key, line
+        yield from _keys(value, path, key)
+
+
+def _without_empty(content: dict[object, object]) -> dict[str, object]:
+    """A key without a value means its default."""
+    return {
+        str(key): _without_empty(value) if isinstance(value, dict) else value
+        for key, value in content.items()
+        if value is not None
+    }
+
+
+def _names(section: str) -> str:
+    return ", ".join(_SECTIONS[section].model_fields)
+
+
+def _explain(error: ValidationError, draft: SettingsFile) -> InputError:
+    """The first slip as one message; a misspelt key goes before what is missing because of it."""
+    slips = sorted(error.errors(), key=lambda slip: slip["type"] != "extra_forbidden")
+    slip = slips[0]
+    names = [str(part) for part in slip["loc"] if isinstance(part, str)]
+    key, section = ".".join(names), ".".join(names[:-1])
+    example = _EXAMPLES.get(names[0], f"{names[0]}: text")
+    remedy = f"Write it like  {example}"
+    if slip["type"] == "extra_forbidden":
+        close = get_close_matches(names[-1], list(_SECTIONS[section].model_fields), n=1)
+        meant = f" (did you mean {close[0]!r}?)" if close else ""
+        what = f"the key {key!r} is not known{meant}"
+        remedy = f"The keys {f'of {section}' if section else 'here'} are {_names(section)}."
+    elif slip["type"] == "missing":
+        what = f"the key {key!r} is missing"
+    elif slip["type"] == "literal_error":
+        what = f"{key} is {slip['input']!r}"
+        remedy = f"Write {slip['ctx']['expected']}."
+    else:
+        reason = slip["msg"][0].lower() + slip["msg"][1:]
+        what = f"{key} is {slip['input']!r}: {reason}"
+    return InputError(what, where=draft.place(key), remedy=remedy)

@@ -1,0 +1,180 @@
+"""The displacement of each row: as written, or its position minus the zero reading of its pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import POSITIONS, ZEROS, Roles
+from sk120stiff.measurements.data import Zero
+from sk120stiff.measurements.rows import Rows, counts
+from sk120stiff.measurements.table import Table
+from sk120stiff.measurements.zero import find_zero_readings, group_by_run
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Displacements:
+    """Displacements of the K rows that have one, and the zero readings they subtract.
+
+    The fields are those of `Measurements`; `rows` (K,) says which of the file's rows they are,
+    `notes` what was decided.
+    """
+
+    rows: Integers
+    displacement: Floats | None
+    zero: Zero
+    group: Integers
+    count: Integers
+    order: Floats | None
+    time: Floats | None
+    use: NDArray[np.bool_]
+    notes: tuple[str, ...]
+
+
+def displacements(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacements:
+    """Read them off, or subtract the zero readings where positions are given.
+
+    Raises
+    ------
+    InputError
+        A pose without a zero reading, no loaded row, or a zero column that does not fit.
+    """
+    if roles.measured == POSITIONS:
+        return _from_positions(table, roles, rows, zero)
+    return _as_written(table, roles, rows, zero)
+
+
+def _as_written(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacements:
+    count = len(rows.pose)
+    group = np.arange(count) if zero == "separate" else rows.pose_index
+    if "zero_group" in roles.has:
+        group = counts(table, "zero_group", 0)
+    number = counts(table, "zero_count", 1) if "zero_count" in roles.has else np.ones(count)
+    order = time = None
+    if "zero_order" in roles.has:
+        order = table.numbers("zero_order", allow_blank=True)
+    elif zero != "separate":
+        order = _mean_without_load(rows, rows.order)
+    if "zero_time" in roles.has:
+        time = table.quantity("zero_time", "time", allow_blank=True)
+    elif zero != "separate":
+        time = _mean_without_load(rows, rows.time)
+    use, notes = rows.use, []
+    if rows.measured is not None:
+        # Such a row is the zero reading minus itself: exact by construction, so it tells nothing,
+        # and a fit would take it for a reading without noise.
+        empty = use & ~rows.loaded & np.all(rows.measured == 0.0, axis=1)
+        if empty.any() and not empty[use].all():
+            use = use & ~empty
+            notes.append(
+                f"{int(empty.sum())} rows without load and with a displacement of exactly zero "
+                "are zero readings minus themselves; they are masked."
+            )
+    if zero == "unknown" and rows.measured is not None:
+        notes.append("Nobody said whether the rows of a pose share a zero reading.")
+    return Displacements(
+        rows=np.arange(count),
+        displacement=rows.measured,
+        zero=zero,
+        group=group,
+        count=number.astype(np.int64),
+        order=order,
+        time=time,
+        use=use,
+        notes=tuple(notes),
+    )
+
+
+def _mean_without_load(rows: Rows, when: Floats | None) -> Floats | None:
+    """Mean order or time of the rows without load of each row's pose; None where there is none."""
+    if when is None or rows.loaded.all():
+        return None
+    return find_zero_readings(rows.pose_index, rows.loaded, rows.use).mean(when)
+
+
+def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacements:
+    for name in ZEROS[1:]:
+        if name in roles.has:
+            raise InputError(
+                f"the column {name!r} belongs to displacements, not to positions",
+                where=table.place(name),
+                remedy="Leave it out: rows without load say it.",
+            )
+    if rows.measured is None or not rows.loaded.any():
+        raise InputError(
+            "no row has a load, so nothing was displaced",
+            where=f"{table.path}, line {table.lines[0]}",
+            remedy="Add rows with forces; positions alone say nothing about stiffness.",
+        )
+    sequence = next(
+        (s for s in (rows.order, rows.time) if s is not None), np.arange(float(len(rows.pose)))
+    )
+    if "zero_group" in roles.has:
+        group = _given_groups(table, rows)
+    elif zero == "separate":
+        group = group_by_run(rows.pose_index, rows.loaded, rows.use, sequence)
+    else:
+        group = rows.pose_index
+    found = find_zero_readings(group, rows.loaded, rows.use)
+    orphans = np.flatnonzero(rows.loaded & (found.count == 0))
+    if orphans.size:
+        first = int(orphans[0])
+        raise InputError(
+            f"the pose {rows.pose[first]!r} has no row without load to subtract",
+            where=table.place("x", first),
+            remedy="Add a row with fx = fy = fz = 0 for this pose; its x y z are the zero reading. "
+            "If the columns hold displacements already, name them dx dy dz.",
+        )
+    kept = np.flatnonzero(rows.loaded)
+    used = found.count[kept]
+    notes = [
+        f"{int(found.counted.sum())} rows without load are the zero readings of the "
+        f"{kept.size} loaded rows, each the mean of {_span(used)}."
+    ]
+    idle = [p for p in dict.fromkeys(rows.pose) if p not in {rows.pose[i] for i in kept}]
+    if idle:
+        notes.append(f"Without a loaded row, and so without effect: pose {', '.join(idle)}.")
+    if not rows.use[kept].any():
+        raise InputError(
+            "every loaded row is masked",
+            where=table.place("use"),
+            remedy="Write 1 in the rows to be used.",
+        )
+    return Displacements(
+        rows=kept,
+        displacement=(rows.measured - found.mean(rows.measured))[kept],
+        zero="shared",
+        group=np.unique(group[kept], return_inverse=True)[1],
+        count=used,
+        order=None if rows.order is None else found.mean(rows.order)[kept],
+        time=None if rows.time is None else found.mean(rows.time)[kept],
+        use=rows.use[kept],
+        notes=tuple(notes),
+    )
+
+
+def _given_groups(table: Table, rows: Rows) -> Integers:
+    _, first, group = np.unique(
+        counts(table, "zero_group", 0), return_index=True, return_inverse=True
+    )
+    crossing = np.flatnonzero(rows.pose_index != rows.pose_index[first][group])
+    if crossing.size:
+        row = int(crossing[0])
+        raise InputError(
+            f"the zero group {table.cells['zero_group'][row]} joins the poses "
+            f"{rows.pose[first[group[row]]]!r} and {rows.pose[row]!r}",
+            where=table.place("zero_group", row),
+            remedy="A zero reading belongs to one pose.",
+        )
+    return group
+
+
+def _span(counts_used: Integers) -> str:
+    low, high = int(counts_used.min()), int(counts_used.max())
+    return f"{low}" if low == high else f"{low} to {high}"

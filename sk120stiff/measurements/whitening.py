@@ -1,0 +1,84 @@
+"""Whitening by the exact Cholesky factor of a diagonal plus one shared error per group.
+
+A group of rows that subtract the same zero reading has, per axis, the covariance
+V = diag(d) + c·11ᵀ: d the own variances, c that of the shared zero. Its Cholesky factor L need not
+be built. Row i of L⁻¹x is the innovation of x_i, given the rows before it: with the sums over those
+rows t = Σ 1/d_j and s = Σ x_j/d_j, the best guess of the shared error is g·s with g = c/(1 + c·t),
+and the variance left is d_i + g. Hence L⁻¹x = (x_i − g·s)/√(d_i + g).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff.errors import InputError
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class Whitener:
+    """L⁻¹ of the covariance V = L Lᵀ of N displacement readings.
+
+    Parameters
+    ----------
+    own
+        (N, 3) variance of each row's own error, m², positive.
+    shared
+        (N, 3) variance of the error that rows of a group share, m², equal within a group.
+    group
+        (N,) number of the group of each row.
+    """
+
+    def __init__(self, own: Floats, shared: Floats, group: Integers) -> None:
+        if own.ndim != 2 or own.shape[1] != 3 or shared.shape != own.shape:
+            raise InputError(f"variances of shapes {own.shape} and {shared.shape} are no (N, 3)")
+        if not (np.all(own > 0) and np.all(np.isfinite(own)) and np.all(shared >= 0)):
+            raise InputError("a variance is not positive")
+        self.n_readings = len(own)
+        self._blocks: list[tuple[Integers, Floats, Floats, Floats]] = []
+        logdet = 0.0
+        for rows in _blocks(np.asarray(group)):
+            own_inverse = 1.0 / own[rows]  # (g, L, 3)
+            c = shared[rows]
+            gain = c / (1.0 + c * _sum_before(own_inverse))
+            variance = own[rows] + gain
+            logdet += float(np.sum(np.log(variance)))
+            self._blocks.append((rows, own_inverse, gain, 1.0 / np.sqrt(variance)))
+        self.logdet = logdet
+        """Natural logarithm of det V, over all 3N readings; V in m²."""
+
+    def apply(self, x: ArrayLike) -> Floats:
+        """L⁻¹x: (N, 3) becomes (3N,), and (N, 3, k) becomes (3N, k), row by row.
+
+        `x` is in the axes in which the displacements were reported.
+        """
+        values = np.asarray(x, dtype=np.float64)
+        if values.shape[:2] != (self.n_readings, 3) or values.ndim > 3:
+            raise InputError(
+                f"an array of shape {values.shape} cannot be whitened",
+                remedy=f"Give ({self.n_readings}, 3) or ({self.n_readings}, 3, k).",
+            )
+        columns = values.reshape(self.n_readings, 3, -1)
+        out = np.empty_like(columns)
+        for rows, own_inverse, gain, scale in self._blocks:
+            block = columns[rows]  # (g, L, 3, k)
+            if rows.shape[1] > 1:
+                block = block - gain[..., None] * _sum_before(block * own_inverse[..., None])
+            out[rows] = block * scale[..., None]
+        return out.reshape(3 * self.n_readings, *values.shape[2:])
+
+
+def _blocks(group: Integers) -> list[Integers]:
+    """Rows of groups of equal size together: arrays (groups, size) of row numbers."""
+    order = np.argsort(group, kind="stable")
+    _, start, size = np.unique(group[order], return_index=True, return_counts=True)
+    return [order[start[size == k][:, None] + np.arange(k)] for k in np.unique(size)]
+
+
+def _sum_before(x: Floats) -> Floats:
+    """Sums over the rows before each row of a block, along axis 1."""
+    sums = np.zeros_like(x)
+    np.cumsum(x[:, :-1], axis=1, out=sums[:, 1:])
+    return sums

@@ -1,0 +1,177 @@
+"""`Measurements` become a CSV file and the YAML file of the same stem."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff import files, units
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import (
+    DISPLACEMENTS,
+    FORCES,
+    MOMENTS,
+    UNCERTAINTIES,
+)
+from sk120stiff.measurements.data import Measurements
+
+_Column = tuple[str, Iterable[str]]
+
+
+def write_measurements(
+    measurements: Measurements,
+    path: str | os.PathLike[str],
+    *,
+    angle: str = "deg",
+    length: str = "mm",
+) -> Path:
+    """Write both files so that `read_measurements` gives the same readings back.
+
+    Numbers carry all digits of a float. With ``angle="rad"`` and ``length="m"`` they come back
+    bit for bit; with other units within one rounding of the conversion. Readings that came as
+    positions are written as displacements, with what they subtracted in the columns
+    ``zero_group``, ``zero_count``, ``zero_order`` and ``zero_time[s]`` where that is not plain.
+
+    Parameters
+    ----------
+    measurements
+        What to write; masked rows too, with ``use`` 0.
+    path
+        The CSV file. The YAML file stands beside it.
+    angle, length
+        Units of the columns.
+
+    Returns
+    -------
+    Path
+        The CSV file.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to, the path does not end in ``.csv``, or a ``.yml`` file of
+        the same stem is in the way.
+    """
+    target = Path(path)
+    if target.suffix.lower() != ".csv":
+        raise InputError(
+            "readings are written to a CSV file",
+            where=str(target),
+            remedy="Let the name end in .csv.",
+        )
+    rival = target.with_suffix(".yml")
+    if rival.exists():
+        raise InputError(
+            "this file would stand beside the settings that are written",
+            where=str(rival),
+            remedy="Move it, or choose another name.",
+        )
+    columns = list(_columns(measurements, angle, length))
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow([header for header, _ in columns])
+    writer.writerows(zip(*(cells for _, cells in columns), strict=True))
+    settings = yaml.safe_dump(
+        _settings(measurements, target.parent, length), sort_keys=False, allow_unicode=True
+    )
+    files.write_atomically(target.with_suffix(".yaml"), settings)
+    return files.write_atomically(target, stream.getvalue())
+
+
+def _columns(m: Measurements, angle: str, length: str) -> Iterable[_Column]:
+    yield "pose", m.pose
+    for k, name in enumerate(m.joint_names):
+        kind = m.joint_kinds[k]
+        yield _numbers(name, m.joints[:, k], angle if kind == "angle" else length, kind)
+    for k, name in enumerate(FORCES):
+        yield _numbers(name, m.wrench[:, k], "N", "force")
+    if np.any(m.wrench[:, 3:]):
+        for k, name in enumerate(MOMENTS):
+            yield _numbers(name, m.wrench[:, 3 + k], "N*m", "moment")
+    for names, values in ((DISPLACEMENTS, m.displacement), (UNCERTAINTIES, m.sigma)):
+        if values is not None:
+            for k, name in enumerate(names):
+                yield _numbers(name, values[:, k], length, "length")
+    if m.order is not None:
+        yield "order", map(_digits, m.order)
+    if m.time is not None:
+        yield "time[s]", map(_digits, m.time)
+    if m.branch is not None:
+        yield "branch", m.branch
+    if m.repeat is not None:
+        yield "repeat", map(str, m.repeat)
+    if not m.use.all():
+        yield "use", ("1" if used else "0" for used in m.use)
+    yield from _zero_columns(m)
+    yield from m.extra.items()
+
+
+def _zero_columns(m: Measurements) -> Iterable[_Column]:
+    """What the reader would not guess of the zero readings by itself."""
+    plain = np.arange(m.n_readings) if m.zero == "separate" else m.pose_index
+    if not _same_grouping(plain, m.zero_group):
+        yield "zero_group", map(str, m.zero_group)
+    if np.any(m.zero_count != 1):
+        yield "zero_count", map(str, m.zero_count)
+    if m.zero_order is not None:
+        yield "zero_order", map(_digits, m.zero_order)
+    if m.zero_time is not None:
+        yield "zero_time[s]", map(_digits, m.zero_time)
+
+
+def _same_grouping(a: NDArray[np.int64], b: NDArray[np.int64]) -> bool:
+    pairs = len(set(zip(a.tolist(), b.tolist(), strict=True)))
+    return pairs == len(np.unique(a)) == len(np.unique(b))
+
+
+def _numbers(name: str, values: ArrayLike, unit: str, kind: str) -> _Column:
+    return f"{name}[{unit}]", map(_digits, units.from_si(values, unit, kind))
+
+
+def _digits(value: float) -> str:
+    """The shortest text that reads back as the same float; NaN is an empty cell."""
+    return "" if np.isnan(value) else repr(float(value))
+
+
+def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
+    names = {
+        "robot": _robot(m.robot, folder),
+        "base_frame": m.base_frame,
+        "tool_frame": m.tool_frame,
+    }
+    settings: dict[str, Any] = {key: name for key, name in names.items() if name is not None}
+    settings["point"] = _point(m.point, length)
+    settings["force"] = {"frame": m.force_frame}
+    if not np.array_equal(m.force_point, m.point):
+        settings["force"]["point"] = _point(m.force_point, length)
+    settings["displacement"] = {"frame": m.displacement_frame, "zero": m.zero}
+    noise: dict[str, Any] = {}
+    if m.noise.sigma is not None:
+        noise["sigma"] = float(units.from_si(m.noise.sigma, length, "length"))
+        noise["unit"] = length
+    if m.noise.growth is not None:
+        noise["growth"] = m.noise.growth
+    if noise:
+        settings["noise"] = noise
+    if m.source:
+        settings["source"] = m.source
+    return settings
+
+
+def _point(xyz: ArrayLike, length: str) -> dict[str, Any]:
+    return {"xyz": [float(x) for x in units.from_si(xyz, length, "length")], "unit": length}
+
+
+def _robot(robot: str | None, folder: Path) -> str | None:
+    """A path is written relative to the file, so that both can move together."""
+    if robot is None or not Path(robot).is_absolute():
+        return robot
+    return Path(os.path.relpath(robot, folder.resolve())).as_posix()

@@ -1,0 +1,75 @@
+"""Positions become displacements: which zero reading a row subtracts, and of how many it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class ZeroReadings:
+    """The zero readings of a file of positions.
+
+    Parameters
+    ----------
+    group
+        (N,) number of the zero reading of each row, loaded or not.
+    counted
+        (N,) the rows without load that a zero reading is the mean of.
+    count
+        (N,) how many rows are counted in the row's group; 0 where there is no zero reading.
+    """
+
+    group: Integers
+    counted: Mask
+    count: Integers
+
+    def mean(self, values: Floats) -> Floats:
+        """Mean of `values` (N, ...) over the zero rows of each row's group; NaN without any."""
+        sums = np.zeros((int(self.group.max()) + 1, *values.shape[1:]))
+        np.add.at(sums, self.group[self.counted], values[self.counted])
+        count = np.where(self.count > 0, self.count, np.nan)
+        mean: Floats = sums[self.group] / count.reshape(-1, *(1,) * (values.ndim - 1))
+        return mean
+
+
+def find_zero_readings(group: Integers, loaded: Mask, use: Mask) -> ZeroReadings:
+    """Count the rows without load in each group (N,).
+
+    Masked rows do not count, except where every row of the group is masked: then its masked
+    zero rows give the masked rows a displacement to show.
+    """
+    size = int(group.max()) + 1
+    alive = np.bincount(group[use], minlength=size) > 0
+    counted = ~loaded & (use | ~alive[group])
+    count = np.bincount(group[counted], minlength=size)
+    return ZeroReadings(group, counted, count[group].astype(np.int64))
+
+
+def group_by_run(pose: Integers, loaded: Mask, use: Mask, sequence: Floats) -> Integers:
+    """Groups (N,) where each row subtracts the zero reading that was taken last before it.
+
+    Zero rows that follow one another without a loaded row between are one reading. Rows before
+    the first zero reading of their pose subtract that first one.
+    """
+    group = np.zeros(len(pose), dtype=np.int64)
+    start = 0
+    for label in range(int(pose.max()) + 1):
+        rows = np.flatnonzero(pose == label)
+        rows = rows[np.argsort(sequence[rows], kind="stable")]
+        runs, after_load = 0, True
+        for row in rows:
+            is_zero = not loaded[row] and use[row]
+            if is_zero and after_load:
+                runs += 1
+            if is_zero or loaded[row]:
+                after_load = not is_zero
+            group[row] = start + max(runs, 1) - 1
+        start += max(runs, 1)
+    return group
