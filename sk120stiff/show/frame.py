@@ -1,0 +1,173 @@
+"""Everything one picture shows, computed for a pose and a load.
+
+The static page computes the same numbers in JavaScript (`page/engine.js`); a test in a real browser
+holds the two together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.errors import Refusal
+from sk120stiff.robot import Robot
+from sk120stiff.show.elastic import Elastic
+from sk120stiff.show.links import LinkTree, joint_motion
+from sk120stiff.stiffness import (
+    complementary_stiffness,
+    definiteness_of,
+    equilibrium,
+    symmetric_part,
+)
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What the controls of the page are set to.
+
+    Attributes
+    ----------
+    a
+        (n,) actuated coordinates [rad or m].
+    wrench
+        (6,) force [N] and moment [N·m] at the point, base axes.
+    point
+        (3,) in the frame of the point [m].
+    exaggeration
+        Factor on every displacement that is drawn.
+    """
+
+    a: Array
+    wrench: Array
+    point: Array
+    exaggeration: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class PrincipalAxes:
+    """Compliances (3,) [m/N or rad/(N·m)], softest first, and unit directions as rows (3, 3)."""
+
+    values: Array
+    directions: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The answer, in base axes and SI.
+
+    Attributes
+    ----------
+    links
+        (L, 4, 4) placement of every link.
+    deflected
+        (L, 4, 4) the same under load, displacements exaggerated; None beyond the critical load.
+    position, rotation
+        (3,) of the point [m], (3, 3) of its frame.
+    translation, rotation_axes
+        Formulation ("conventional", "enhanced") → principal compliances.
+    deflection
+        Formula → displacement (3,) of the point [m]; "equilibrium" is missing where none exists.
+    K_C_class, stiffness_class
+        Definiteness of K_C and of K_θ − K_C over the yielding coordinates.
+    softening, stiffening
+        Share of the joint stiffness that K_C takes in its softest, and adds in its stiffest
+        direction.
+    """
+
+    links: Array
+    deflected: Array | None
+    position: Array
+    rotation: Array
+    translation: dict[str, PrincipalAxes]
+    rotation_axes: dict[str, PrincipalAxes]
+    deflection: dict[str, Array]
+    K_C_class: str
+    stiffness_class: str
+    softening: float
+    stiffening: float
+
+    @property
+    def critical_factor(self) -> float:
+        """Factor on the load at which K_θ − K_C loses definiteness; infinite if it never does."""
+        return 1.0 / self.softening if self.softening > 0.0 else float("inf")
+
+
+def compute_frame(robot: Robot, tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
+    """Kinematics, compliance, deflection and verdicts of one request."""
+    z = elastic.coordinates(request.a)
+    mechanism, C = elastic.mechanism, elastic.compliance
+    start = mechanism.screws(z, request.point)
+    J = start.jacobian
+    K_C = complementary_stiffness(start, request.wrench)
+    loaded = np.linalg.solve(np.eye(len(z)) - C @ K_C, C)  # (K_θ − K_C)⁻¹, rigid ones included
+    torques = start.torques(request.wrench)
+    deflection = {
+        "conventional": J[:3] @ C @ torques,
+        "enhanced": J[:3] @ loaded @ torques,
+    }
+    links = tree.place(robot.coupling.motion(request.a).q)
+    deflected: Array | None = None
+    try:
+        rest = equilibrium(mechanism, z, request.wrench, elastic.law, point=request.point)
+    except Refusal:
+        pass  # the page says so; every other number still holds
+    else:
+        deflection["equilibrium"] = rest.screws.position - start.position
+        exaggerated = z + request.exaggeration * (rest.z - z)
+        deflected = place_elastic(robot, tree, elastic, exaggerated)
+    soft = elastic.soft
+    K_C_soft = symmetric_part(K_C[np.ix_(soft, soft)])
+    root = np.linalg.cholesky(C[np.ix_(soft, soft)]) if soft.any() else np.zeros((0, 0))
+    shares = np.linalg.eigvalsh(root.T @ K_C_soft @ root) if soft.any() else np.zeros(1)
+    K_theta = np.linalg.inv(C[np.ix_(soft, soft)])
+    return Frame(
+        links=links,
+        deflected=deflected,
+        position=start.position,
+        rotation=start.rotation,
+        translation={
+            "conventional": _axes(J[:3], C),
+            "enhanced": _axes(J[:3], loaded),
+        },
+        rotation_axes={
+            "conventional": _axes(J[3:], C),
+            "enhanced": _axes(J[3:], loaded),
+        },
+        deflection=deflection,
+        K_C_class=definiteness_of(K_C_soft).value if K_C_soft.any() else "zero",
+        stiffness_class=definiteness_of(K_theta - K_C_soft).value,
+        softening=max(0.0, float(shares[-1])),
+        stiffening=max(0.0, -float(shares[0])),
+    )
+
+
+def place_elastic(robot: Robot, tree: LinkTree, elastic: Elastic, z: Array) -> Array:
+    """(L, 4, 4) links when virtual joints move too: each link rides on its joint of the chain."""
+    q = robot.coupling.motion(z[: robot.n]).q
+    links = tree.place(q)
+    if not elastic.n_virtual:
+        return links
+    chain = elastic.mechanism.chain
+    values = np.concatenate([q, z[robot.n :]])[chain.coordinates]
+    after = np.empty((chain.m, 4, 4))
+    T = np.eye(4)
+    for k in range(chain.m):
+        T = T @ chain.placements[k]
+        T = T @ joint_motion(chain.axes[k], bool(chain.revolute[k]), float(values[k]))
+        after[k] = T
+    carrier = {joint: k for k, joint in enumerate(tree.joints)}
+    moved = links.copy()
+    for k, anchor in enumerate(tree.anchors(chain.names)):
+        if anchor >= 0:
+            rigid = links[carrier[chain.names[anchor]]]
+            moved[k] = after[anchor] @ np.linalg.inv(rigid) @ links[k]
+    return moved
+
+
+def _axes(J: Array, compliance: Array) -> PrincipalAxes:
+    values, vectors = np.linalg.eigh(symmetric_part(J @ compliance @ J.T))
+    return PrincipalAxes(values[::-1], vectors[:, ::-1].T)

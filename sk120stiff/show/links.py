@@ -1,0 +1,126 @@
+"""Where every link of a robot is: the whole tree, off the chain to the tool too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot import Robot
+from sk120stiff.robot.chain import skew
+
+Array = NDArray[np.float64]
+FIXED, REVOLUTE, PRISMATIC = 0, 1, 2
+_KINDS = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
+
+
+@dataclass(frozen=True, eq=False)
+class LinkTree:
+    """Constants of all joints, one per link but the root, parents before children.
+
+    Attributes
+    ----------
+    names
+        (L,) link names; the root first.
+    joints
+        (L,) name of the joint that carries each link; empty for the root.
+    parents
+        (L,) index of the parent link, -1 for the root.
+    origins
+        (L, 4, 4) joint placement in the parent link [m].
+    axes
+        (L, 3) unit joint axis.
+    kinds
+        (L,) `FIXED`, `REVOLUTE` or `PRISMATIC`.
+    coordinates
+        (L,) index into the joint vector q, -1 for a fixed joint.
+    base
+        Index of the link that is the base frame.
+    """
+
+    names: tuple[str, ...]
+    joints: tuple[str, ...]
+    parents: NDArray[np.intp]
+    origins: Array
+    axes: Array
+    kinds: NDArray[np.intp]
+    coordinates: NDArray[np.intp]
+    base: int
+
+    def place(self, q: Array) -> Array:
+        """(L, 4, 4) T_base_link of every link for joint values q (m,) [rad or m]."""
+        T = np.empty((len(self.names), 4, 4))
+        for k, parent in enumerate(self.parents):
+            if parent < 0:
+                T[k] = np.eye(4)
+                continue
+            T[k] = T[parent] @ self.origins[k]
+            if self.kinds[k] != FIXED:
+                T[k] = T[k] @ joint_motion(
+                    self.axes[k], self.kinds[k] == REVOLUTE, float(q[self.coordinates[k]])
+                )
+        return np.asarray(np.linalg.inv(T[self.base]) @ T)
+
+    def anchors(self, chain_joints: tuple[str, ...]) -> NDArray[np.intp]:
+        """(L,) for each link the last joint of a chain that moves it, -1 where none does."""
+        index = {name: k for k, name in enumerate(chain_joints)}
+        found = np.full(len(self.names), -1, dtype=np.intp)
+        for k, parent in enumerate(self.parents):
+            if parent >= 0:
+                found[k] = index.get(self.joints[k], int(found[parent]))
+        return found
+
+
+def joint_motion(axis: Array, revolute: bool, value: float) -> Array:
+    """(4, 4) motion of a joint by `value` [rad or m] about or along `axis` (3,)."""
+    T = np.eye(4)
+    if revolute:
+        cross = skew(axis)
+        T[:3, :3] += np.sin(value) * cross + (1.0 - np.cos(value)) * (cross @ cross)
+    else:
+        T[:3, 3] = value * axis
+    return T
+
+
+def link_tree(robot: Robot) -> LinkTree:
+    """All links of a robot, in the joint vector of its coupling."""
+    carried = {joint.child: joint for joint in robot.document.joints}
+    children: dict[str, list[str]] = {}
+    for joint in robot.document.joints:
+        children.setdefault(joint.parent, []).append(joint.child)
+    names: list[str] = []
+    waiting = [robot.document.root]
+    while waiting:
+        name = waiting.pop(0)
+        names.append(name)
+        waiting.extend(children.get(name, []))
+    index = {name: k for k, name in enumerate(names)}
+    coordinate = {name: k for k, name in enumerate(robot.tree.joint_names)}
+    parents = np.full(len(names), -1, dtype=np.intp)
+    origins = np.tile(np.eye(4), (len(names), 1, 1))
+    axes = np.tile(np.array([0.0, 0.0, 1.0]), (len(names), 1))
+    kinds = np.zeros(len(names), dtype=np.intp)
+    coordinates = np.full(len(names), -1, dtype=np.intp)
+    joints = [""] * len(names)
+    for k, name in enumerate(names):
+        if name not in carried:
+            continue
+        spec = carried[name]
+        joints[k] = spec.name
+        parents[k] = index[spec.parent]
+        origins[k] = spec.origin
+        if spec.name in coordinate:
+            axes[k] = spec.axis
+            kinds[k] = _KINDS[spec.type]
+            coordinates[k] = coordinate[spec.name]
+    return LinkTree(
+        names=tuple(names),
+        joints=tuple(joints),
+        parents=parents,
+        origins=origins,
+        axes=axes,
+        kinds=kinds,
+        coordinates=coordinates,
+        base=index[robot.base_frame],
+    )

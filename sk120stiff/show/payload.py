@@ -1,0 +1,256 @@
+"""A scene as the JSON that the page is made from."""
+
+from __future__ import annotations
+
+import base64
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.robot import LinearCoupling
+from sk120stiff.show import palette
+from sk120stiff.show.bodies import bodies_of
+from sk120stiff.show.frame import Frame, PrincipalAxes, Request, compute_frame
+from sk120stiff.show.scene import Reading, Scene, ScenePose
+from sk120stiff.show.shapes import Body, Mesh, reach_of
+
+Array = NDArray[np.float64]
+SAMPLES = 64  # poses from which the scale of the ellipsoids is taken
+DEFAULT_LOAD = 1000.0  # N, upper end of the load sliders without data
+
+
+def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
+    """Everything the page needs, in plain containers; matrices are (16,), column by column.
+
+    Raises
+    ------
+    InputError
+        A page without a server is wanted for a robot whose joints are coupled nonlinearly.
+    """
+    robot, elastic, tree = scene.robot, scene.elastic, scene.tree
+    meshes: list[Mesh] = []
+    bodies = [_body(body, meshes) for body in bodies_of(robot, tree)]
+    frame = scene.frame or robot.tool_frame
+    return {
+        "mode": "live" if live else "static",
+        "title": scene.title or robot.name,
+        "subtitle": scene.subtitle,
+        "robot": robot.name,
+        "base": robot.base_frame,
+        "frame": frame,
+        "elastic": {"label": elastic.label, "assumed": elastic.assumed},
+        "joints": _joints(scene),
+        "links": list(tree.names),
+        "bodies": bodies,
+        "meshes": [_mesh(mesh) for mesh in meshes],
+        "kinematics": None if live else _kinematics(scene),
+        "poses": [_pose(pose) for pose in scene.poses],
+        "models": list(scene.models),
+        "start": {
+            "a": _list(scene.first_pose),
+            "wrench": _list(scene.first_load),
+            "point": _list(np.asarray(scene.point, dtype=float)),
+        },
+        "scale": _scale(scene),
+        "colours": {
+            name.lower(): getattr(palette, name) for name in vars(palette) if name.isupper()
+        },
+        "command": {
+            "robot": scene.robot_argument or robot.source,
+            "model": scene.model_argument,
+        },
+    }
+
+
+def frame_payload(frame: Frame) -> dict[str, Any]:
+    """A computed frame in the form in which the page's own engine returns it."""
+    return {
+        "links": _matrices(frame.links),
+        "deflected": None if frame.deflected is None else _matrices(frame.deflected),
+        "position": _list(frame.position),
+        "rotation": _list(frame.rotation.T),
+        "translation": {name: _axes(axes) for name, axes in frame.translation.items()},
+        "rotationAxes": {name: _axes(axes) for name, axes in frame.rotation_axes.items()},
+        "deflection": {name: _list(value) for name, value in frame.deflection.items()},
+        "classes": {"K_C": frame.K_C_class, "stiffness": frame.stiffness_class},
+        "softening": frame.softening,
+        "stiffening": frame.stiffening,
+    }
+
+
+def _axes(axes: PrincipalAxes) -> dict[str, Any]:
+    return {"values": _list(axes.values), "directions": [_list(row) for row in axes.directions]}
+
+
+def _joints(scene: Scene) -> list[dict[str, Any]]:
+    robot = scene.robot
+    joints = []
+    for name, lower, upper, slides in zip(
+        robot.actuated, robot.lower, robot.upper, robot.prismatic, strict=True
+    ):
+        limited = math.isfinite(lower) and math.isfinite(upper)
+        span = 1.0 if slides else math.pi
+        joints.append(
+            {
+                "name": name,
+                "slides": slides,
+                "limited": limited,
+                "lower": float(lower) if math.isfinite(lower) else -span,
+                "upper": float(upper) if math.isfinite(upper) else span,
+            }
+        )
+    return joints
+
+
+def _kinematics(scene: Scene) -> dict[str, Any]:
+    robot, elastic, tree = scene.robot, scene.elastic, scene.tree
+    coupling = robot.coupling
+    if not isinstance(coupling, LinearCoupling):
+        raise InputError(
+            "the joints of this robot are coupled nonlinearly, which a page without a server "
+            "cannot follow",
+            where=robot.name,
+            remedy="Use the live view: sk120stiff view.",
+        )
+    chain = elastic.mechanism.chain
+    return {
+        "A": [_list(row) for row in coupling.A],
+        "b": _list(coupling.b),
+        "compliance": [_list(row) for row in elastic.compliance],
+        "chain": {
+            "placements": _matrices(chain.placements),
+            "axes": [_list(axis) for axis in chain.axes],
+            "revolute": [bool(turns) for turns in chain.revolute],
+            "coordinates": [int(k) for k in chain.coordinates],
+            "carriers": [
+                tree.joints.index(name) if name in tree.joints else -1 for name in chain.names
+            ],
+        },
+        "tree": {
+            "parents": [int(k) for k in tree.parents],
+            "origins": _matrices(tree.origins),
+            "axes": [_list(axis) for axis in tree.axes],
+            "kinds": [int(k) for k in tree.kinds],
+            "coordinates": [int(k) for k in tree.coordinates],
+            "anchors": [int(k) for k in tree.anchors(chain.names)],
+            "base": tree.base,
+        },
+    }
+
+
+def _scale(scene: Scene) -> dict[str, Any]:
+    """Sizes that stay put while the sliders move, so that a change of stiffness can be seen."""
+    robot = scene.robot
+    reach = reach_of(robot, scene.frame)
+    generator = np.random.default_rng(0)
+    lower = np.where(np.isfinite(robot.lower), robot.lower, -1.0)
+    upper = np.where(np.isfinite(robot.upper), robot.upper, 1.0)
+    poses = [scene.first_pose, *(np.asarray(pose.a) for pose in scene.poses)]
+    poses += list(generator.uniform(lower, upper, (SAMPLES, robot.n)))
+    soft: dict[str, list[float]] = {"translation": [], "rotation": []}
+    stiff: dict[str, list[float]] = {"translation": [], "rotation": []}
+    for a in poses:
+        screws = scene.elastic.mechanism.screws(scene.elastic.coordinates(a), scene.point)
+        for name, J in (("translation", screws.jacobian[:3]), ("rotation", screws.jacobian[3:])):
+            values = np.linalg.eigvalsh(J @ scene.elastic.compliance @ J.T)
+            soft[name].append(float(values[-1]))
+            stiff[name].append(float(values[1]))  # the middle one: no singularity carries it away
+    references = {}
+    for name in ("translation", "rotation"):
+        compliance = float(np.median(soft[name])) or 1.0
+        middle = [value for value in stiff[name] if value > 1e-9 * compliance]
+        references[name] = {
+            "compliance": compliance,
+            "stiffness": 1.0 / float(np.median(middle)) if middle else 1.0 / compliance,
+        }
+    load = [abs(v) for p in scene.poses for r in p.readings for v in np.asarray(r.wrench)[:3]]
+    load += [abs(float(v)) for v in scene.first_load[:3]]
+    return {
+        "reach": reach,
+        "references": references,
+        "load": max(_round_up(1.2 * max(load)), 100.0) if any(load) else DEFAULT_LOAD,
+        "exaggeration": _exaggeration(scene, reach),
+    }
+
+
+def _exaggeration(scene: Scene, reach: float) -> float:
+    """A round factor that makes the largest displacement about a tenth of the arm."""
+    sizes = [
+        float(np.linalg.norm(r.measured)) for p in scene.poses for r in p.readings
+        if r.measured is not None
+    ]  # fmt: skip
+    if not sizes:
+        request = Request(scene.first_pose, scene.first_load, np.asarray(scene.point))
+        frame = compute_frame(scene.robot, scene.tree, scene.elastic, request)
+        sizes = [float(np.linalg.norm(frame.deflection["conventional"]))]
+    largest = max(sizes)
+    if largest < 1e-12:
+        return 100.0
+    return min(max(_round_up(0.1 * reach / largest) / 2.0, 1.0), 10000.0)
+
+
+def _round_up(value: float) -> float:
+    """The next of 1, 2, 5, 10, 20, ..."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(next(step * power for step in (1, 2, 5, 10) if step * power >= value * 0.999999))
+
+
+def _pose(pose: ScenePose) -> dict[str, Any]:
+    return {
+        "label": pose.label,
+        "a": _list(np.asarray(pose.a, dtype=float)),
+        "readings": [_reading(reading, k) for k, reading in enumerate(pose.readings)],
+    }
+
+
+def _reading(reading: Reading, k: int) -> dict[str, Any]:
+    return {
+        "label": reading.label or f"reading {k + 1}",
+        "wrench": _list(np.asarray(reading.wrench, dtype=float)),
+        "measured": None
+        if reading.measured is None
+        else _list(np.asarray(reading.measured, dtype=float)),
+        "predicted": {
+            name: _list(np.asarray(value, dtype=float)) for name, value in reading.predicted.items()
+        },
+    }
+
+
+def _body(body: Body, meshes: list[Mesh]) -> dict[str, Any]:
+    shown: dict[str, Any] = {
+        "link": body.link,
+        "matrix": _list(body.placement.T, digits=7),
+        "kind": body.kind,
+        "size": [float(value) for value in body.size],
+        "colour": [round(float(value), 4) for value in body.colour],
+    }
+    if body.mesh is not None:
+        known = next((k for k, mesh in enumerate(meshes) if mesh is body.mesh), None)
+        if known is None:
+            known = len(meshes)
+            meshes.append(body.mesh)
+        shown["mesh"] = known
+    return shown
+
+
+def _mesh(mesh: Mesh) -> dict[str, str]:
+    return {
+        "vertices": _binary(mesh.vertices.astype("<f4")),
+        "faces": _binary(mesh.faces.astype("<u4")),
+    }
+
+
+def _binary(array: NDArray[Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
+
+
+def _matrices(many: Array) -> list[list[float]]:
+    return [_list(T.T) for T in many]
+
+
+def _list(array: Array, digits: int | None = None) -> list[float]:
+    flat = np.asarray(array, dtype=float).ravel()
+    return [float(v) for v in (flat if digits is None else np.round(flat, digits))]

@@ -1,0 +1,147 @@
+"""A scene: what is to be seen, whatever it was made from and wherever it will be shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.robot import Robot
+from sk120stiff.show.elastic import Elastic
+from sk120stiff.show.links import LinkTree, link_tree
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """One load at a pose, with what was measured and what models say.
+
+    Attributes
+    ----------
+    wrench
+        (6,) force [N] and moment [N·m] at the point, base axes.
+    measured
+        (3,) displacement of the point, base axes [m], or None.
+    predicted
+        Model name → (3,) displacement [m]; the order is before, after, ...
+    label
+        What the reading is called; its number else.
+    """
+
+    wrench: Array
+    measured: Array | None = None
+    predicted: Mapping[str, Array] = field(default_factory=dict)
+    label: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class ScenePose:
+    """A pose of the list: label, (n,) actuated coordinates [rad or m], readings taken there."""
+
+    label: str
+    a: Array
+    readings: Sequence[Reading] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A robot under load, with poses to visit.
+
+    Attributes
+    ----------
+    robot
+        The rigid robot.
+    elastic
+        What yields; see `Elastic.of_springs`.
+    poses
+        Poses of the list, usually those of the data.
+    title, subtitle
+        Headings of the page; the robot's name by default.
+    point
+        (3,) the point, in the frame that `elastic` ends in [m].
+    wrench
+        (6,) load shown at first; that of the first reading by default, else none.
+    a
+        (n,) pose shown at first; the first of the list by default, else all zero.
+    frame
+        Name of the frame that carries the point; the tool frame by default.
+    robot_argument, model_argument
+        How a command line names robot and model, for "copy as command".
+    """
+
+    robot: Robot
+    elastic: Elastic
+    poses: Sequence[ScenePose] = ()
+    title: str = ""
+    subtitle: str = ""
+    point: Array = field(default_factory=lambda: np.zeros(3))
+    wrench: Array | None = None
+    a: Array | None = None
+    frame: str | None = None
+    robot_argument: str = ""
+    model_argument: str = ""
+
+    def __post_init__(self) -> None:
+        n = self.robot.n
+        if self.elastic.mechanism.coupling.n != n:
+            raise InputError(f"the springs belong to another robot than {self.robot.name}")
+        _check("the point", self.point, 3)
+        for what, values, size in (("the load", self.wrench, 6), ("the pose", self.a, n)):
+            if values is not None:
+                _check(what, values, size)
+        for pose in self.poses:
+            _check(f"pose {pose.label!r}", pose.a, n)
+            for reading in pose.readings:
+                _check(f"a load of pose {pose.label!r}", reading.wrench, 6)
+                shown = [reading.measured, *reading.predicted.values()]
+                for values in shown:
+                    if values is not None:
+                        _check(f"a displacement of pose {pose.label!r}", values, 3)
+
+    @cached_property
+    def tree(self) -> LinkTree:
+        """All links of the robot."""
+        return link_tree(self.robot)
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Names of all models that predict a reading, in order of appearance."""
+        return tuple(
+            dict.fromkeys(m for pose in self.poses for r in pose.readings for m in r.predicted)
+        )
+
+    @property
+    def first_pose(self) -> Array:
+        """(n,) coordinates to start with, within the limits."""
+        if self.a is not None:
+            return np.asarray(self.a, dtype=float)
+        if self.poses:
+            return np.asarray(self.poses[0].a, dtype=float)
+        return np.clip(np.zeros(self.robot.n), self.robot.lower, self.robot.upper)
+
+    @property
+    def first_load(self) -> Array:
+        """(6,) load to start with."""
+        if self.wrench is not None:
+            return np.asarray(self.wrench, dtype=float)
+        if self.poses and self.poses[0].readings:
+            return np.asarray(self.poses[0].readings[-1].wrench, dtype=float)
+        return np.zeros(6)
+
+    def _repr_html_(self) -> str:
+        from sk120stiff.show.static import notebook_html
+
+        return notebook_html(self)
+
+
+def _check(what: str, values: object, size: int) -> None:
+    array = np.asarray(values, dtype=float)
+    if array.shape != (size,):
+        raise InputError(f"{what} has shape {array.shape}, not ({size},)")
+    if not np.isfinite(array).all():
+        raise InputError(f"{what} holds a number that is not finite")

@@ -1,0 +1,109 @@
+"""What a robot looks like: its own visuals, or clean capsules along its joints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot import Robot
+from sk120stiff.show.links import FIXED, LinkTree
+
+Array = NDArray[np.float64]
+Colour = tuple[float, float, float, float]
+
+PLAIN: Colour = (0.80, 0.83, 0.86, 1.0)  # visuals that state no colour
+LIMB: Colour = (0.87, 0.89, 0.91, 1.0)
+HINGE: Colour = (0.16, 0.36, 0.52, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles: (v, 3) vertices [m] and (f, 3) indices."""
+
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A shape fixed to a link.
+
+    Attributes
+    ----------
+    link
+        Index of the link in the `LinkTree`.
+    placement
+        (4, 4) T_link_body [m].
+    kind
+        ``box``, ``cylinder``, ``sphere``, ``capsule`` (both along z) or ``mesh``.
+    size
+        box: x, y, z; cylinder, capsule: radius, length; sphere: radius; mesh: scale x, y, z.
+    colour
+        Red, green, blue, opacity in 0..1.
+    mesh
+        Triangles of a mesh.
+    """
+
+    link: int
+    placement: Array
+    kind: str
+    size: tuple[float, ...]
+    colour: Colour
+    mesh: Mesh | None = None
+
+
+def reach_of(robot: Robot, frame: str | None = None) -> float:
+    """Length of the arm: the sum of the offsets between its joints [m], never zero."""
+    chain = robot.mechanism(frame).chain
+    lengths = np.linalg.norm(chain.placements[:, :3, 3], axis=1)
+    slides = [
+        float(np.max(np.abs([lo, up]), initial=0.0, where=np.isfinite([lo, up])))
+        for lo, up, slide in zip(robot.lower, robot.upper, robot.prismatic, strict=True)
+        if slide
+    ]
+    return max(float(lengths.sum()) + sum(slides), 1e-3)
+
+
+def capsules(tree: LinkTree, reach: float, links: Sequence[int] | None = None) -> list[Body]:
+    """Limbs from joint to joint and a hinge at every joint, thinner towards the end.
+
+    Parameters
+    ----------
+    links
+        Links to draw; all of them by default.
+    """
+    depth = np.zeros(len(tree.names), dtype=int)
+    for k, parent in enumerate(tree.parents):
+        if parent >= 0:
+            depth[k] = depth[parent] + (tree.kinds[k] != FIXED)
+    deepest = max(1, int(depth.max()))
+    chosen = set(range(len(tree.names)) if links is None else links)
+    bodies: list[Body] = []
+    for k, parent in enumerate(tree.parents):
+        radius = reach * (0.042 - 0.024 * depth[k] / deepest)
+        if parent >= 0 and parent in chosen:
+            end = tree.origins[k, :3, 3]
+            length = float(np.linalg.norm(end))
+            thick = reach * (0.042 - 0.024 * depth[parent] / deepest)
+            if length > 0.25 * thick:
+                placement = _along(end)
+                placement[:3, 3] = 0.5 * end
+                bodies.append(Body(int(parent), placement, "capsule", (0.82 * thick, length), LIMB))
+        if k in chosen and tree.kinds[k] != FIXED:
+            placement = _along(tree.axes[k])
+            bodies.append(Body(k, placement, "cylinder", (1.12 * radius, 2.3 * radius), HINGE))
+    return bodies
+
+
+def _along(direction: Array) -> Array:
+    """(4, 4) rotation that turns z into a direction."""
+    z = direction / np.linalg.norm(direction)
+    other = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    x = np.cross(other, z)
+    x /= np.linalg.norm(x)
+    T = np.eye(4)
+    T[:3, 0], T[:3, 1], T[:3, 2] = x, np.cross(z, x), z
+    return T
