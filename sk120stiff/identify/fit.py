@@ -12,8 +12,7 @@ from scipy import stats
 from sk120stiff.errors import InputError
 from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.solvers import Method, minimise
-from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.noise import NoiseModel
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import Model, Parameter
 from sk120stiff.robot.coupling import Array
 
@@ -36,8 +35,6 @@ class Fit:
         (P_free,) estimates that lie on a physical bound.
     iterations
         Evaluations of the model.
-    sigma_stated
-        True if the noise's size was stated; else it is estimated from the residual.
     """
 
     problem: Problem
@@ -47,7 +44,6 @@ class Fit:
     jacobian: Array
     at_bound: NDArray[np.bool_]
     iterations: int
-    sigma_stated: bool
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -58,6 +54,11 @@ class Fit:
     def gap(self) -> Array:
         """(N, 3) measured minus predicted [m]."""
         return self.problem.gap(self.x)
+
+    @property
+    def sigma_stated(self) -> bool:
+        """Was the noise's size known? Else it is estimated from the residual."""
+        return self.problem.noise.stated
 
     @property
     def rms(self) -> float:
@@ -171,11 +172,8 @@ def fit(
     Refusal
         The solver failed, or no equilibrium exists.
     """
-    from sk120stiff.identify.noise import default_noise  # noqa: PLC0415
-
     used = measurements.masked()
-    stated = noise is not None or used.noise.sigma is not None or used.sigma is not None
-    problem = Problem(model, used, noise or default_noise(used))
+    problem = Problem(model, used, noise or candidates(used)[0])
     if 3 * used.n_readings < len(problem.free):
         raise InputError(
             f"{len(problem.free)} parameters cannot be estimated from {used.n_readings} readings "
@@ -183,10 +181,10 @@ def fit(
             where=str(used.path or "measurements"),
             remedy="Measure more poses, or fix parameters in the model (free: false).",
         )
-    return solve(problem, method=method, sigma_stated=stated)
+    return solve(problem, method=method)
 
 
-def solve(problem: Problem, *, method: Method = "trf", sigma_stated: bool = True) -> Fit:
+def solve(problem: Problem, *, method: Method = "trf") -> Fit:
     """Solve a least-squares problem: first to first order in load, then at exact equilibrium."""
     residual_0, jacobian_0 = problem.first_order
 
@@ -203,7 +201,6 @@ def solve(problem: Problem, *, method: Method = "trf", sigma_stated: bool = True
         jacobian=best.jacobian,
         at_bound=best.at_bound,
         iterations=rough.iterations + best.iterations,
-        sigma_stated=sigma_stated,
     )
     return _with_model(found)
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.effects import Situation, situation_of
 from sk120stiff.errors import InputError
-from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.noise import NoiseModel, Whitener
+from sk120stiff.measurements import Measurements, NoiseModel, Whitener
 from sk120stiff.model import Model
 from sk120stiff.robot.coupling import Array
 
