@@ -12,7 +12,9 @@ from sk120stiff.robot.urdf.document import (
 )
 from sk120stiff.robot.urdf.frames import default_frames
 from sk120stiff.robot.urdf.native import CapturedText, captured_stderr
+from sk120stiff.robot.urdf.packages import resolve
 from sk120stiff.robot.urdf.reading import read_urdf
+from sk120stiff.robot.urdf.suspicions import locked_on_way, suspicions
 
 __all__ = [
     "CapturedText",
@@ -26,5 +28,8 @@ __all__ = [
     "VisualSpec",
     "captured_stderr",
     "default_frames",
+    "locked_on_way",
     "read_urdf",
+    "resolve",
+    "suspicions",
 ]

@@ -11,6 +11,10 @@ _FINGER = re.compile(
     r"|(?:^|_)(?:index|middle|ring|pinky|little|mrl)(?:_|\d|$)",
     re.IGNORECASE,
 )
+_SENSOR = re.compile(
+    r"camera|optical|sensor|imu|lidar|laser|depth|marker|aruco|inertial|collision|visual",
+    re.IGNORECASE,
+)
 # What robot makers call the frame to work with, best first.
 _TOOL_NAMES = tuple(
     re.compile(pattern, re.IGNORECASE)
@@ -28,15 +32,17 @@ _TOOL_NAMES = tuple(
 def default_frames(document: UrdfDocument) -> tuple[str, str, tuple[str, ...]]:
     """Base frame, tool frame, and why, in sentences.
 
-    The base is the root. The tool lies behind the most moving joints; joints of fingers and
-    grippers do not count, nor do mimic joints. Among the links that those joints carry rigidly, a
-    usual name decides (`tool0`, `tcp`, `tool`, `flange`, `ee_link`, ...), else the outermost link;
-    between branches of equal length the first one of the file.
+    The base is the root. The tool lies behind the most moving joints; fingers and grippers (known
+    by name, or as jaws that slide side by side) do not count, nor do mimic joints. Among the links
+    that those joints carry rigidly, a usual name decides (`tool0`, `tcp`, `tool`, `flange`,
+    `ee_link`, ...), else the outermost link that is no sensor; between branches of equal length
+    the first one of the file.
     """
     children: dict[str, list[JointSpec]] = {}
     for joint in document.joints:
         children.setdefault(joint.parent, []).append(joint)
     fingers = {joint.name for joint in document.moving_joints if _is_finger(joint)}
+    fingers |= _sliding_pairs(document, children)
     if not any(j.mimic is None and j.name not in fingers for j in document.moving_joints):
         fingers = set()  # the robot is a gripper: then its fingers are the arm
     moving, level, order = _walk(document, children, fingers)
@@ -47,6 +53,7 @@ def default_frames(document: UrdfDocument) -> tuple[str, str, tuple[str, ...]]:
     if tool is None:
         branch = _branch(carried, {joint.child: joint for joint in document.joints})
         leaves = [link for link in branch if not _inner(link, children, fingers)] or branch
+        leaves = [link for link in leaves if not _SENSOR.search(link)] or branch
         tool = max(leaves, key=lambda link: level[link])
         why = "the outermost link" if longest else "the root, because no joint moves"
         others = [link for link in carried if link not in branch]
@@ -63,6 +70,20 @@ def _is_finger(joint: JointSpec) -> bool:
     return bool(
         _FINGER.search(joint.name) or (joint.type == "prismatic" and _FINGER.search(joint.child))
     )
+
+
+def _sliding_pairs(document: UrdfDocument, children: dict[str, list[JointSpec]]) -> set[str]:
+    """Joints that slide side by side on one link and carry nothing that moves: jaws."""
+    jaws: set[str] = set()
+    for joints in children.values():
+        ends = [
+            joint.name
+            for joint in joints
+            if joint.type == "prismatic" and not children.get(joint.child)
+        ]
+        if len(ends) > 1 and len(document.moving_joints) > len(ends):
+            jaws.update(ends)
+    return jaws
 
 
 def _walk(

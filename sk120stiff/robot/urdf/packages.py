@@ -71,7 +71,7 @@ def _resolve(address: str, path: Path | None, folders: Sequence[Path]) -> tuple[
 
 
 def _in_package(rest: str, folders: Sequence[Path]) -> tuple[Path | None, str]:
-    name, _, inside = unquote(rest).replace("\\", "/").partition("/")
+    name, _, inside = unquote(rest).replace("\\", "/").lstrip("/").partition("/")
     inside = os.path.normpath(inside) if inside else ""
     if name in ("", ".", "..") or inside.startswith(("..", "/")):
         return None, "the address leaves its package and is not followed"

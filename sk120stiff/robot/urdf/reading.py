@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.robot.urdf.clean import clean_xml
 from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument, VisualSpec
 from sk120stiff.robot.urdf.findings import Notebook, at
@@ -61,14 +61,37 @@ def read_urdf(
     notes = Notebook(raw.label)
     folders = folders_around(raw.path, package_folders)
     text = decode(raw.data, notes)
-    if not (raw.is_xacro or uses_xacro(text)):
+    if raw.is_xacro:
+        return _expanded(raw, text, folders, xacro_arguments, notes)
+    if uses_xacro(text):
         try:
-            return _document(parse_robot(text, notes), raw, folders, notes)
-        except InputError:
-            if not has_substitutions(text):
-                raise
-        notes = Notebook(raw.label)  # $(optenv ...) in a plain URDF: let xacro put in the values
-    text = expand(raw, text, folders, xacro_arguments or {}, notes)
+            return _expanded(raw, text, folders, xacro_arguments, notes)
+        except MissingPart:
+            raise
+        except InputError as refusal:  # a URDF that somebody expanded by hand
+            notes = Notebook(raw.label)
+            notes.warn("xacro_skipped", "", f"xacro elements were ignored: {refusal.what}")
+            try:
+                return _document(parse_robot(text, notes), raw, folders, notes)
+            except InputError:
+                raise refusal from None
+    try:
+        return _document(parse_robot(text, notes), raw, folders, notes)
+    except InputError:
+        if not has_substitutions(text):
+            raise
+    # $(optenv ...) in a plain URDF: let xacro put in the values
+    return _expanded(raw, text, folders, xacro_arguments, Notebook(raw.label))
+
+
+def _expanded(
+    raw: RawSource,
+    text: str,
+    folders: tuple[Path, ...],
+    arguments: Mapping[str, str] | None,
+    notes: Notebook,
+) -> UrdfDocument:
+    text = expand(raw, text, folders, arguments or {}, notes)
     notes.source = f"{raw.label} (expanded)"
     return _document(parse_robot(text, notes), raw, folders, notes)
 
