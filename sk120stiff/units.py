@@ -279,7 +279,7 @@ def _quantity(text: str) -> tuple[float, tuple[str, ...]] | None:
     registry = _registry()
     try:
         size = registry.Quantity(1.0, registry.parse_units(plain)).to_root_units()
-    except (pint.UndefinedUnitError, OverflowError):
+    except (pint.UndefinedUnitError, ValueError, OverflowError):
         return None
     dimensions = tuple(sorted(f"{name}:{power:g}" for name, power in size.dimensionality.items()))
     return float(np.asarray(size.magnitude)), dimensions

@@ -1,6 +1,7 @@
 """Measurements: what was pressed, what moved, and how well that is known."""
 
 from sk120stiff.measurements.data import Measurements, NoiseStatement
+from sk120stiff.measurements.joining import join_measurements
 from sk120stiff.measurements.noise import NoiseModel, candidates
 from sk120stiff.measurements.reading import read_measurements
 from sk120stiff.measurements.repeats import pure_error
@@ -13,6 +14,7 @@ __all__ = [
     "NoiseStatement",
     "Whitener",
     "candidates",
+    "join_measurements",
     "pure_error",
     "read_measurements",
     "write_measurements",

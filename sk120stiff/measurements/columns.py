@@ -140,7 +140,7 @@ def _refuse_misspelt(table: Table, name: str, actuated: tuple[str, ...]) -> None
     if name in actuated or (bare not in _WORDS and table.column_units[name] is not None):
         return
     longer = [word for word in _WORDS if len(word) > 3]
-    close = [bare] if bare in _WORDS else get_close_matches(bare, longer, n=1, cutoff=0.85)
+    close = [bare] if bare in _WORDS else get_close_matches(bare, longer, n=1, cutoff=0.8)
     if close and close[0] not in table.headers:
         raise InputError(
             f"the column {table.headers[name]!r} is not known (did you mean {close[0]!r}?)",

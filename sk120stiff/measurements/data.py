@@ -24,7 +24,7 @@ Zero = Literal["shared", "separate", "unknown"]
 
 _ARTICLE = {"angle": "an angle", "length": "a length"}
 # Row fields, cut together by `select`.
-_PER_ROW = (
+PER_ROW = (
     "pose", "joints", "wrench", "displacement", "sigma", "order", "time", "branch", "repeat",
     "use", "zero_group", "zero_count", "zero_order", "zero_time", "line",
 )  # fmt: skip
@@ -230,7 +230,7 @@ class Measurements:
         chosen = np.asarray(rows)
         index = np.flatnonzero(chosen) if chosen.dtype == bool else chosen.astype(np.int64)
         changes: dict[str, Any] = {}
-        for name in _PER_ROW:
+        for name in PER_ROW:
             value = getattr(self, name)
             if isinstance(value, tuple):
                 changes[name] = tuple(value[i] for i in index)

@@ -63,7 +63,7 @@ class Table:
             values = np.array([float(cell) for cell in cells])
         except ValueError:
             values = np.full(len(cells), np.nan)
-        if np.all(np.isfinite(values)) and not any("_" in cell for cell in cells):
+        if np.all(np.isfinite(values)) and "_" not in "".join(cells):
             return values
         for row, cell in enumerate(cells):
             if cell == "" and allow_blank:
