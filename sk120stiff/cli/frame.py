@@ -111,14 +111,22 @@ def emit(answer: Answer, *, as_json: bool) -> None:
     if as_json:
         print(as_json_text(answer.document))
     elif answer.parts:
-        from rich.console import Console
-
-        console = Console(highlight=False, markup=False, emoji=False)
-        if not console.is_terminal:  # a pipe has no width: nothing is to be cut off
-            console.width = 200
-        for part in answer.parts:
-            console.print(part, soft_wrap=isinstance(part, str))
+        print(_text(answer.parts))
     sys.stdout.flush()
+
+
+def _text(parts: Sequence[object]) -> str:
+    from rich.console import Console
+
+    console = Console(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal:  # a pipe has no width: nothing is to be cut off
+        console.width = 200
+    with console.capture() as capture:
+        for before, part in zip([None, *parts], parts, strict=False):
+            if before is not None and not (isinstance(before, str) and isinstance(part, str)):
+                console.print()  # a table stands apart
+            console.print(part, soft_wrap=isinstance(part, str))
+    return "\n".join(line.rstrip() for line in capture.get().splitlines())
 
 
 def note(text: str) -> None:

@@ -22,7 +22,7 @@ from rich.text import Text
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Table:
     """A table whose first column is text and whose other columns are right-aligned numbers."""
-    made = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    made = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False)
     for k, name in enumerate(columns):
         made.add_column(name, justify="left" if k == 0 else "right", overflow="fold")
     for row in rows:

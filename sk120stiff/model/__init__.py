@@ -8,15 +8,18 @@ from sk120stiff.model.file import (
     read_model,
     write_model,
 )
+from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
 from sk120stiff.model.model import Model, Parameter, joint_spring_model
 
 __all__ = [
     "Assembly",
+    "LoadedStiffness",
     "Model",
     "Parameter",
     "Solution",
     "base_model",
     "joint_spring_model",
+    "loaded_stiffness",
     "model_from_text",
     "model_text",
     "read_model",

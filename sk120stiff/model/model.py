@@ -232,16 +232,19 @@ class Model:
 
         Instruments have no say here: the model's load and reading errors are left out.
         """
-        physical = replace(
+        situation = situation_of_load(
+            self.robot, a, wrench, point=point, force_point=force_point
+        )
+        return self.physical().predict(situation)
+
+    def physical(self) -> Model:
+        """The arm alone: the model without load and reading errors."""
+        return replace(
             self,
             parameters=tuple(
                 p for p in self.parameters if not isinstance(p.effect, LoadError | ReadingError)
             ),
         )
-        situation = situation_of_load(
-            self.robot, a, wrench, point=point, force_point=force_point
-        )
-        return physical.predict(situation)
 
     def joint_stiffness(self) -> Array:
         """(n,) springs of the actuated joints [N·m/rad or N/m]; infinite where rigid."""

@@ -1,0 +1,146 @@
+"""`sk120stiff stiffness ROBOT --pose ... --wrench ...`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import open_model, open_robot, pose_of, wrench_of
+from sk120stiff.cli.options import (
+    AtOption,
+    BaseOption,
+    ModelOption,
+    PoseOption,
+    RobotArgument,
+    ToolOption,
+    WrenchOption,
+)
+from sk120stiff.cli.tables import table
+from sk120stiff.model import LoadedStiffness, loaded_stiffness
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness import Definiteness
+
+UNITS = {
+    "pose": "rad (m for joints that slide)",
+    "wrench": "N, N*m; [force; moment], base axes",
+    "jacobian": "m/rad, rad/rad; [linear; angular], base axes",
+    "K_theta": "N*m/rad; null: rigid",
+    "K_C": "N*m/rad",
+    "K_X": "N/m; null: in a direction the arm cannot yield",
+    "K_X_6x6": "N/m, N/rad, N*m/rad; null: fewer than six directions yield",
+    "compliance": "m/N, rad/N, rad/(N*m)",
+    "principal_stiffness": "N/m; null: rigid",
+    "deflection": "m; null: no equilibrium exists",
+    "critical_load_factor": "1; null: this load is never critical",
+}
+
+
+def command(
+    robot: RobotArgument,
+    pose: PoseOption = None,
+    wrench: WrenchOption = None,
+    model: ModelOption = None,
+    at: AtOption = None,
+    base: BaseOption = None,
+    tool: ToolOption = None,
+) -> Answer:
+    """How stiff the arm is: here, in this direction, under this load.
+
+    Prints the Cartesian stiffness with and without the load's own contribution (K_C), the softest
+    and stiffest directions, whether the arm is stable, and how far the load bends it.
+    """
+    arm = open_robot(robot, base, tool)
+    a, load = pose_of(arm, pose), wrench_of(wrench)
+    frame = at or arm.tool_frame
+    found = loaded_stiffness(open_model(arm, model), a, load, frame)
+    document = {
+        "robot": arm.name,
+        "base_frame": arm.base_frame,
+        "at": frame,
+        "coordinates": found.coordinates,
+        "soft": found.soft,
+        "pose": a,
+        "wrench": load,
+        "jacobian": found.jacobian,
+        "K_theta": found.K_theta,
+        "K_C": found.K_C,
+        "K_X_conventional": _if_it_exists(found.K_X_conventional),
+        "K_X_enhanced": _if_it_exists(found.K_X_enhanced),
+        "K_X_6x6_conventional": _if_it_exists(found.K_X_6x6_conventional),
+        "K_X_6x6_enhanced": _if_it_exists(found.K_X_6x6_enhanced),
+        "compliance": {
+            "conventional": found.compliance_conventional,
+            "enhanced": found.compliance_enhanced,
+        },
+        "principal_stiffness": found.principal,
+        "definiteness": {
+            "K_C": found.definiteness_of_K_C,
+            "K_theta_minus_K_C": found.definiteness_of_K_theta_minus_K_C,
+        },
+        "deflection": {
+            "conventional": found.deflection_conventional,
+            "enhanced": found.deflection_enhanced,
+            "equilibrium": found.deflection_equilibrium,
+        },
+        "critical_load_factor": found.critical_factor,
+        "units": UNITS,
+    }
+    return Answer(document, parts=_parts(arm.name, frame, found, load))
+
+
+def _if_it_exists(matrix: Array) -> Array | None:
+    return matrix if np.isfinite(matrix).all() else None
+
+
+def _parts(name: str, frame: str, found: LoadedStiffness, load: Array) -> list[object]:
+    axes = ("x", "y", "z")
+    stiffness: object = "K_X does not exist here: in a direction the arm cannot yield."
+    if np.isfinite(found.K_X_enhanced).all() and np.isfinite(found.K_X_conventional).all():
+        both = np.hstack([found.K_X_conventional, found.K_X_enhanced])
+        stiffness = table(
+            "Stiffness K_X [N/µm], conventional | enhanced",
+            ["", *axes, *axes],
+            [(axis, *row) for axis, row in zip(axes, both * 1e-6, strict=True)],
+        )
+    principal = table(
+        "Principal stiffness, softest first",
+        ["", "N/µm", *axes],
+        [
+            (str(k + 1), value * 1e-6, *(f"{component:.4f}" for component in direction))
+            for k, (value, direction) in enumerate(
+                zip(found.principal.values, found.principal.directions, strict=True)
+            )
+        ],
+    )
+    deflections = {
+        "conventional": found.deflection_conventional,
+        "enhanced": found.deflection_enhanced,
+        "at equilibrium": found.deflection_equilibrium,
+    }
+    deflection = table(
+        "Deflection [µm]",
+        ["", *axes, "length"],
+        [
+            (label, *(1e6 * component for component in (*x, np.linalg.norm(x))))
+            for label, x in deflections.items()
+        ],
+    )
+    parts: list[object] = [
+        f"{name}, {frame}; what yields: {', '.join(found.soft)}",
+        stiffness,
+        principal,
+    ]
+    if not load.any():
+        return [*parts, "No load was given: K_C is zero and nothing deflects."]
+    classes = (
+        f"K_C is {found.definiteness_of_K_C}, "
+        f"K_theta - K_C is {found.definiteness_of_K_theta_minus_K_C}."
+    )
+    if found.definiteness_of_K_theta_minus_K_C != Definiteness.POSITIVE_DEFINITE:
+        classes += " The arm is not stable under this load."
+    growth = (
+        f"{found.critical_factor:.4g} times this load would make the arm unstable."
+        if np.isfinite(found.critical_factor)
+        else "No multiple of this load makes the arm unstable."
+    )
+    return [*parts, deflection, classes, growth]
