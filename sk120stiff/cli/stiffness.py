@@ -103,10 +103,14 @@ def _parts(name: str, frame: str, found: LoadedStiffness, load: Array) -> list[o
             [(axis, *row) for axis, row in zip(axes, both * 1e-6, strict=True)],
         )
     principal = table(
-        "Principal stiffness, softest first",
+        "Principal stiffness, softest first, unstable last",
         ["", "N/µm", *axes],
         [
-            (str(k + 1), value * 1e-6, *(f"{component:.4f}" for component in direction))
+            (
+                str(k + 1),
+                value * 1e-6,
+                *(f"{round(component, 4) + 0.0:.4f}" for component in direction),
+            )
             for k, (value, direction) in enumerate(
                 zip(found.principal.values, found.principal.directions, strict=True)
             )

@@ -35,7 +35,7 @@ def cell(value: object) -> str:
     if isinstance(value, bool | int | str):
         return str(value)
     if isinstance(value, float) or hasattr(value, "__float__"):
-        return f"{float(value):.5g}"
+        return f"{float(value) + 0.0:.5g}"  # + 0.0 takes the sign off zero
     return str(value)
 
 

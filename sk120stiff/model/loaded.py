@@ -56,7 +56,7 @@ class LoadedStiffness:
         Classes of the symmetric parts, soft coordinates only. Unless the second is positive
         definite, the pose is not stable under this load.
     critical_factor
-        Factor on the load at which K_θ − K_C loses positive definiteness; infinite if there is none.
+        Factor on the load at which K_θ − K_C loses positive definiteness; infinite if none does.
     deflection_conventional, deflection_enhanced, deflection_equilibrium
         (3,) displacement of the point by eq. (8), by eq. (10), and at exact equilibrium [m]. The
         last one is NaN where the springs cannot hold the load.

@@ -22,6 +22,8 @@ class Outcome:
     def document(self) -> dict[str, Any]:
         """The JSON document on stdout, with nothing around it."""
 
+        assert self.stdout, self.stderr
+
         def refuse(constant: str) -> None:
             raise ValueError(f"{constant} is not JSON")
 
