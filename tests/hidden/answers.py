@@ -1,0 +1,156 @@
+"""What the program answered, read from its public files alone."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+# one of a kind: whatever stands as their place is right
+PLACELESS = {
+    "base_rocking", "base_sliding", "tool_compliance", "closure_rod", "force_scale", "force_bias",
+    "force_rotation", "force_crosstalk", "reading_rotation", "reading_scale", "reading_drift",
+    "zero_offset", "tool_offset",
+}  # fmt: skip
+LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6}
+
+
+def identity(name: str, where: str) -> str:
+    """One spelling for one cause at one place."""
+    name = name.strip()
+    if name in PLACELESS:
+        return name
+    places = sorted(part for part in re.split(r"[,+/&\s]+", where) if part)
+    return f"{name}:{'+'.join(places)}"
+
+
+def identity_of(text: str) -> str:
+    """`identity` of `name:where`."""
+    name, _, where = text.partition(":")
+    return identity(name, where)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    value: float
+    std: float | None
+    unit: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One verdict. Every named effect is the set of names between which it does not decide."""
+
+    verdict: str
+    effects: list[frozenset[str]] = field(default_factory=list)
+    parameters: dict[str, Parameter] = field(default_factory=dict)  # identity.short name -> value
+    next_poses: bool = False
+    seconds: float = 0.0
+
+    @property
+    def names(self) -> bool:
+        return bool(self.effects)
+
+
+def read_answer(folder: Path) -> Answer:
+    """The answer in one folder; verdict `error` if the command did not give one."""
+    run = _json(folder / "run.json") or {}
+    seconds = float(run.get("seconds") or 0.0)
+    document = _json(folder / "verdict.json")
+    if not isinstance(document, dict) or "verdict" not in document:
+        # a refusal (exit 1) is an answer, though an empty one
+        return Answer("refused" if run.get("exit") == 1 else "error", seconds=seconds)
+    effects: list[frozenset[str]] = []
+    parameters: dict[str, Parameter] = {}
+    for entry in document.get("effects", []):
+        effects += _members(entry)
+        _collect(parameters, entry["name"], entry.get("where", ""), entry.get("parameters", []))
+    _collect_model(parameters, folder / "model.yaml")
+    return Answer(
+        verdict=document["verdict"],
+        effects=effects,
+        parameters=parameters,
+        next_poses=bool(document.get("next_poses")) and (folder / "next_poses.csv").exists(),
+        seconds=seconds,
+    )
+
+
+def _json(path: Path) -> dict | None:  # type: ignore[type-arg]
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))  # type: ignore[no-any-return]
+    except (OSError, ValueError):
+        return None
+
+
+def _members(entry: dict) -> list[frozenset[str]]:  # type: ignore[type-arg]
+    name, where = str(entry["name"]), str(entry.get("where", ""))
+    others = {identity_of(str(text)) for text in entry.get("alternatives", [])}
+    joints = [part for part in re.split(r"[,+/&\s]+", where) if part]
+    if name == "joint_springs" and len(joints) > 1:
+        return [frozenset({identity(name, joint), *others}) for joint in joints]
+    return [frozenset({identity(name, where), *others})]
+
+
+def _collect(into: dict[str, Parameter], name: str, where: str, entries: list) -> None:  # type: ignore[type-arg]
+    for entry in entries:
+        own, place = name, where
+        short = str(entry["name"])
+        if ":" in short:  # effect:where.parameter
+            own, _, rest = short.partition(":")
+            place, _, short = rest.rpartition(".")
+        value = entry.get("value")
+        if isinstance(value, (int, float)):
+            std = entry.get("std")
+            into[f"{identity(own, place)}.{short}"] = Parameter(
+                float(value),
+                float(std) if isinstance(std, (int, float)) else None,
+                str(entry.get("unit", "")),
+            )
+
+
+def _collect_model(into: dict[str, Parameter], path: Path) -> None:
+    """Base springs and the rest from the model file."""
+    try:
+        document = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, yaml.YAMLError):
+        return
+    for effect in (document or {}).get("effects", []) or []:
+        entries = effect.get("parameters") or []
+        if isinstance(entries, dict):
+            entries = [{"name": key, **value} for key, value in entries.items()]
+        found: dict[str, Parameter] = {}
+        _collect(found, str(effect.get("name")), str(effect.get("where", "")), entries)
+        for key, value in found.items():
+            into.setdefault(key, value)
+
+
+def read_predictions(path: Path) -> NDArray[np.float64] | None:
+    """Predicted displacements (N, 3) [m] from the CSV that `predict --out` writes."""
+    try:
+        with path.open(newline="", encoding="utf-8") as stream:
+            table = list(csv.reader(stream))
+    except OSError:
+        return None
+    columns = []
+    for axis in "xyz":
+        hits = [
+            (k, match[1])
+            for k, title in enumerate(table[0])
+            if (
+                match := re.fullmatch(rf"\s*(?:pred\w*d?{axis}|d{axis}_pred\w*)\[(\w+)\]\s*", title)
+            )
+        ]
+        if len(hits) != 1:
+            return None
+        columns.append(hits[0])
+    rows = [row for row in table[1:] if row]
+    try:
+        return np.array([[float(row[k]) * LENGTHS[unit] for k, unit in columns] for row in rows])
+    except (ValueError, KeyError, IndexError):
+        return None

@@ -1,0 +1,105 @@
+"""Which poses are visited and which loads are hung on, and in what order."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .arm import Arm
+from .mechanism import Mechanism
+from .rotations import Array
+from .rows import Rows
+
+SCHEDULES = ("ascending", "scattered", "up_down", "repeated", "one_direction")
+
+
+def random_poses(arm: Arm, count: int, rng: np.random.Generator) -> dict[str, Array]:
+    """Joint coordinates (count,) within limits, tool clear of the column, linkage not folded."""
+    kept: dict[str, list[float]] = {name: [] for name in arm.actuated}
+    mechanism = Mechanism(arm)
+    while len(kept[arm.actuated[0]]) < count:
+        trial = {name: rng.uniform(*arm.limits[name], size=4 * count) for name in arm.actuated}
+        good = np.ones(4 * count, bool)
+        if arm.loop is not None:
+            pivot = arm.joints[arm.loop.pivot].name
+            good &= np.abs(np.cos(trial[pivot] + trial[arm.loop.driver])) > 0.4
+        crank = None if arm.loop is None else trial[arm.loop.driver]
+        rest = np.zeros((len(mechanism.labels), 4 * count))
+        tool = mechanism.stand(mechanism.commanded(trial), rest, crank).tool_position
+        reach = np.linalg.norm(tool[:, :2], axis=1)
+        good &= reach > 0.3 * np.median(reach)
+        for i in np.nonzero(good)[0]:
+            if len(kept[arm.actuated[0]]) < count:
+                for name in arm.actuated:
+                    kept[name].append(float(trial[name][i]))
+    return {name: np.array(values) for name, values in kept.items()}
+
+
+def _direction(rng: np.random.Generator) -> Array:
+    vector = rng.normal(size=3)
+    return vector / np.linalg.norm(vector)
+
+
+def plan(
+    arm: Arm,
+    rng: np.random.Generator,
+    *,
+    poses: int = 20,
+    loads: int = 5,
+    schedule: str = "ascending",
+    shared_zero: bool = True,
+    first_pose: int = 1,
+    moments: bool = False,
+    point: Array | None = None,
+    force_point: Array | None = None,
+) -> Rows:
+    """Random poses, and for each of them a series of loads after its zero reading.
+
+    `ascending`: one direction per pose, rising; `scattered`: a direction per row; `up_down`:
+    rising and falling; `repeated`: rising, every reading twice; `one_direction`: the same
+    direction at all poses.
+    """
+    chosen = random_poses(arm, poses, rng)
+    full = arm.typical.force
+    everywhere = _direction(rng)
+    index, force, branch, repeat, order, zero_order = [], [], [], [], [], []
+    clock = zero = 0
+    for pose in range(poses):
+        direction = everywhere if schedule == "one_direction" else _direction(rng)
+        levels = list(full * np.arange(1, loads + 1) / loads * rng.uniform(0.95, 1.05))
+        steps = [(level, 1, 1) for level in levels]
+        if schedule == "up_down":
+            steps += [(level, -1, 1) for level in levels[-2::-1]]
+        if schedule == "repeated":
+            steps = [(level, 1, number) for level in levels for number in (1, 2)]
+        for number, (level, way, again) in enumerate(steps):
+            if number == 0 or not shared_zero:
+                zero = clock
+                clock += 1
+            if schedule == "scattered":
+                direction = _direction(rng)
+                level = full * rng.uniform(0.4, 1.0)
+            index.append(pose)
+            force.append(level * direction)
+            branch.append(way)
+            repeat.append(again)
+            zero_order.append(zero)
+            order.append(clock)
+            clock += 1
+    forces = np.array(force)
+    torque = np.zeros_like(forces)
+    if moments:
+        torque = 0.08 * full * rng.normal(size=forces.shape)
+    index = np.array(index)
+    point = np.zeros(3) if point is None else np.asarray(point, float)
+    return Rows(
+        pose=index + first_pose,
+        coordinates={name: values[index] for name, values in chosen.items()},
+        force=forces,
+        moment=torque,
+        order=np.array(order, float),
+        zero_order=np.array(zero_order, float),
+        branch=np.array(branch, float),
+        repeat=np.array(repeat),
+        point=point,
+        force_point=point if force_point is None else np.asarray(force_point, float),
+    )

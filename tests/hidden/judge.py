@@ -1,0 +1,163 @@
+"""One answer against one truth, by the rules of EVIDENCE.md."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .answers import Answer, identity, identity_of
+
+TOLD_APART = 3.3  # sqrt(lambda) below which the data cannot tell two causes apart
+NEGLIGIBLE = 4.0  # a hidden cause this weak beyond the others need not be found
+
+
+@dataclass(frozen=True)
+class Mark:
+    """`right` counts towards the goal, `credit` shares it among the members of a set answer,
+    `wrong` counts names that do not hold the truth, `points` = credit - wrong."""
+
+    right: float = 0.0
+    wrong: int = 0
+    note: str = ""
+    ratio: float | None = None
+    effects_covered: list[bool] = field(default_factory=list)
+    springs_covered: list[bool] = field(default_factory=list)
+    settled: bool | None = None
+
+    @property
+    def points(self) -> float:
+        return self.right - self.wrong
+
+
+def true_names(truth: dict[str, Any]) -> list[str]:
+    """Identities of the hidden causes."""
+    return [identity(entry["name"], entry["where"]) for entry in truth["effects"]]
+
+
+def mark(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """(share of the goal reached, wrong names, note)."""
+    level = truth["level"]
+    if truth["expected"] == "none":
+        return _nothing(truth, answer)
+    if level == "L7":
+        return _outside(answer)
+    if level == "L4":
+        return _pair(truth, answer)
+    if level == "L5":
+        return _class(truth, answer)
+    return _names(truth, answer)
+
+
+def _nothing(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    if answer.verdict == "none" and not answer.names:
+        return 1.0, 0, ""
+    if answer.verdict in {"error", "refused"}:
+        return 0.0, 0, answer.verdict
+    hidden = set(true_names(truth))
+    # a cause that the base springs swallow may still be named, as one member of its class
+    wrong = sum(1 for group in answer.effects if not group & hidden)
+    if hidden and answer.names and not wrong and all(len(group) > 1 for group in answer.effects):
+        return 1.0, 0, "named as a class"
+    return 0.0, wrong, f"false alarm: {answer.verdict} {_spell(answer)}"
+
+
+def _outside(answer: Answer) -> tuple[float, int, str]:
+    if answer.verdict == "outside" and not answer.names:
+        return 1.0, 0, ""
+    return 0.0, 1 if answer.names else 0, f"{answer.verdict} {_spell(answer)}"
+
+
+def _names(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """Exact set; every set answer that holds a truth counts 1/size."""
+    required = {
+        name: entry["left"] >= NEGLIGIBLE or len(truth["effects"]) == 1
+        for name, entry in zip(true_names(truth), truth["effects"], strict=True)
+    }
+    open_names, credit, wrong = set(required), 1.0, 0
+    for group in sorted(answer.effects, key=len):
+        hit = sorted(group & open_names)
+        if hit:
+            open_names.remove(hit[0])
+            credit /= len(group)
+        else:
+            wrong += 1
+    missed = [name for name in open_names if required[name]]
+    if wrong or missed:
+        return 0.0, wrong, f"{answer.verdict} {_spell(answer)}"
+    return credit, 0, "" if credit == 1.0 else f"as one of a set: {_spell(answer)}"
+
+
+def _pair(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """'A or B' with poses to settle it; a lone right name counts only if the data allow it."""
+    own, entry = true_names(truth)[0], truth["effects"][0]
+    near = {
+        identity(r["name"], r["where"])
+        for r in entry["rivals"]
+        if r["separation"] < 1.5 * TOLD_APART
+    }
+    partner = {identity_of(text) for text in truth["pair"]}
+    wrong = sum(1 for group in answer.effects if own not in group)
+    holding = [group for group in answer.effects if own in group]
+    if wrong or len(holding) != 1:
+        return 0.0, wrong, f"{answer.verdict} {_spell(answer)}"
+    group = holding[0]
+    if len(group) == 1:
+        return 0.0, 0, "one of two that cannot be told apart, by luck the right one"
+    if not group & (partner | near):
+        return 0.0, 0, f"the wrong company: {_spell(answer)}"
+    if answer.verdict != "ambiguous" or not answer.next_poses:
+        return 0.5, 0, "no poses that settle it"
+    stray = len(group - near - partner - {own})
+    return (1.0, 0, "") if stray == 0 else (1.0 / (1 + stray), 0, f"too many: {_spell(answer)}")
+
+
+def _class(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """The whole class, never one member alone."""
+    members = {identity_of(text) for text in truth["accepted"]}
+    holding = [group for group in answer.effects if group & members]
+    wrong = len(answer.effects) - len(holding)
+    if len(holding) == 1 and not wrong and holding[0] >= members:
+        return 1.0, 0, ""
+    return 0.0, wrong, f"{answer.verdict} {_spell(answer)}"
+
+
+def _spell(answer: Answer) -> str:
+    return " + ".join(" or ".join(sorted(group)) for group in answer.effects)
+
+
+def coverage(truth: dict[str, Any], answer: Answer, share: float) -> tuple[list[bool], list[bool]]:
+    """Do the 95 % intervals of effect parameters and of base springs hold the truth?
+
+    Only asked where the named set is exactly right: elsewhere the model is another one.
+    """
+    if share < 1.0 or truth["level"] in {"L5", "L7"}:
+        return [], []
+    effects, springs = [], []
+    for entry in truth["effects"]:
+        own = identity(entry["name"], entry["where"])
+        effects += [
+            _inside(answer, f"{own}.{short}", value)
+            for short, value in entry["quantities"].items()
+            if f"{own}.{short}" in answer.parameters
+        ]
+    for joint, stiffness in truth["springs"].items():
+        key = f"joint_springs:{joint}.stiffness"
+        if key in answer.parameters:
+            springs.append(_inside(answer, key, stiffness))
+    return effects, springs
+
+
+def _inside(answer: Answer, key: str, value: float) -> bool:
+    found = answer.parameters[key]
+    return found.std is not None and abs(found.value - value) <= 1.96 * found.std
+
+
+def heldout_ratio(truth: dict[str, Any], predicted: np.ndarray | None) -> float | None:
+    """Expected error on sealed readings over that of the truth itself; None without predictions."""
+    if predicted is None or predicted.shape != np.shape(truth["oracle"]):
+        return None
+    miss = 1e6 * np.sqrt(np.mean((predicted - np.array(truth["oracle"])) ** 2))
+    floor = truth["sealed_sigma_um"]
+    return float(np.hypot(floor, miss) / floor)

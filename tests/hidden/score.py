@@ -1,0 +1,196 @@
+"""Scores frozen answers: `python -m tests.hidden.score FOLDER [--failures]`.
+
+Opens the truth, prints one line per level beside the goals of EVIDENCE.md, writes score.json.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from .answers import Answer, read_answer, read_predictions
+from .judge import Mark, coverage, heldout_ratio, mark
+from .run import digest
+from .settling import settles
+
+# level -> (content, least share right or None, greatest share of cases with a wrong name or None)
+GOALS: dict[str, tuple[str, float | None, float | None]] = {
+    "L0": ("clean", 0.99, None),
+    "L1": ("one effect, strong", 0.95, None),
+    "L2": ("one effect, 8-25", 0.90, None),
+    "L3": ("one effect, 4-8", 0.60, 0.03),
+    "L4": ("one of a near pair", None, None),
+    "L5": ("exact alias", 1.00, 0.0),
+    "L6.2": ("2 effects at once", 0.95, None),
+    "L6.3": ("3 effects at once", 0.80, None),
+    "L6.4": ("4 effects at once", 0.75, None),
+    "L7": ("not in the catalogue", None, 0.20),
+    "L8": ("clean, messy noise", 0.98, None),
+    "L9": ("unknown robot, all at once", None, None),
+}
+
+
+class NotFrozen(RuntimeError):
+    """Answers were changed after the runner froze them, or never frozen."""
+
+
+def check_frozen(folder: Path) -> dict[str, Any]:
+    """The runner's note, if the answers are still those that it froze."""
+    path = folder / "frozen.json"
+    if not path.exists():
+        raise NotFrozen(f"{path} is missing: let the runner finish first")
+    frozen: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    if frozen["files"] != digest(folder):
+        raise NotFrozen(f"answers in {folder} are not those that were frozen")
+    return frozen
+
+
+def judge_case(folder: Path, name: str) -> tuple[dict[str, Any], Answer, Mark]:
+    """Truth, answer and mark of one case."""
+    truth = json.loads((folder / "truth" / f"{name}.json").read_text(encoding="utf-8"))
+    answer = read_answer(folder / "answers" / name)
+    share, wrong, note = mark(truth, answer)
+    effects, springs = coverage(truth, answer, share)
+    ratio = heldout_ratio(truth, read_predictions(folder / "answers" / name / "predicted.csv"))
+    result = Mark(share, wrong, note, ratio, effects, springs)
+    if truth["level"] == "L4" and answer.next_poses:
+        result = replace(result, settled=settles(truth, folder / "answers" / name))
+    return truth, answer, result
+
+
+def level_of(truth: dict[str, Any]) -> str:
+    """Row of the table."""
+    return f"L6.{truth['count']}" if truth["level"] == "L6" else str(truth["level"])
+
+
+def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[str, Any]:
+    """One row of the table."""
+    marks = [entry[2] for entry in cases]
+    count = len(marks)
+    right = sum(m.right for m in marks) / count
+    wrong = sum(m.wrong > 0 for m in marks) / count
+    ratios = [m.ratio for m in marks if m.ratio is not None]
+    content, least, most = GOALS[level]
+    met: bool | None = None
+    if least is not None or most is not None:
+        met = (least is None or right >= least - 1e-9) and (most is None or wrong <= most + 1e-9)
+    close = None
+    if level == "L9":
+        # a case without predictions is a failure
+        close = sum(r <= 1.2 for r in ratios) / count
+        met = bool(ratios) and median(ratios) <= 1.2
+    covered = [hit for m in marks for hit in m.effects_covered]
+    springs = [hit for m in marks for hit in m.springs_covered]
+    settled = [m.settled for m in marks if m.settled is not None]
+    return {
+        "level": level,
+        "content": content,
+        "cases": count,
+        "verdicts": dict(Counter(answer.verdict for _, answer, _ in cases)),
+        "right": right,
+        "error": float(np.sqrt(max(right * (1 - right), 0.25 / count) / count)),
+        "wrong": wrong,
+        "points": sum(m.points for m in marks) / count,
+        "goal_right": least,
+        "goal_wrong": most,
+        "met": met,
+        "ratio_median": median(ratios) if ratios else None,
+        "ratio_close": close,
+        "covered": [sum(covered), len(covered)],
+        "springs_covered": [sum(springs), len(springs)],
+        "settled": [sum(settled), len(settled)],
+        "seconds_median": median(answer.seconds for _, answer, _ in cases),
+    }
+
+
+def _percent(value: float | None) -> str:
+    return "" if value is None else f"{100 * value:.0f}"
+
+
+def table(rows: list[dict[str, Any]]) -> str:
+    """The table as Markdown."""
+    head = (
+        "| level | content | cases | right % | wrong name % | goal | met | points "
+        "| held-out ratio | 95 % hold effects / springs | s |"
+    )
+    out = [head, "|" + "---|" * 11]
+    for row in rows:
+        goal = []
+        if row["goal_right"] is not None:
+            goal.append(f"≥ {_percent(row['goal_right'])} right")
+        if row["goal_wrong"] is not None:
+            goal.append(f"≤ {_percent(row['goal_wrong'])} wrong")
+        if row["level"] == "L9":
+            goal.append("ratio ≤ 1.2")
+        ratio = "" if row["ratio_median"] is None else f"{row['ratio_median']:.2f}"
+        if row["ratio_close"] is not None:
+            ratio += f" (≤ 1.2 in {_percent(row['ratio_close'])} %)"
+        held = []
+        for hit, asked in (row["covered"], row["springs_covered"]):
+            held.append(f"{_percent(hit / asked)} ({asked})" if asked else "-")
+        met = {None: "", True: "yes", False: "no"}[row["met"]]
+        out.append(
+            f"| {row['level']} | {row['content']} | {row['cases']} | {_percent(row['right'])} "
+            f"± {_percent(row['error'])} | {_percent(row['wrong'])} | {', '.join(goal)} | {met} "
+            f"| {row['points']:.2f} | {ratio} | {' / '.join(held)} | {row['seconds_median']:.1f} |"
+        )
+    return "\n".join(out)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--failures", action="store_true", help="list every case that lost points")
+    given = parser.parse_args(arguments)
+    folder = given.folder
+    frozen = check_frozen(folder)
+    names = sorted(path.stem for path in (folder / "truth").glob("*.json"))
+    judged = {name: judge_case(folder, name) for name in names}
+    rows = []
+    for level in GOALS:
+        cases = [entry for entry in judged.values() if level_of(entry[0]) == level]
+        if cases:
+            rows.append(line(level, cases))
+    print(f"answers of {frozen['program']}, frozen {frozen['when']}")
+    if frozen["batched"]:
+        print("run in batch mode: not for publication")
+    print(table(rows))
+    for row in rows:
+        if row["settled"][1]:
+            print(f"{row['level']}: next poses settle {row['settled'][0]} of {row['settled'][1]}")
+    document = {
+        "frozen": {key: frozen[key] for key in ("program", "when", "batched")},
+        "levels": rows,
+        "cases": {
+            name: {"level": level_of(truth), "truth": [e["name"] + ":" + e["where"]
+                   for e in truth["effects"]], "verdict": answer.verdict, **asdict(result)}
+            for name, (truth, answer, result) in judged.items()
+        },
+    }  # fmt: skip
+    (folder / "score.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
+    if given.failures:
+        for name, (truth, _, result) in judged.items():
+            if result.right < 1.0:
+                told = ", ".join(f"{e['name']}:{e['where']} ({e['left']:.0f})"
+                                 for e in truth["effects"]) or "nothing"  # fmt: skip
+                near = truth["effects"][0]["rivals"][:1] if truth["effects"] else []
+                beside = (
+                    f" [nearest {near[0]['name']}:{near[0]['where']} {near[0]['separation']}]"
+                    if near
+                    else ""
+                )
+                print(f"{name} {level_of(truth)} {truth['robot']} {truth['note']}: {told}{beside} "
+                      f"-> {result.note}")  # fmt: skip
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
