@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.errors import ToolkitWarning
 from sk120stiff.robot.loading import find_robot, load_robot
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import (
@@ -78,7 +80,7 @@ def check_robot(
     """
     found = find_robot(source)
     document = read_urdf(found.urdf)
-    warnings = [*document.warnings, *suspicions(document)]
+    findings = [*document.warnings, *suspicions(document)]
     guessed_base, guessed_tool, reasons = default_frames(document)
     base_frame = base or found.description.base_frame or guessed_base
     tool_frame = tool or found.description.tool_frame or guessed_tool
@@ -86,13 +88,15 @@ def check_robot(
         reasons = (f"base frame {base_frame!r}: as told", *reasons[1:])
     if tool or found.description.tool_frame:
         reasons = (reasons[0], f"tool frame {tool_frame!r}: as told")
-    warnings.extend(locked_on_way(document, base_frame, tool_frame))
+    findings.extend(locked_on_way(document, base_frame, tool_frame))
     robot: Robot | None = None
     if document.moving_joints:
-        robot = load_robot(source, base=base, tool=tool)
-        warnings.extend(_kinematics(robot))
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore", ToolkitWarning)  # they stand in the report
+            robot = load_robot(source, base=base, tool=tool)
+            findings.extend(_kinematics(robot))
     else:
-        warnings.append(Finding("nothing_moves", document.place, "no joint of this robot moves"))
+        findings.append(Finding("nothing_moves", document.place, "no joint of this robot moves"))
     return CheckReport(
         name=robot.name if robot is not None else document.name,
         actuated=robot.actuated if robot is not None else (),
@@ -104,7 +108,7 @@ def check_robot(
         chosen_because=reasons,
         moving=tuple(joint.name for joint in document.moving_joints),
         total_mass_kg=document.total_mass,
-        warnings=tuple(warnings),
+        warnings=tuple(findings),
     )
 
 

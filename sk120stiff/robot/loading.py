@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.bundled import bundled_robots
 from sk120stiff.robot.coupling import Array, Follower, linear_coupling
 from sk120stiff.robot.description import RobotDescription, read_description
 from sk120stiff.robot.robot import Linkage, Robot
 from sk120stiff.robot.tree import Tree
-from sk120stiff.robot.urdf import UrdfDocument, default_frames, read_urdf
+from sk120stiff.robot.urdf import (
+    BALLS,
+    HARMLESS,
+    UrdfDocument,
+    default_frames,
+    locked_on_way,
+    read_urdf,
+)
+
+_MOST_WARNINGS = 20
 
 Source = str | os.PathLike[str]
 
@@ -51,18 +61,18 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
         Nothing of that name; the bundled robots are listed.
     """
     text = os.fspath(source)
-    if text.lstrip().startswith("<"):
+    if text.lstrip("\ufeff \t\r\n").startswith("<"):
         return RobotSource(urdf=text)
     bundled = bundled_robots()
     candidates = [relative_to / text] if relative_to else []
     candidates.append(Path(text))
-    path = next((p for p in candidates if p.exists()), None)
+    path = next((p for p in candidates if _exists(p)), None)
     if path is None and text in bundled:
         path = bundled[text]
     if path is None:
         raise InputError(
             "there is no such robot",
-            where=text,
+            where=text[:200],
             remedy="Give a .urdf, a .xacro, a folder with robot.yaml, or a bundled name: "
             + ", ".join(sorted(bundled))
             + ".",
@@ -71,6 +81,13 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
         description = read_description(path / "robot.yaml")
         return RobotSource(path / description.urdf, path, description)
     return RobotSource(urdf=path)
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # names that are too long or hold zero bytes
+        return False
 
 
 def load_robot(
@@ -113,11 +130,16 @@ def load_robot(
     base_frame = base or description.base_frame or guessed_base
     tool_frame = tool or description.tool_frame or guessed_tool
     followers = _followers(document, description)
-    chosen = tuple(actuated or description.actuated or _drivers(tree, base_frame, tool_frame, followers))
-    _check_actuated(chosen, tree, followers, document)
+    chosen = tuple(
+        actuated or description.actuated or _drivers(tree, base_frame, tool_frame, followers)
+    )
     rest = {**description.lock, **(lock or {})}
+    _refuse_balls(document, base_frame, tool_frame, rest)
+    _check_actuated(chosen, tree, followers, document)
     for name in rest:
-        tree.joint_index(name)
+        if name not in document.locked:
+            tree.joint_index(name)
+    _tell(document, base_frame, tool_frame)
     coupling = linear_coupling(tree.joint_names, chosen, followers, rest)
     lower, upper = _limits(document, chosen)
     return Robot(
@@ -173,6 +195,38 @@ def _drivers(
     return tuple(found)
 
 
+def _refuse_balls(document: UrdfDocument, base: str, tool: str, rest: Mapping[str, float]) -> None:
+    """A ball joint on the way to the tool must be locked by the user's own word."""
+    for joint in document.way(base, tool):
+        if joint.source_type in BALLS and joint.name not in rest:
+            raise InputError(
+                f"this joint lies between {base!r} and {tool!r}, but cannot be driven: "
+                f"{document.locked[joint.name]}",
+                where=f"{document.place}, line {joint.line}, joint {joint.name!r}",
+                remedy="Model it as three revolute joints, choose other frames, or hold it still: "
+                f"lock: {{{joint.name}: 0.0}} in robot.yaml.",
+            )
+        if rest.get(joint.name, 0.0) != 0.0 and joint.name in document.locked:
+            raise InputError(
+                f"this joint can be held at zero only, because {document.locked[joint.name]}",
+                where=f"joint {joint.name!r}",
+                remedy="Put the wanted pose into the <origin> of the joint.",
+            )
+
+
+def _tell(document: UrdfDocument, base: str, tool: str) -> None:
+    """Warn of every repair that touches kinematics or masses; `check` tells the rest."""
+    told = [*document.warnings, *locked_on_way(document, base, tool)]
+    told = [finding for finding in told if finding.code not in HARMLESS]
+    for finding in told[:_MOST_WARNINGS]:
+        warnings.warn(f"{document.place}: {finding}", ToolkitWarning, stacklevel=3)
+    if len(told) > _MOST_WARNINGS:
+        more = len(told) - _MOST_WARNINGS
+        warnings.warn(
+            f"{document.place}: {more} more findings; see check", ToolkitWarning, stacklevel=3
+        )
+
+
 def _check_actuated(
     chosen: tuple[str, ...],
     tree: Tree,
@@ -180,12 +234,20 @@ def _check_actuated(
     document: UrdfDocument,
 ) -> None:
     if not chosen:
+        held = list(document.locked)
+        still = f"; held still: {', '.join(held[:5])}" if held else ""
         raise InputError(
-            "no joint moves between the base frame and the tool frame",
-            where=document.name,
+            f"no joint moves between the base frame and the tool frame{still}",
+            where=document.place,
             remedy="Choose other frames with --base and --tool.",
         )
     for name in chosen:
+        if name in document.locked:
+            raise InputError(
+                f"this joint cannot be actuated because {document.locked[name]}",
+                where=f"joint {name!r}",
+                remedy="Model it as single joints that turn or slide, or leave it locked.",
+            )
         tree.joint_index(name)
         if name in followers:
             raise InputError(
@@ -194,7 +256,11 @@ def _check_actuated(
                 remedy="Leave it out of the actuated joints, or remove its mimic rule.",
             )
     if len(set(chosen)) < len(chosen):
-        raise InputError("an actuated joint is named twice", where=document.name)
+        raise InputError(
+            "an actuated joint is named twice",
+            where=document.name,
+            remedy="Name each actuated joint once.",
+        )
 
 
 def _limits(document: UrdfDocument, chosen: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:

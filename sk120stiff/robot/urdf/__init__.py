@@ -1,6 +1,8 @@
 """URDF files of any origin become a `UrdfDocument`: forms, repairs with warnings, refusals."""
 
 from sk120stiff.robot.urdf.document import (
+    BALLS,
+    HARMLESS,
     Finding,
     GeometrySpec,
     Inertial,
@@ -17,6 +19,8 @@ from sk120stiff.robot.urdf.reading import read_urdf
 from sk120stiff.robot.urdf.suspicions import locked_on_way, suspicions
 
 __all__ = [
+    "BALLS",
+    "HARMLESS",
     "CapturedText",
     "Finding",
     "GeometrySpec",

@@ -14,6 +14,16 @@ Array = NDArray[np.float64]
 
 MOVING = frozenset({"revolute", "continuous", "prismatic"})
 
+BALLS = frozenset({"spherical", "ball", "universal"})
+
+# Codes of findings that touch neither kinematics nor masses.
+HARMLESS = frozenset(
+    {
+        "doctype", "duplicate_material", "encoding", "mesh_missing", "unknown_element",
+        "unknown_geometry", "unknown_material", "visual_unreadable", "xacro_expanded",
+    }
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -181,6 +191,16 @@ class UrdfDocument:
     def moving_joints(self) -> tuple[JointSpec, ...]:
         """Joints with a degree of freedom, mimics included."""
         return tuple(joint for joint in self.joints if joint.moves)
+
+    def way(self, base: str, tool: str) -> tuple[JointSpec, ...]:
+        """Joints of any type from `base` outwards to `tool`; from the root if `base` is not met."""
+        above = {joint.child: joint for joint in self.joints}
+        found: list[JointSpec] = []
+        name = tool
+        while name != base and name in above:
+            found.append(above[name])
+            name = above[name].parent
+        return tuple(reversed(found))
 
     @property
     def total_mass(self) -> float:

@@ -14,6 +14,7 @@ from sk120stiff.robot.urdf.xml_tree import Element
 
 _NUMBER = re.compile(r"[+-]?(?:\d{1,400}\.?\d{0,400}|\.\d{1,400})(?:[eE][+-]?\d{1,6})?\Z", re.ASCII)
 _NOT_FINITE = re.compile(r"[+-]?(?:inf|infinity|nan)\Z", re.IGNORECASE)
+_SMALLEST = 1e-300
 _ZERO_WIDTH = dict.fromkeys(map(ord, "\u200b\u200c\u200d\ufeff"), None)
 
 
@@ -93,6 +94,9 @@ class Fields:
         if len(text) > 2000:
             self._refuse(element, attribute, text, "is too long for a number")
         clean = text.replace("\u2212", "-").translate(_ZERO_WIDTH)
+        if clean != text:
+            note = f"unusual characters in {attribute} {shown(text)} read as plain ones"
+            self.warn("number_syntax", element, note)
         words = clean.split()
         if any("," in word or ";" in word for word in words):
             if (
@@ -118,6 +122,8 @@ class Fields:
                     hint = "is an expression of xacro, not a number"
                 self._refuse(element, attribute, text, hint)
             value = float(plain)
+            if abs(value) < _SMALLEST:
+                value = 0.0  # C++ parsers choke on denormal numbers
             if not math.isfinite(value):
                 self._refuse(element, attribute, text, "is too large for a number")
             if plain != word:

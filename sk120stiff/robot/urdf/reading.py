@@ -114,7 +114,7 @@ def _document(
     same_names([(joint.name, joint.line) for joint in joints], "joint", notes)
     _refuse_reserved(joints, notes)
     links = declared_links(declared, joints, notes) if declared else tuple(declared)
-    tree_root = find_root(links, joints, notes)
+    tree_root = find_root(links, joints, notes, root.line)
     checked = checked_mimics(tuple(joints), locked, notes)
     colours = read_materials(root, notes)
     visuals: list[VisualSpec] = []

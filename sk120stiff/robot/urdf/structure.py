@@ -11,9 +11,10 @@ from sk120stiff.robot.urdf.findings import Notebook, at, close_name, listed, sho
 # 8 MB end near level 3500, 1 MB near level 450. Real arms have fewer than 50 levels.
 MAX_DEPTH = 300
 
-_CLOSURE = """declare it in robot.yaml and cut the tree at one joint of the loop:
+_CLOSURE = """cut it there: make {joint} fixed, give it a new empty child link \
+{child}_closure, and declare in robot.yaml that both links meet:
 closures:
-  - {{between: [{first}, {second}], kind: point}}"""
+  - {{frames: [{child}_closure, {child}], kind: point}}"""
 
 
 def declared_links(
@@ -37,7 +38,9 @@ def declared_links(
     return (*links, *added.values())
 
 
-def find_root(links: Sequence[LinkSpec], joints: Sequence[JointSpec], notes: Notebook) -> str:
+def find_root(
+    links: Sequence[LinkSpec], joints: Sequence[JointSpec], notes: Notebook, line: int = 0
+) -> str:
     """The one link from which every other is reached.
 
     Raises
@@ -48,6 +51,7 @@ def find_root(links: Sequence[LinkSpec], joints: Sequence[JointSpec], notes: Not
     if not links:
         notes.refuse(
             "the robot has no links",
+            where=at(line),
             remedy='Add at least one <link name="..."/>, and joints between links.',
         )
     parent_joint: dict[str, JointSpec] = {}
@@ -113,7 +117,7 @@ def _refuse_two_parents(
     on_left = {joint.parent: k for k, joint in enumerate(left)}
     for k, joint in enumerate(right):
         if joint.parent in on_left:
-            loop = [*left[: on_left[joint.parent] + 1], *right[: k + 1]]
+            loop = [*left[: on_left[joint.parent] + 1], *right[k::-1]]
             _refuse_loop(loop, second, notes)
         if joint.parent == second.child:
             _refuse_loop(right[: k + 1][::-1], second, notes)
@@ -141,6 +145,6 @@ def _refuse_loop(loop: list[JointSpec], closing: JointSpec, notes: Notebook) -> 
     notes.refuse(
         f"the joints {listed(names, 12)} form a closed loop; a URDF holds trees only",
         where=at(closing.line, "joint", closing.name),
-        remedy="Remove that joint; if the mechanism is really closed, "
-        + _CLOSURE.format(first=closing.parent, second=closing.child),
+        remedy="Delete that joint, or, if the mechanism is really closed, "
+        + _CLOSURE.format(joint=closing.name, child=closing.child),
     )

@@ -99,22 +99,34 @@ def _inertia(inertial: Inertial, where: str) -> Iterator[Finding]:
 
 
 def _limits(document: UrdfDocument) -> Iterator[Finding]:
-    for joint in document.moving_joints:
-        where = at(joint.line, "joint", joint.name)
-        for key in ("effort", "velocity"):
-            if getattr(joint, key) == 0.0:
-                yield Finding(f"{key}_zero", where, f"{key} limit is 0: it is probably not known")
-        lower, upper = joint.lower, joint.upper
-        if joint.type == "revolute" and lower is not None and upper is not None:
-            widest = max(abs(lower), abs(upper))
-            if _TWO_TURNS < widest <= _PLACEHOLDER:
-                yield Finding(
-                    "units",
-                    where,
-                    f"limits {lower:g} .. {upper:g} rad exceed two turns: are they degrees?",
-                )
-        if lower is not None and upper is not None and not lower <= 0.0 <= upper:
-            yield Finding("zero_outside_limits", where, f"0 is outside {lower:g} .. {upper:g}")
+    moving = document.moving_joints
+    for key in ("effort", "velocity"):
+        idle = [joint for joint in moving if getattr(joint, key) == 0.0]
+        yield from _together(f"{key}_zero", idle, f"{key} limit is 0, probably not known")
+    for joint in moving:
+        widest = max(abs(joint.lower or 0.0), abs(joint.upper or 0.0))
+        if joint.type == "revolute" and _TWO_TURNS < widest <= _PLACEHOLDER:
+            yield Finding(
+                "units",
+                at(joint.line, "joint", joint.name),
+                f"a limit of {widest:g} rad exceeds two turns: is it given in degrees?",
+            )
+    outside = [
+        joint
+        for joint in moving
+        if (joint.lower is not None and joint.lower > 0.0)
+        or (joint.upper is not None and joint.upper < 0.0)
+    ]
+    yield from _together("zero_outside_limits", outside, "zero lies outside the limits")
+
+
+def _together(code: str, joints: list[JointSpec], message: str) -> Iterator[Finding]:
+    """One finding for one oddity of many joints, placed at the first of them."""
+    if joints:
+        first = joints[0]
+        names = [joint.name for joint in joints]
+        others = f": {listed(names)}" if len(names) > 1 else ""
+        yield Finding(code, at(first.line, "joint", first.name), message + others)
 
 
 def _couplings(document: UrdfDocument) -> Iterator[Finding]:
@@ -207,19 +219,13 @@ def _meshes(document: UrdfDocument) -> Iterator[Finding]:
 
 def locked_on_way(document: UrdfDocument, base: str, tool: str) -> tuple[Finding, ...]:
     """Joints between two frames that the file describes as moving but that are held still."""
-    above = {joint.child: joint for joint in document.joints}
-    found = []
-    name = tool
-    while name != base and name in above:
-        joint = above[name]
-        if joint.name in document.locked:
-            found.append(
-                Finding(
-                    "locked_on_chain",
-                    at(joint.line, "joint", joint.name),
-                    f"lies between {shown(base)} and {shown(tool)} and is held still because "
-                    f"{document.locked[joint.name]}",
-                )
-            )
-        name = joint.parent
-    return tuple(reversed(found))
+    return tuple(
+        Finding(
+            "locked_on_chain",
+            at(joint.line, "joint", joint.name),
+            f"lies between {shown(base)} and {shown(tool)} and is held still because "
+            f"{document.locked[joint.name]}",
+        )
+        for joint in document.way(base, tool)
+        if joint.name in document.locked
+    )

@@ -77,7 +77,11 @@ def parse_robot(text: str, notes: Notebook) -> Element:
     """
     text = without_prologue(text, notes)
     if not text.strip():
-        notes.refuse("the file is empty", remedy="Give a URDF: <robot> with links and joints.")
+        notes.refuse(
+            "the file is empty",
+            where="line 1",
+            remedy="Give a URDF: <robot> with links and joints.",
+        )
     _refuse_pointer(text, notes)
     try:
         root = _build(text)
