@@ -8,7 +8,7 @@ from sk120stiff.show.shapes import PLAIN, Body, capsules, reach_of
 
 
 def bodies_of(robot: Robot, tree: LinkTree) -> list[Body]:
-    """Every visual that can be drawn; capsules for a robot, or for a link, that lost all of its own.
+    """Every visual that can be drawn; capsules for a robot, or a link, that lost all of its own.
 
     Links that state no visual on purpose stay empty as long as others have some.
     """

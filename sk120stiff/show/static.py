@@ -54,7 +54,7 @@ def notebook_html(scene: Scene, *, height: int = 620) -> str:
     title = escape(scene.title or scene.robot.name, quote=True)
     return (
         f'<iframe title="{title}" srcdoc="{page}" '
-        f'style="width:100%;height:{height}px;border:1px solid #d5dce3;border-radius:12px"></iframe>'
+        f'style="width:100%;height:{height}px;border:0;border-radius:12px"></iframe>'
     )
 
 

@@ -1,0 +1,81 @@
+// The numbers at this pose.
+"use strict";
+SK.makeReadouts = (scene, state) => {
+  const { element, section } = SK.widgets, { number, percent, quantities, principal } = SK.words;
+  const verdict = element("p", { class: "verdict", role: "status" });
+  const table = element("table", { class: "numbers first-bold" });
+  const facts = element("dl", { class: "facts" });
+  const data = element("div", { class: "data" });
+  const root = section("At this pose", verdict, table, facts, data);
+  const sub = (text) => element("sub", {}, text), K_C = () => element("span", {}, "K", sub("C"));
+  const ranks = ["softest", "middle", "stiffest"];
+
+  function principalTable(frame) {
+    const quantity = quantities[state.quantity], axes = frame[quantity.group];
+    const enhanced = principal(quantity, axes.enhanced), conventional = principal(quantity, axes.conventional);
+    const cell = (value) => (value < 0
+      ? element("td", { class: "bad" }, number(value * quantity.factor, 4) + " unstable")
+      : element("td", {}, value === Infinity ? "rigid" : number(value * quantity.factor, 4)));
+    table.replaceChildren(
+      element("caption", {}, `${quantity.title} along its principal axes, ${quantity.unit}`),
+      element("thead", {}, element("tr", {},
+        ...["", element("span", {}, "with ", K_C()), "without", "change"].map((text, k) => element("th", { scope: "col", class: k ? "" : "first" }, text)))),
+      element("tbody", {}, ...ranks.map((rank, k) => {
+        const change = enhanced[k] / conventional[k] - 1;
+        return element("tr", {}, element("th", { scope: "row" }, rank), cell(enhanced[k]), cell(conventional[k]),
+          element("td", {}, Number.isFinite(change) ? (change > 0 && Math.abs(change) >= 1e-5 ? "+" : "") + percent(change) : "\u2013"));
+      })));
+  }
+
+  const vector = (d) => `(${d.map((value) => number(1e6 * value, 3)).join(", ")})`;
+  const size = (d) => SK.algebra.norm(d);
+  const fact = (name, value, note = "") => [element("dt", {}, name), element("dd", {}, value, note ? element("small", {}, note) : null)];
+
+  function loadFacts(frame) {
+    const loaded = size(state.wrench) > 0, rest = frame.deflection.equilibrium;
+    const rows = [];
+    if (loaded) {
+      rows.push(...(rest
+        ? fact("Deflection", `${number(1e6 * size(rest), 4)} µm`, `${vector(rest)} µm`)
+        : fact("Deflection", "none", "no equilibrium: the load is beyond the critical one")));
+      const off = (name) => (rest && frame.deflection[name] ? `${number(1e6 * size(SK.algebra.minus(frame.deflection[name], rest)), 2)} µm off` : "\u2013");
+      rows.push(...fact(element("span", {}, "One step, with ", K_C()), off("enhanced")), ...fact("One step, without", off("conventional")));
+    }
+    rows.push(...fact(K_C(), frame.classes.K_C === "zero" ? "zero, no load" : frame.classes.K_C));
+    if (loaded) {
+      rows.push(...fact(element("span", {}, "Share of ", K_C()), `softens \u2264 ${percent(frame.softening)}`, `stiffens \u2264 ${percent(frame.stiffening)}`));
+      const critical = frame.softening > 0 ? 1 / frame.softening : Infinity;
+      rows.push(...fact("Critical load", critical === Infinity ? "none this way" : `${number(critical, 3)} \u00d7 this load`));
+    }
+    facts.replaceChildren(...rows);
+  }
+
+  function reading(current) {
+    if (!current) { data.replaceChildren(); return; }
+    const models = Object.entries(current.predicted), row = (name, d, mark) => element("tr", {},
+      element("th", { scope: "row" }, element("i", { class: "dot " + mark }), name),
+      ...(d ? [...d, size(d)].map((value) => element("td", {}, number(1e6 * value, 3))) : [element("td", { colspan: 4 }, "\u2013")]));
+    const rows = [row("measured", current.measured, "measured")];
+    for (const [name, predicted] of models) {
+      const mark = name === state.model ? "predicted" : "other";
+      rows.push(row(name, predicted, mark));
+      if (current.measured) rows.push(row("gap", SK.algebra.minus(current.measured, predicted), name === state.model ? "gap" : "other"));
+    }
+    data.replaceChildren(element("table", { class: "numbers" },
+      element("caption", {}, `Displacement at ${current.label}, µm`),
+      element("thead", {}, element("tr", {}, ...["", "x", "y", "z", "size"].map((text, k) => element("th", { scope: "col", class: k ? "" : "first" }, text)))),
+      element("tbody", {}, ...rows)));
+  }
+
+  function refresh(frame, current) {
+    const stable = frame.classes.stiffness === "positive definite";
+    const text = `${stable ? "Stable" : "Not stable"}: K\u03b8 \u2212 KC is ${frame.classes.stiffness}`;
+    if (verdict.textContent !== text)
+      verdict.replaceChildren(text.split(":")[0] + ": K", sub("\u03b8"), " \u2212 K", sub("C"), ` is ${frame.classes.stiffness}`);
+    verdict.classList.toggle("bad", !stable);
+    principalTable(frame);
+    loadFacts(frame);
+    reading(current);
+  }
+  return { root, refresh };
+};
