@@ -30,14 +30,14 @@ effects:
     parameters: {{stiffness: {{value: {}, unit: N*m/rad}}}}
   - name: joint_springs
     where: elbow
-    parameters: {{stiffness: {{value: {}, unit: N*mm/rad}}}}
+    parameters: {{stiffness: {{value: {}, unit: N*m/rad}}}}
 """
 
 
 @pytest.fixture
 def two_links(tmp_path: Path) -> tuple[str, str]:
     (tmp_path / "two_links.urdf").write_text(URDF, encoding="utf-8")
-    (tmp_path / "model.yaml").write_text(MODEL.format(K_1, K_2 * 1e3), encoding="utf-8")
+    (tmp_path / "model.yaml").write_text(MODEL.format(K_1, K_2), encoding="utf-8")
     return str(tmp_path / "two_links.urdf"), str(tmp_path / "model.yaml")
 
 
