@@ -5,6 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sk120stiff.model import joint_spring_model, write_model
+from sk120stiff.robot import load_robot
+
 UPPER, FORE = 0.5, 0.4  # m
 K_1, K_2 = 2.0e5, 1.0e5  # N·m/rad
 POSE = ("--pose", "30, -50 deg")
@@ -215,3 +218,26 @@ def test_a_robot_without_springs_shows_what_to_write(run, two_links, tmp_path: P
     (tmp_path / "written.yaml").write_text(written.replace(", ...", ""), encoding="utf-8")
     again = run("stiffness", robot, "--model", str(tmp_path / "written.yaml"))
     assert again.code == 0, again.stderr
+
+
+def test_a_load_that_nothing_can_hold(run, tmp_path: Path) -> None:
+    """Springs of 10 N·m/rad against kilonewtons: the formulas answer, the equilibrium cannot."""
+    arm = load_robot("motoman_sk120")
+    soft = tmp_path / "soft.yaml"
+    write_model(joint_spring_model(arm, np.full(6, 10.0)), soft)
+    outcome = run(
+        "stiffness",
+        "motoman_sk120",
+        "--model",
+        str(soft),
+        "--pose",
+        "10,20,-30,40,50,60 deg",
+        "--wrench",
+        "3000,-2000,4000,3000,-5000,2000 N, N*m",
+        "--json",
+    )
+    assert outcome.code == 0
+    assert outcome.document["deflection"]["equilibrium"] == [None] * 3
+    assert outcome.document["definiteness"]["K_theta_minus_K_C"] == "indefinite"
+    assert outcome.stderr.startswith("Warning: no static equilibrium was found")
+    assert len(outcome.stderr.splitlines()) == 1
