@@ -1,5 +1,6 @@
 """A robot under load: pure functions on arrays, for one pose or for many."""
 
+from sk120stiff.stiffness.batch import StiffnessBatch, stiffness_batch
 from sk120stiff.stiffness.cartesian import (
     cartesian_compliance,
     cartesian_stiffness,
@@ -32,6 +33,7 @@ __all__ = [
     "Equilibrium",
     "PaperWork",
     "Principal",
+    "StiffnessBatch",
     "cartesian_compliance",
     "cartesian_stiffness",
     "complementary_stiffness",
@@ -46,5 +48,6 @@ __all__ = [
     "principal_stiffness",
     "quadratic",
     "spring_matrix",
+    "stiffness_batch",
     "symmetric_part",
 ]

@@ -9,6 +9,8 @@ from sk120stiff.robot import Screws
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.complementary import complementary_stiffness, symmetric_part
 
+ZERO = 1e-12  # share of the largest below which an eigenvalue is rounding noise of either sign
+
 
 def critical_load(screws: Screws, stiffness: Array, direction: ArrayLike) -> Array:
     """Factor on a wrench at which K_θ − λ K_C first loses positive definiteness.
@@ -31,6 +33,7 @@ def critical_load(screws: Screws, stiffness: Array, direction: ArrayLike) -> Arr
     """
     root = 1.0 / np.sqrt(stiffness)
     K_C = symmetric_part(complementary_stiffness(screws, direction))
-    largest = np.linalg.eigvalsh(root[..., :, None] * K_C * root[..., None, :])[..., -1]
-    with np.errstate(divide="ignore"):
-        return np.where(largest > 0.0, 1.0 / np.where(largest > 0.0, largest, 1.0), np.inf)
+    values = np.linalg.eigvalsh(root[..., :, None] * K_C * root[..., None, :])
+    largest = values[..., -1]
+    softens = largest > ZERO * np.abs(values).max(axis=-1)
+    return np.where(softens, 1.0 / np.where(softens, largest, 1.0), np.inf)

@@ -43,8 +43,8 @@ class Fold(NamedTuple):
         (m,) VARIABLE, CONSTANT or NONE, and (m, 2) cosine and sine where constant.
     column_joint, column_coordinate, column_factor
         Entries of the map from coordinates to joints, q = Σ factor · z.
-    actuated
-        Number of coordinates that motors drive; the rest are virtual.
+    coordinates
+        Number of coordinates n, actuated ones first, virtual ones after them.
     soft
         (s,) coordinates with a finite spring.
     springs
@@ -54,11 +54,12 @@ class Fold(NamedTuple):
     pair
         (p, 2) pairs of joints, the first nearer to the base or the same.
     pair_end
-        (p,) end of each pair's stretch in the following four.
-    row, factor
-        Element of the lower triangle of K_C that a pair adds to, and how much of it.
-    skew_row, skew_factor
-        The same for the skew part of K_C (strictly lower triangle); -1 for none.
+        (p,) end of each pair's stretch in the following two.
+    row
+        (e, 2) element of the lower triangle of K_C that a pair adds to, and of the strictly lower
+        triangle of its skew part; -1 for none.
+    factor
+        (e, 2) how much of it.
     """
 
     start: Array
@@ -73,7 +74,7 @@ class Fold(NamedTuple):
     column_joint: Indices
     column_coordinate: Indices
     column_factor: Array
-    actuated: int
+    coordinates: int
     soft: Indices
     springs: Array
     whitener: Array
@@ -81,8 +82,6 @@ class Fold(NamedTuple):
     pair_end: Indices
     row: Indices
     factor: Array
-    skew_row: Indices
-    skew_factor: Array
 
 
 def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
@@ -116,6 +115,7 @@ def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
     slides = ~mechanism.chain.revolute
     kind = np.where(moves & ~slides, VARIABLE, np.where(offset != 0.0, CONSTANT, NONE))
     joints, coordinates = np.nonzero(to_joints)
+    pair, pair_end, row, factor = _pairs(to_joints[:, soft])
     return Fold(
         start=start,
         shift=shift,
@@ -129,11 +129,14 @@ def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
         column_joint=joints.astype(np.int64),
         column_coordinate=coordinates.astype(np.int64),
         column_factor=to_joints[joints, coordinates],
-        actuated=coupling.n,
+        coordinates=mechanism.n,
         soft=soft,
         springs=K_theta[np.tril_indices(len(soft))],
         whitener=np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(K_theta))),
-        **_pairs(to_joints[:, soft]),
+        pair=pair,
+        pair_end=pair_end,
+        row=row,
+        factor=factor,
     )
 
 
@@ -223,7 +226,7 @@ def _split(rotation: Array) -> tuple[float, tuple[float, float], float]:
     return theta, (c, s), float(np.arctan2(turn[1, 0], turn[0, 0]))
 
 
-def _pairs(to_joints: Array) -> dict[str, NDArray[np.generic]]:
+def _pairs(to_joints: Array) -> tuple[Indices, Indices, Indices, Array]:
     """Which pair of joints adds to which element of K_C, for (m, s) factors of soft coordinates."""
     pairs: list[tuple[int, int]] = []
     ends: list[int] = []
@@ -235,14 +238,9 @@ def _pairs(to_joints: Array) -> dict[str, NDArray[np.generic]]:
             pairs.append((first, second))
             ends.append(len(adds))
     table = np.array(adds, dtype=float).reshape(-1, 4)
-    return {
-        "pair": np.array(pairs, dtype=np.int64).reshape(-1, 2),
-        "pair_end": np.array(ends, dtype=np.int64),
-        "row": table[:, 0].astype(np.int64),
-        "factor": table[:, 1].copy(),
-        "skew_row": table[:, 2].astype(np.int64),
-        "skew_factor": table[:, 3].copy(),
-    }
+    pair = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    rows = table[:, [0, 2]].astype(np.int64)
+    return pair, np.array(ends, dtype=np.int64), rows, table[:, [1, 3]].copy()
 
 
 def _joint_pairs(to_joints: Array) -> Iterator[tuple[int, int]]:

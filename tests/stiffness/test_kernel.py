@@ -1,0 +1,301 @@
+"""The compiled kernel against Pinocchio's Jacobians with K_C by plain loops, and against NumPy."""
+
+from __future__ import annotations
+
+import logging
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import time
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import sk120stiff
+from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.robot import Mechanism, Robot, VirtualJoint, load_robot
+from sk120stiff.stiffness import (
+    CLASSES,
+    cartesian_compliance,
+    complementary_stiffness,
+    critical_load,
+    definiteness,
+    principal_stiffness,
+    spring_matrix,
+)
+from sk120stiff.stiffness.batch import QUANTITIES, announced, stiffness_batch
+from tests.oracles.sample_urdfs import mimic_tree, six_axis_arm
+
+Array = NDArray[np.float64]
+FORCE = np.array([310.0, -220.0, 430.0, 0.0, 0.0, 0.0])
+WRENCH = np.array([310.0, -220.0, 430.0, 51.0, -37.0, 23.0])
+
+
+PUBLIC = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"
+
+ROBOTS = {
+    "sk120": lambda: "motoman_sk120",
+    "six axes": six_axis_arm,
+    "skew axes": lambda: six_axis_arm(seed=7),
+    "mimics and slides": mimic_tree,
+    "ur5": lambda: str(PUBLIC / "ur_description/urdf/ur5_robot.urdf"),
+    "seven axes": lambda: str(PUBLIC / "panda_description/urdf/panda.urdf"),
+}
+
+
+@pytest.fixture(params=list(ROBOTS), scope="module")
+def robot(request: pytest.FixtureRequest) -> Robot:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ToolkitWarning)
+        return load_robot(ROBOTS[request.param]())
+
+
+def poses(robot: Robot, count: int, seed: int = 1) -> Array:
+    return np.random.default_rng(seed).uniform(-2.5, 2.5, (count, robot.n))
+
+
+def K_C_by_loops(robot: Robot, a: Array, wrench: Array, point: Array) -> tuple[Array, Array]:
+    """J from Pinocchio, and K_C entry by entry from its columns; one pose."""
+    motion = robot.coupling.motion(a)
+    chain = robot.mechanism().chain
+    at_zero = robot.tree.jacobian(motion.q, robot.tool_frame, point)
+    columns = at_zero[:, chain.coordinates]
+    F, M = wrench[:3], wrench[3:]
+    m = columns.shape[1]
+    K_C = np.zeros((m, m))
+    for i in range(m):
+        for j in range(m):
+            near, far = min(i, j), max(i, j)
+            K_C[i, j] = F @ np.cross(columns[3:, near], columns[:3, far])
+            if j < i:
+                K_C[i, j] += M @ np.cross(columns[3:, j], columns[3:, i])
+    A = motion.first[chain.coordinates]
+    return columns @ A, A.T @ K_C @ A
+
+
+@pytest.mark.parametrize("wrench", [FORCE, WRENCH], ids=["force", "force and moment"])
+def test_agrees_with_pinocchio(robot: Robot, wrench: Array) -> None:
+    point = np.array([0.05, -0.11, 0.2])
+    springs = np.linspace(3e5, 6e5, robot.n)
+    a = poses(robot, 70)
+    found = stiffness_batch(robot, a, springs, wrench, point=point, want=QUANTITIES)
+    for k in range(len(a)):
+        J, K_C = K_C_by_loops(robot, a[k], wrench, point)
+        compliance = J[:3] @ np.linalg.solve(np.diag(springs) - K_C, J[:3].T)
+        for ours, theirs in (
+            (found.jacobian[k], J),
+            (found.K_C[k], K_C),
+            (found.compliance[k], compliance),
+        ):
+            assert np.abs(ours - theirs).max() <= 1e-12 * np.abs(theirs).max()
+
+
+@pytest.mark.parametrize("wrench", [FORCE, WRENCH], ids=["force", "force and moment"])
+@pytest.mark.parametrize("size", [1.0, 3e3], ids=["stable", "unstable"])
+def test_agrees_with_numpy(robot: Robot, wrench: Array, size: float) -> None:
+    springs = np.linspace(3e5, 6e5, robot.n)
+    a, load = poses(robot, 203), wrench * size
+    found = stiffness_batch(robot, a, springs, load, want=QUANTITIES)
+    screws = robot.screws(a)
+    K_C = complementary_stiffness(screws, load)
+    K = spring_matrix(springs) - K_C
+    compliance = cartesian_compliance(screws.linear_jacobian, K)
+    principal = principal_stiffness(compliance)
+    np.testing.assert_allclose(found.position, screws.position, atol=1e-12)
+    per_pose = np.abs(compliance).max(axis=(1, 2), keepdims=True)
+    inverse = np.linalg.cond(K)[:, None, None]
+    assert (np.abs(found.compliance - compliance) <= 1e-15 * (100 + inverse) * per_pose).all()
+    np.testing.assert_array_equal(found.stiffness_class, definiteness(K))
+    np.testing.assert_array_equal(found.complementary_class, definiteness(K_C))
+    np.testing.assert_allclose(found.critical, critical_load(screws, springs, load), rtol=1e-9)
+    singular = np.zeros((len(a), 3))
+    singular[:, : min(3, robot.n)] = np.linalg.svd(screws.linear_jacobian, compute_uv=False)
+    np.testing.assert_allclose(found.condition, singular[:, 2] / singular[:, 0], atol=3e-8)
+    finite = np.isfinite(principal.values)
+    assert (np.isfinite(found.values) == finite).all()
+    c, ours = 1.0 / principal.values, 1.0 / found.values
+    assert (np.abs(c - ours) <= 1e-14 * (100 + inverse[..., 0]) * per_pose[..., 0]).all()
+    if size == 1.0:
+        gaps = -np.diff(c, axis=1) / per_pose[..., 0]
+        clear = (gaps > 1e-3).all(axis=1)
+        along = np.abs((found.directions * principal.directions).sum(-1))[clear]
+        assert clear.any()
+        np.testing.assert_allclose(along, 1.0, atol=1e-9)
+        assert (found.stiffness_class == CLASSES.index("positive definite")).all()
+    else:
+        assert (found.stiffness_class == CLASSES.index("indefinite")).any()
+
+
+def test_rigid_joints_and_many_loads(robot: Robot) -> None:
+    springs = np.full(robot.n, np.inf)
+    springs[: max(1, robot.n // 2)] = 4e5
+    soft = np.isfinite(springs)
+    loads = np.array([[FORCE], [WRENCH], [np.zeros(6)]])
+    a = poses(robot, 130)
+    found = stiffness_batch(robot, a, springs, loads, want=("compliance", "position"))
+    assert found.compliance.shape == (3, 130, 3, 3)
+    assert found.position.shape == (130, 3)
+    screws = robot.screws(a)
+    for load, ours in zip(loads[:, 0], found.compliance, strict=True):
+        K = spring_matrix(springs[soft]) - complementary_stiffness(screws, load)[:, soft][..., soft]
+        theirs = cartesian_compliance(screws.linear_jacobian[..., soft], K)
+        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-12 * np.abs(theirs).max())
+
+
+def test_one_load_for_each_pose_and_threads(robot: Robot) -> None:
+    count = 40_000  # more than one piece, so that threads do share
+    a = poses(robot, count)
+    loads = np.random.default_rng(3).normal(size=(count, 6)) * 100.0
+    springs = np.full(robot.n, 4e5)
+    one = stiffness_batch(robot, a, springs, loads, threads=1)
+    two = stiffness_batch(robot, a, springs, loads, threads=3)
+    np.testing.assert_array_equal(one.compliance, two.compliance)
+    alone = stiffness_batch(robot, a[-7:], springs, loads[-7:])
+    np.testing.assert_allclose(one.compliance[-7:], alone.compliance, rtol=1e-13, atol=1e-20)
+
+
+def with_virtual_joints(robot: Robot) -> Mechanism:
+    """Bearing tilts, a sliding base and a twisting last link."""
+    T = np.eye(4)
+    T[:3, 3] = (0.02, -0.1, 0.3)
+    return robot.mechanism().with_virtual_joints(
+        [
+            VirtualJoint("base.slide", -1, np.eye(4), np.array([0.6, 0.8, 0.0]), revolute=False),
+            VirtualJoint("tilt.x", 0, T, np.array([1.0, 0.0, 0.0])),
+            VirtualJoint("tilt.y", 0, T, np.array([0.0, 1.0, 0.0])),
+            VirtualJoint("twist", robot.mechanism().chain.m - 1, T, np.array([0.0, 0.0, 1.0])),
+        ]
+    )
+
+
+def test_virtual_joints_and_springs_that_are_coupled(robot: Robot) -> None:
+    mechanism = with_virtual_joints(robot)
+    rng = np.random.default_rng(5)
+    root = rng.normal(size=(mechanism.n, mechanism.n))
+    K_theta = 1e5 * (root @ root.T + 5.0 * np.eye(mechanism.n))
+    a = poses(robot, 90)
+    found = stiffness_batch(mechanism, a, K_theta, WRENCH, want=("jacobian", "compliance", "K_C"))
+    screws = mechanism.screws(np.concatenate([a, np.zeros((90, 4))], axis=1))
+    K_C = complementary_stiffness(screws, WRENCH)
+    theirs = cartesian_compliance(screws.linear_jacobian, K_theta - K_C)
+    np.testing.assert_allclose(found.jacobian, screws.jacobian, atol=1e-12)
+    np.testing.assert_allclose(found.K_C, K_C, atol=1e-12 * np.abs(K_C).max())
+    np.testing.assert_allclose(found.compliance, theirs, atol=1e-12 * np.abs(theirs).max())
+
+
+def test_singular_poses_are_rigid_in_the_lost_direction() -> None:
+    planar = load_robot(
+        '<robot name="p"><link name="a"/><link name="b"/><link name="c"/><link name="t"/>'
+        '<joint name="1" type="continuous"><parent link="a"/><child link="b"/>'
+        '<axis xyz="0 0 1"/></joint><joint name="2" type="continuous"><parent link="b"/>'
+        '<child link="c"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint>'
+        '<joint name="3" type="fixed"><parent link="c"/><child link="t"/>'
+        '<origin xyz="0.5 0 0"/></joint></robot>'
+    )
+    found = stiffness_batch(
+        planar, [[0.0, 0.0], [0.3, 0.9]], [2.0, 5.0], np.zeros(6), want=("values", "condition")
+    )
+    # stretched out, only y yields: 1.5²/2 + 0.5²/5 metres per newton
+    np.testing.assert_allclose(found.values[0, 0], 1.0 / (1.5**2 / 2 + 0.25 / 5), rtol=1e-12)
+    assert np.isinf(found.values[0, 1:]).all()
+    assert np.isinf(found.values[1]).tolist() == [False, False, True]
+    assert found.condition.tolist() == [0.0, 0.0]
+
+
+def test_equal_principal_values_lose_no_digits() -> None:
+    """A gantry of three slides: its compliance is its springs, turned by its axes."""
+    rng = np.random.default_rng(2)
+    for spread in ([1.0, 1.0, 1.0], [1.0, 1.0, 1.0 + 1e-9], [1.0, 1.0 + 1e-7, 3.0], [1, 3, 3.0]):
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        links = "".join(f'<link name="l{k}"/>' for k in range(4))
+        joints = "".join(
+            f'<joint name="s{k}" type="prismatic"><parent link="l{k}"/><child link="l{k + 1}"/>'
+            f'<axis xyz="{" ".join(map(repr, turn[k].tolist()))}"/>'
+            '<limit lower="-1" upper="1" effort="0" velocity="0"/></joint>'
+            for k in range(3)
+        )
+        gantry = load_robot(f'<robot name="gantry">{links}{joints}</robot>')
+        springs = 1e6 * np.array(spread)
+        want = ("values", "directions", "compliance")
+        found = stiffness_batch(gantry, np.zeros((1, 3)), springs, FORCE, want=want)
+        np.testing.assert_allclose(found.values[0], np.sort(springs), rtol=4e-15)
+        R = found.directions[0]
+        np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-14)
+        rebuilt = R.T @ np.diag(1.0 / found.values[0]) @ R
+        np.testing.assert_allclose(rebuilt, found.compliance[0], atol=1e-14 * 1e-6)
+
+
+def test_exactly_critical_load_gives_no_number() -> None:
+    pendulum = load_robot(
+        '<robot name="p"><link name="a"/><link name="b"/><link name="t"/>'
+        '<joint name="1" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
+        '</joint><joint name="3" type="fixed"><parent link="b"/><child link="t"/>'
+        '<origin xyz="2 0 0"/></joint></robot>'
+    )
+    loads = np.array([[[0.0, 0, 0]], [[-3.0, 0, 0]], [[-4.0, 0, 0]], [[-5.0, 0, 0]]])
+    loads = np.concatenate([loads, np.zeros((4, 1, 3))], axis=-1)
+    want = ("values", "stiffness_class", "critical")
+    found = stiffness_batch(pendulum, [[0.0]], [8.0], loads, want=want)
+    names = [CLASSES[k].short for k in found.stiffness_class[:, 0]]
+    assert names == ["PD", "PD", "PSD", "ND"]
+    assert np.isnan(found.values[2]).all()
+    np.testing.assert_allclose(found.values[:2, 0, 0], [2.0, 0.5])
+    np.testing.assert_allclose(found.values[3, 0, 2], -0.5)  # 2² / (8 − 5·2), the wrong way
+    np.testing.assert_allclose(found.critical[1:, 0], [4 / 3, 1.0, 0.8])
+    assert np.isinf(found.critical[0, 0])
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"a": np.zeros((4, 5))}, "6 actuated"),
+        ({"a": np.full((4, 6), np.nan)}, "pose 0"),
+        ({"a": np.full((4, 6), 1e7)}, "radians"),
+        ({"wrench": [1.0, np.nan, 0, 0, 0, 0]}, "load is not a finite"),
+        ({"wrench": np.zeros((5, 6))}, "loads of shape"),
+        ({"wrench": np.zeros((2, 1, 5))}, "loads of shape"),
+        ({"springs": np.full(6, np.inf)}, "no joint has a finite spring"),
+        ({"springs": [1, 1, -1, 1, 1, 1]}, "positive definite"),
+        ({"springs": [1, 1, np.nan, 1, 1, 1]}, "not a number"),
+        ({"springs": [1, 1]}, "for 6 coordinates"),
+        ({"want": ["stifness"]}, "stifness"),
+        ({"point": [0, 0]}, "three finite"),
+    ],
+)
+def test_bad_input_is_refused(changes: dict[str, object], says: str) -> None:
+    robot = load_robot("motoman_sk120")
+    given: dict[str, object] = {"a": np.zeros((4, 6)), "springs": np.ones(6), "wrench": np.zeros(6)}
+    with pytest.raises(InputError, match=says):
+        stiffness_batch(robot, **{**given, **changes})
+
+
+def test_no_poses_give_empty_arrays() -> None:
+    robot = load_robot("motoman_sk120")
+    found = stiffness_batch(robot, np.zeros((0, 6)), np.ones(6), np.zeros(6))
+    assert found.compliance.shape == (0, 3, 3)
+
+
+def test_a_long_start_is_announced(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sk120stiff.stiffness.batch.PATIENCE", 0.01)
+    with caplog.at_level(logging.INFO, logger="sk120stiff"), announced():
+        time.sleep(0.2)
+    assert "Compiling" in caplog.text
+
+
+def test_compiled_code_is_kept_where_the_package_is_read_only(tmp_path: Path) -> None:
+    package = tmp_path / "site"
+    shutil.copytree(Path(sk120stiff.__file__).parent, package / "sk120stiff")
+    cache = tmp_path / "cache"
+    program = "from sk120stiff.stiffness.lanes.block import work; print(work._cache.cache_path)"
+    environment = {**os.environ, "PYTHONPATH": str(package), "NUMBA_CACHE_DIR": str(cache)}
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.startswith(str(cache))
