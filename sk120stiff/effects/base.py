@@ -21,13 +21,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.coupling import Array
+
+REFERENCE_LENGTH = 2.87  # m; arms of this size are what usual sizes are stated for
 
 
 @dataclass(frozen=True)
@@ -83,30 +86,67 @@ class ParameterSpec:
         return float(np.inf) if internal == 0.0 else std / internal**2
 
 
+#: public unit → internal unit, and the power of an arm's length with which a stiffness grows when
+#: the whole arm is drawn larger in the same material
+_STIFFNESS = {
+    "N*m/rad": ("rad/(N*m)", 3),
+    "N/m": ("m/N", 1),
+    "N*m**2": ("1/(N*m**2)", 4),
+}
+
+
 def compliance(
-    name: str, *, softest: float, typical: float, unit: str = "N*m/rad", signed: bool = False
+    name: str,
+    *,
+    softest: float,
+    typical: float,
+    scale: float,
+    unit: str = "N*m/rad",
+    signed: bool = False,
 ) -> ParameterSpec:
     """A compliance that people give as a stiffness.
 
     Parameters
     ----------
     softest, typical
-        Stiffness [unit] below which the value is implausible, and one that is often met.
+        Stiffness [unit] below which the value is implausible, and one that is often met, on an arm
+        of `REFERENCE_LENGTH`.
+    scale
+        Length of the arm over `REFERENCE_LENGTH`.
     unit
         ``N*m/rad``, ``N/m`` or ``N*m**2`` (beams).
     signed
         May be negative (a cross term).
     """
-    inverse = {"N*m/rad": "rad/(N*m)", "N/m": "m/N", "N*m**2": "1/(N*m**2)"}[unit]
+    inverse, power = _STIFFNESS[unit]
     return ParameterSpec(
         name=name,
         unit=unit,
         internal_unit=inverse,
-        plausible=1.0 / softest,
-        typical=1.0 / typical,
+        plausible=1.0 / (softest * scale**power),
+        typical=1.0 / (typical * scale**power),
         reciprocal=True,
         lower=-np.inf if signed else 0.0,
     )
+
+
+@dataclass(frozen=True)
+class Options:
+    """What an effect may be told beside its place.
+
+    Attributes
+    ----------
+    poses
+        Poses of the experiment, for `zero_offset`.
+    timed
+        The experiment has times, for `reading_drift`.
+    breaks
+        Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
+    """
+
+    poses: tuple[str, ...] = ()
+    timed: bool = False
+    breaks: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -119,11 +159,19 @@ class Effect(ABC):
         Public identifier (class attribute).
     where
         URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
+    scale
+        Length of the arm over `REFERENCE_LENGTH`: what is usual and what is plausible goes with it.
     """
 
     where: str
+    scale: float = 1.0
 
     name: ClassVar[str]
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The effect at one place of a robot."""
+        return cls(where, scale_of(robot))
 
     @property
     def id(self) -> str:
@@ -143,6 +191,11 @@ class Effect(ABC):
     @abstractmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every `where` at which the effect can act on this robot."""
+
+    @property
+    def ties(self) -> tuple[tuple[int, ...], ...]:
+        """Groups of parameters that are equal where the part is as stiff one way as the other."""
+        return ()
 
     def aliases(self, robot: Robot) -> tuple[str, ...]:
         """Other effects (``name:where``) that no reading of positions can tell from this one."""
@@ -210,6 +263,15 @@ class LinearElastic(Elastic):
         )
 
 
+class Switching(Elastic):
+    """An elastic law that jumps with the sign of a torque.
+
+    It is given the torques of the true load at the unloaded pose: they decide the side on which a
+    joint comes to rest. Were the torques of the loaded pose asked, an arm could find no rest
+    between two sides. The elongation is therefore a constant during the search for equilibrium.
+    """
+
+
 class Geometric(Effect):
     """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ p_k e_k."""
 
@@ -241,7 +303,8 @@ class Misreading(Effect):
 
     def matrix(self, values: Array) -> Array:
         """(d, d) derivative of the output by the input."""
-        return np.eye(self.generators.shape[-1]) + np.tensordot(values, self.generators, axes=1)
+        identity = np.eye(self.generators.shape[-1])
+        return np.asarray(identity + np.tensordot(values, self.generators, axes=1))
 
 
 class LoadError(Misreading):
@@ -250,6 +313,11 @@ class LoadError(Misreading):
 
 class ReadingError(Misreading):
     """The reading differs from the displacement; x is the displacement (3), base axes [m]."""
+
+
+def scale_of(robot: Robot) -> float:
+    """Length of a robot's arm over `REFERENCE_LENGTH`; 1 for what has no length."""
+    return arm_length(robot) / REFERENCE_LENGTH or 1.0
 
 
 def unit_vectors(dimension: int, picks: Sequence[int]) -> Array:

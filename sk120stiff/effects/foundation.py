@@ -1,4 +1,4 @@
-"""The base on its foundation: it rocks about horizontal axes, and it slides."""
+"""The base on its foundation: it rocks about the axes of its mounting surface, and it slides."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ from sk120stiff.robot.coupling import Array
 class BaseRocking(LinearElastic):
     """The base turns about the x and y axes of the base frame through the foundation point.
 
-    Its yaw is left out: about a vertical first joint it is that joint's spring under another name.
+    The base frame's z is the normal of the mounting surface, whether floor, wall or ceiling. Yaw
+    about it is left out: where the first joint turns about that line, it is that joint's spring
+    under another name.
     """
 
     name: ClassVar[str] = "base_rocking"
@@ -26,13 +28,18 @@ class BaseRocking(LinearElastic):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Rocking stiffness about x and about y."""
         return (
-            compliance("stiffness_x", softest=3e5, typical=1e7),
-            compliance("stiffness_y", softest=3e5, typical=1e7),
+            compliance("stiffness_x", softest=3e5, typical=1e7, scale=self.scale),
+            compliance("stiffness_y", softest=3e5, typical=1e7, scale=self.scale),
         )
+
+    @property
+    def ties(self) -> tuple[tuple[int, ...], ...]:
+        """Often as stiff about one axis as about the other."""
+        return ((0, 1),)
 
     def sentence(self) -> str:
         """What happens."""
-        return "The base rocks on its foundation about horizontal axes."
+        return "The base rocks on its foundation."
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
@@ -63,9 +70,14 @@ class BaseSliding(LinearElastic):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Stiffness against shifting along x, y and z."""
         return tuple(
-            compliance(f"stiffness_{label}", softest=2e6, typical=7e7, unit="N/m")
+            compliance(f"stiffness_{label}", softest=2e6, typical=7e7, scale=self.scale, unit="N/m")
             for label in "xyz"
         )
+
+    @property
+    def ties(self) -> tuple[tuple[int, ...], ...]:
+        """Often as stiff along one axis as along the others."""
+        return ((0, 1, 2),)
 
     def sentence(self) -> str:
         """What happens."""

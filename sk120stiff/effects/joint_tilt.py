@@ -16,7 +16,10 @@ from sk120stiff.robot.coupling import Array
 
 @dataclass(frozen=True)
 class JointTilt(LinearElastic):
-    """Two virtual joints at the bearing, on its moving side: along the link, and across it."""
+    """Two virtual joints at the bearing, on its moving side: along the link, and across it.
+
+    The bearing of a joint that slides is its carriage.
+    """
 
     name: ClassVar[str] = "joint_tilt"
 
@@ -24,9 +27,14 @@ class JointTilt(LinearElastic):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Tilt stiffness about the link's direction and across it."""
         return (
-            compliance("stiffness_along", softest=3e5, typical=1e7),
-            compliance("stiffness_across", softest=3e5, typical=1e7),
+            compliance("stiffness_along", softest=3e5, typical=1e7, scale=self.scale),
+            compliance("stiffness_across", softest=3e5, typical=1e7, scale=self.scale),
         )
+
+    @property
+    def ties(self) -> tuple[tuple[int, ...], ...]:
+        """Often as stiff about one axis as about the other."""
+        return ((0, 1),)
 
     def sentence(self) -> str:
         """What happens."""
@@ -34,12 +42,8 @@ class JointTilt(LinearElastic):
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every actuated joint that turns."""
-        return tuple(
-            joint.name
-            for joint in arm_joints(robot)
-            if joint.revolute and joint.actuated is not None
-        )
+        """Every actuated joint on the way to the tool."""
+        return tuple(joint.name for joint in arm_joints(robot) if joint.actuated is not None)
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """One joint for each tilt axis, at the joint's origin."""

@@ -1,0 +1,190 @@
+"""Is anything left over once the named effects are in the model?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from sk120stiff.explain.regression import Index, Regression
+from sk120stiff.explain.saturated import load_basis, pose_columns
+from sk120stiff.identify import Fit
+from sk120stiff.robot.coupling import Array
+
+LEVEL = 1e-3
+
+
+@dataclass(frozen=True)
+class Adequacy:
+    """Tests of what a model leaves over.
+
+    Attributes
+    ----------
+    probability
+        Smallest probability of the tests, times their number (Bonferroni).
+    excess
+        Size of the left-over structure in units of the noise, √λ.
+    explained
+        Size of what the named effects explain beyond the base model, in the same units.
+    tests
+        For each test its name and probability.
+    """
+
+    probability: float
+    excess: float
+    explained: float
+    tests: dict[str, float]
+
+    @property
+    def lacking(self) -> bool:
+        """Something is missing beyond doubt."""
+        return self.probability < LEVEL
+
+
+def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+    """Test the whitened gap of a fitted model.
+
+    Two tests where the noise is known: the whole misfit (χ²), and the part that goes in proportion
+    to the load at single poses, where every elastic cause shows. Where the noise is estimated, the
+    second is an F test against what the pose-by-pose regression leaves.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    regression
+        Linearised at that fit.
+    columns
+        Its columns in the regression.
+    """
+    inside = _orthonormal(regression.X[:, columns])
+    r = fit.residual - inside @ (inside.T @ fit.residual)
+    total, freedom = float(r @ r), max(len(r) - inside.shape[1], 1)
+    rest, rest_freedom = _beyond_poses(fit, r, inside)
+    structured, dimension = total - rest, freedom - rest_freedom
+    tests: dict[str, float]
+
+    @property
+    def lacking(self) -> bool:
+        """Something is missing beyond doubt."""
+        return self.probability < LEVEL
+
+
+def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+    """Test the whitened gap of a fitted model.
+
+    Two tests where the noise is known: the whole misfit (χ²), and the part that goes in proportion
+    to the load at single poses, where every elastic cause shows. Where the noise is estimated, the
+    second is an F test against what the pose-by-pose regression leaves.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    regression
+        Linearised at that fit.
+    columns
+        Its columns in the regression.
+    """
+    inside = _orthonormal(regression.X[:, columns])
+    r = fit.residual - inside @ (inside.T @ fit.residual)
+    rest, outside = _beyond_poses(fit, r, inside)
+    total, freedom = float(r @ r), max(len(r) - inside.shape[1], 1)
+    left = _orthonormal(outside)
+    rest -= float(((left.T @ _beyond_poses_residual(fit, r)) ** 2).sum())
+    tests: dict[str, float]
+
+    @property
+    def lacking(self) -> bool:
+        """Something is missing beyond doubt."""
+        return self.probability < LEVEL
+
+
+def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+    """Test the whitened gap of a fitted model.
+
+    Two tests where the noise is known: the whole misfit (χ²), and the part that goes in proportion
+    to the load at single poses, where every elastic cause shows. Where the noise is estimated, the
+    second is an F test against what the pose-by-pose regression leaves.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    regression
+        Linearised at that fit.
+    columns
+        Its columns in the regression.
+    """
+    r = fit.residual
+    inside = _orthonormal(regression.X[:, columns])
+    basis = load_basis(fit.problem.situation, cubic=False)
+    local = fit.problem.whitener.apply(pose_columns(basis))
+    group = np.repeat(fit.problem.situation.pose, 3)
+    blocks = []
+    for pose in np.unique(group):
+        rows = np.flatnonzero(group == pose)
+        block = np.zeros((len(r), local.shape[1]))
+        block[rows] = local[rows]
+        blocks.append(block)
+    wide = np.hstack(blocks)
+    free = _orthonormal(wide - inside @ (inside.T @ wide))
+    along = free.T @ r
+    structured, dimension = float(along @ along), free.shape[1]
+    total, freedom = fit.chi_square, max(len(r) - inside.shape[1], 1)
+    tests: dict[str, float] = {}
+    scale = 1.0
+    if regression.sigma_known:
+        tests["whole misfit"] = float(stats.chi2.sf(total, freedom))
+        if dimension:
+            tests["in proportion to the load"] = float(stats.chi2.sf(structured, dimension))
+    elif dimension and rest_freedom >= 5:
+        scale = rest / rest_freedom
+        ratio = structured / dimension / scale
+        tests["in proportion to the load"] = float(stats.f.sf(ratio, dimension, rest_freedom))
+    probability = min(1.0, len(tests) * min(tests.values(), default=1.0))
+    beyond = max(structured / scale - dimension, total / scale - freedom, 0.0)
+    return Adequacy(probability, float(np.sqrt(beyond)), _explained(regression, columns), tests)
+
+
+def _beyond_poses(fit: Fit, r: Array, inside: Array) -> tuple[float, int]:
+    """Sum of squares that model and pose-by-pose regression together leave, and its freedom."""
+    situation = fit.problem.situation
+    local = fit.problem.whitener.apply(pose_columns(load_basis(situation, cubic=False)))
+    group = np.repeat(situation.pose, 3)
+    left, columns, rank = r.copy(), inside.copy(), 0
+    for pose in np.unique(group):
+        rows = group == pose
+        block = _orthonormal(local[rows])
+        left[rows] -= block @ (block.T @ left[rows])
+        columns[rows] -= block @ (block.T @ columns[rows])
+        rank += block.shape[1]
+    own = _orthonormal(columns, keep=1e-6)
+    left -= own @ (own.T @ left)
+    return float(left @ left), len(r) - rank - own.shape[1]
+
+
+def _explained(regression: Regression, columns: Index) -> float:
+    """‖M_B S v‖: what the chosen candidates explain that the base model cannot imitate."""
+    named = np.setdiff1d(columns, regression.base)
+    if not len(named):
+        return 0.0
+    values = np.linalg.lstsq(regression.X[:, columns], regression.y, rcond=None)[0]
+    part = dict(zip(columns.tolist(), values, strict=True))
+    signature = regression.X[:, named] @ np.array([part[int(c)] for c in named])
+    base = _orthonormal(regression.X[:, regression.base])
+    return float(np.linalg.norm(signature - base @ (base.T @ signature)))
+
+
+def _orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
+    """(R, rank) orthonormal basis of the column space; columns are scaled to one length first.
+
+    Columns shorter than `keep` times the longest (for an orthonormal input: times one) are dropped.
+    """
+    norms = np.linalg.norm(matrix, axis=0)
+    kept = matrix[:, norms > keep * max(float(norms.max(initial=0.0)), 1e-300)]
+    if not kept.shape[1]:
+        return np.zeros((len(matrix), 0))
+    U, singular, _ = np.linalg.svd(kept / np.linalg.norm(kept, axis=0), full_matrices=False)
+    return np.asarray(U[:, singular > 1e-8 * singular[0]])

@@ -1,0 +1,57 @@
+"""Which names are two words for one thing, whatever poses are measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.model import Model
+from sk120stiff.plan import random_pool
+from sk120stiff.robot.coupling import Array
+
+SAME = 1e-3  # share of the signature that may differ
+
+
+def exact_aliases(
+    model: Model, effect: Effect, others: Sequence[Effect], *, point: Array
+) -> tuple[str, ...]:
+    """Those of `others` that imitate the fitted `effect` at all poses and loads.
+
+    Parameters
+    ----------
+    model
+        Fitted model that holds `effect`.
+    effect
+        The named effect.
+    others
+        Contenders.
+    point
+        (3,) measured point in the tool frame [m].
+    """
+    pool = random_pool(model.robot, poses=150, directions=3, force=300.0, point=point, seed=1)
+    full = model
+    present = {e.id for e in model.effects}
+    for other in others:
+        if other.id not in present:
+            full = full + other
+    _, derivative = full.predict_with_sensitivities(pool.situation)
+    typical = np.array([parameter.spec.typical for parameter in full.parameters])
+    X = (derivative * typical).reshape(-1, len(typical))
+    owner = np.array([parameter.effect.id for parameter in full.parameters])
+    signature = X[:, owner == effect.id] @ (full.values / typical)[owner == effect.id]
+    base = X[:, np.isin(owner, list(present - {effect.id}))]
+    reference = np.linalg.norm(_without(base, signature))
+    found = []
+    for other in others:
+        both = np.hstack([base, X[:, owner == other.id]])
+        if np.linalg.norm(_without(both, signature)) <= SAME * max(reference, 1e-300):
+            found.append(other.id)
+    return tuple(found)
+
+
+def _without(columns: Array, y: Array) -> Array:
+    norms = np.linalg.norm(columns, axis=0)
+    kept = columns[:, norms > 0.0] / norms[norms > 0.0]
+    return np.asarray(y - kept @ np.linalg.lstsq(kept, y, rcond=1e-10)[0])

@@ -1,0 +1,151 @@
+"""What `explain` answers: frozen data, ready to be shown or written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from sk120stiff.effects import Effect
+from sk120stiff.explain.adequacy import Adequacy
+from sk120stiff.explain.confirm import Confirmation
+from sk120stiff.identify import Fit
+from sk120stiff.measurements import NoiseModel
+from sk120stiff.robot.coupling import Array
+
+Verdict = Literal["none", "named", "ambiguous", "outside"]
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Why an effect was named.
+
+    Attributes
+    ----------
+    score_gain
+        By how much the extended BIC gets worse without the effect.
+    misfit_gain
+        By how much the misfit (χ²) grows without it.
+    runner_up, runner_up_gap
+        The best effect that is no alternative (``name:where``), and by how much it loses.
+    confirmation
+        Cross-validation and resampling of the poses.
+    """
+
+    score_gain: float
+    misfit_gain: float
+    runner_up: str | None
+    runner_up_gap: float
+    confirmation: Confirmation
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One named effect.
+
+    Attributes
+    ----------
+    effect
+        The effect.
+    alternatives
+        Other effects (``name:where``) that these readings cannot tell from it.
+    exact
+        Those of the alternatives that no readings of this kind could tell from it.
+    evidence
+        Why it was named.
+    """
+
+    effect: Effect
+    alternatives: tuple[str, ...]
+    exact: tuple[str, ...]
+    evidence: Evidence
+
+    @property
+    def settled(self) -> bool:
+        """No further poses could tell more."""
+        return set(self.alternatives) <= set(self.exact)
+
+
+@dataclass(frozen=True)
+class Step:
+    """The gap with one more effect in the model, rms per axis [m].
+
+    Attributes
+    ----------
+    label
+        ``joint_springs``, then ``+ name:where``.
+    fit_rms
+        On the readings that were fitted.
+    heldout_rms
+        On poses left out of the fit (cross-validation), or on the hold-out file.
+    """
+
+    label: str
+    fit_rms: float
+    heldout_rms: float
+
+
+@dataclass(frozen=True)
+class Detectable:
+    """Smallest size of one parameter that these readings would have shown.
+
+    `value` is in the parameter's public unit (for a stiffness: the largest one that shows); None
+    means that no plausible value would have shown.
+    """
+
+    name: str
+    value: float | None
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """The whole answer.
+
+    Attributes
+    ----------
+    verdict
+        See PRODUCT: none, named, ambiguous, outside.
+    findings
+        Named effects in the order in which they were added.
+    base, final
+        Fits of the base model and of the model with the findings.
+    steps
+        The gap step by step.
+    noise
+        The noise model used.
+    noise_reasons
+        What was decided about it beyond the data's own words.
+    set_aside
+        Rows (of the readings in use) treated as outliers.
+    adequacy
+        Tests of what the final model leaves over.
+    where
+        Plain statements on where the gap of the base model lives.
+    suspects
+        For verdict ``outside``: what comes nearest, as ``name:where``.
+    not_observable
+        Effects that these readings cannot show at any plausible size.
+    smallest_detectable
+        For every parameter of the catalogue what would have shown.
+    next_poses
+        (K, n) coordinates and (K, 6) wrenches to measure next, or None.
+    dispersion
+        Further figures for reports.
+    """
+
+    verdict: Verdict
+    findings: tuple[Finding, ...]
+    base: Fit
+    final: Fit
+    steps: tuple[Step, ...]
+    noise: NoiseModel
+    noise_reasons: tuple[str, ...]
+    set_aside: tuple[int, ...]
+    adequacy: Adequacy
+    where: tuple[str, ...] = ()
+    suspects: tuple[str, ...] = ()
+    not_observable: tuple[str, ...] = ()
+    smallest_detectable: tuple[Detectable, ...] = ()
+    next_poses: tuple[Array, Array] | None = None
+    details: Mapping[str, Any] = field(default_factory=dict)

@@ -1,0 +1,143 @@
+"""What the readings say of themselves, pose by pose, without any model of the robot.
+
+At one pose every elastic cause, known or not, displaces the point in proportion to the load (to
+first order). So a regression of displacement on load, free at every pose, leaves nothing but noise
+and what is not linear in the load. It judges noise models before the catalogue comes in, and it is
+the yardstick for what a fitted model has left over.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.effects import Situation
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
+from sk120stiff.robot.coupling import Array
+
+STRONG = 10.0  # twice the log-likelihood by which a less simple noise model must win
+
+
+def load_basis(situation: Situation, *, cubic: bool) -> Array:
+    """(N, k) the loads of every pose in their own principal directions, sizes of order one.
+
+    Column j of one pose has nothing to do with column j of another. With `cubic` a column for what
+    grows with the cube of the load is added where a pose has readings enough.
+    """
+    scale = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # a moment of 1 N·m counts like 2 N
+    loads = situation.wrench * scale
+    size = max(float(np.abs(loads).max(initial=0.0)), 1e-300)
+    parts: list[tuple[NDArray[np.intp], Array]] = []
+    for pose in range(len(situation.poses)):
+        rows = np.flatnonzero(situation.pose == pose)
+        if not len(rows):
+            continue
+        _, singular, Vt = np.linalg.svd(loads[rows] / size, full_matrices=False)
+        rank = int((singular > 0.02 * singular[0]).sum()) if singular[0] > 0.0 else 0
+        basis = loads[rows] / size @ Vt[:rank].T
+        if cubic and rank and len(rows) >= rank + 3:
+            along = np.linalg.norm(basis, axis=1, keepdims=True)
+            basis = np.hstack([basis, basis[:, :1] * along**2])
+        parts.append((rows, basis))
+    width = max((basis.shape[1] for _, basis in parts), default=0)
+    out = np.zeros((situation.count, width))
+    for rows, basis in parts:
+        out[rows, : basis.shape[1]] = basis
+    return out
+
+
+def pose_columns(basis: Array) -> Array:
+    """(N, 3, 3k) the basis for each reading axis on its own."""
+    N, k = basis.shape
+    return np.einsum("nk,ij->nikj", basis, np.eye(3)).reshape(N, 3, 3 * k)
+
+
+@dataclass(frozen=True, eq=False)
+class PoseNoise:
+    """What the pose-by-pose regression leaves under one noise model.
+
+    Attributes
+    ----------
+    noise
+        The noise model.
+    rss
+        Whitened sum of squares.
+    freedom
+        Its degrees of freedom.
+    likelihood
+        Twice the restricted log-likelihood, up to a constant.
+    """
+
+    noise: NoiseModel
+    rss: float
+    freedom: int
+    likelihood: float
+
+    @property
+    def factor(self) -> float:
+        """Noise seen over noise assumed."""
+        return float(np.sqrt(self.rss / self.freedom)) if self.freedom else 1.0
+
+
+def pose_noise(noise: NoiseModel, measurements: Measurements, situation: Situation) -> PoseNoise:
+    """Restricted likelihood of a noise model under the pose-by-pose regression."""
+    if measurements.displacement is None:
+        raise ValueError("noise cannot be judged without displacements")
+    whitener = noise.whitener(measurements)
+    y = whitener.apply(measurements.displacement)
+    X = whitener.apply(pose_columns(load_basis(situation, cubic=True)))
+    rss, freedom, information = 0.0, len(y), 0.0
+    group = np.repeat(situation.pose, 3)
+    for pose in np.unique(group):
+        rows = group == pose
+        U, singular, _ = np.linalg.svd(X[rows], full_matrices=False)
+        seen = singular > 1e-9 * max(singular[0], 1e-300)
+        along = U[:, seen].T @ y[rows]
+        rss += float(y[rows] @ y[rows] - along @ along)
+        freedom -= int(seen.sum())
+        information += 2.0 * float(np.log(singular[seen]).sum())
+    freedom = max(freedom, 0)
+    fixed = -whitener.logdet - information
+    if noise.stated or not freedom:
+        return PoseNoise(noise, rss, freedom, fixed - rss)
+    return PoseNoise(noise, rss, freedom, fixed - freedom * np.log(max(rss, 1e-300) / freedom))
+
+
+def choose_noise(measurements: Measurements, situation: Situation) -> tuple[NoiseModel, list[str]]:
+    """The noise model that the data's description and the readings themselves ask for.
+
+    Returns
+    -------
+    noise, reasons
+        The model, and what was decided beyond the description, in sentences.
+    """
+    judged = [pose_noise(noise, measurements, situation) for noise in candidates(measurements)]
+    best = judged[0]
+    reasons: list[str] = []
+    if best.freedom >= 10:
+        for other in judged[1:]:
+            needed = STRONG if other.noise.growth != best.noise.growth else 0.0
+            if other.likelihood > best.likelihood + needed:
+                best = other
+        if best is not judged[0]:
+            reasons.append(
+                f"The readings themselves ask for another noise model: {best.noise.describe()}"
+            )
+    noise = best.noise
+    if best.freedom >= 30 and noise.stated:
+        excess = best.factor - 1.0
+        if excess > 4.0 / np.sqrt(2.0 * best.freedom) and excess > 0.1:
+            noise = noise.scaled(best.factor)
+            reasons.append(
+                f"Within a pose the readings scatter {best.factor:.2f} times as much as their "
+                "stated uncertainty; the larger value is used."
+            )
+    elif best.freedom >= 10 and not noise.stated:
+        noise = noise.scaled(best.factor)
+        reasons.append(
+            f"No uncertainty is stated; the scatter within a pose gives "
+            f"{noise.sigma * 1e6:.3g} µm for one reading."
+        )
+    return noise, reasons
