@@ -156,7 +156,7 @@ def _inside(answer: Answer, key: str, value: float) -> bool:
 
 def heldout_ratio(truth: dict[str, Any], predicted: np.ndarray | None) -> float | None:
     """Expected error on sealed readings over that of the truth itself; None without predictions."""
-    if predicted is None or predicted.shape != np.shape(truth["oracle"]):
+    if predicted is None or not predicted.size or predicted.shape != np.shape(truth["oracle"]):
         return None
     miss = 1e6 * np.sqrt(np.mean((predicted - np.array(truth["oracle"])) ** 2))
     floor = truth["sealed_sigma_um"]

@@ -93,7 +93,7 @@ class Case:
             "where": cause.where,
             "sizes": dict(cause.sizes),
             "options": {key: _plain(value) for key, value in cause.options.items()},
-            "quantities": quantities(cause, self.arm, self.world.springs),
+            "quantities": quantities(cause, self.world.springs),
             "visibility": round(entry.visibility, 2),
             "left": round(entry.left, 2),
             "rivals": [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -20,7 +20,10 @@ def _vector(cause: Cause) -> Array:
 
 @dataclass(frozen=True)
 class ForceSensor(Cause):
-    """True = (1 + error) reported + bias, in sensor (tool) axes; moments by the same matrix."""
+    """True = matrix reported + bias, in sensor (tool) axes. Gains concern forces alone; a turned
+    sensor turns moments too."""
+
+    turns_moments: ClassVar[bool] = False
 
     def matrix(self) -> Array:
         return np.eye(3)
@@ -33,7 +36,9 @@ class ForceSensor(Cause):
     ) -> tuple[Array, Array]:
         inside = tool_rotation @ self.matrix() @ np.swapaxes(tool_rotation, 1, 2)
         true_force = np.einsum("nij,nj->ni", inside, force) + tool_rotation @ self.bias()
-        return true_force, np.einsum("nij,nj->ni", inside, moment)
+        if self.turns_moments:
+            moment = np.einsum("nij,nj->ni", inside, moment)
+        return true_force, moment
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,7 @@ class ForceRotation(ForceSensor):
     """Sizes: rotation vector x, y, z [rad]."""
 
     name: ClassVar[str] = "force_rotation"
+    turns_moments: ClassVar[bool] = True
     exact: ClassVar[bool] = True
 
     def matrix(self) -> Array:
@@ -155,7 +161,8 @@ class ToolOffset(Cause):
 
 @dataclass(frozen=True)
 class LinkLength(Cause):
-    """A link is longer than drawn. Sizes: length [m]."""
+    """A link is longer than drawn. Sizes: length [m]. A rod beside it is longer too, so that a
+    parallelogram stays one."""
 
     name: ClassVar[str] = "link_length"
     exact: ClassVar[bool] = True
@@ -164,4 +171,8 @@ class LinkLength(Cause):
         index, span = arm.spans()[self.where]
         before = arm.joints[index + 1].before.copy()
         before[:3, 3] += self.size("length") * span / np.linalg.norm(span)
-        return arm.with_joint(index + 1, before=before)
+        arm = arm.with_joint(index + 1, before=before)
+        if arm.loop is not None and index == arm.loop.pivot:
+            loop = replace(arm.loop, rod=arm.loop.rod + self.size("length"))
+            arm = replace(arm, loop=loop)
+        return arm

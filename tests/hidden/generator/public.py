@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from .arm import Arm
 from .world import Cause
 
 RECIPROCAL = {
@@ -15,6 +14,7 @@ RECIPROCAL = {
     "joint_tilt": {"first": "stiffness_along", "second": "stiffness_across"},
     "base_rocking": {"x": "stiffness_x", "y": "stiffness_y"},
     "base_sliding": {"x": "stiffness_x", "y": "stiffness_y", "z": "stiffness_z"},
+    "closure_rod": {"compliance": "stiffness"},
     "closure_coupling": {"compliance": "cross_stiffness"},
 }
 DIRECT = {
@@ -33,7 +33,7 @@ DIRECT = {
 }
 
 
-def quantities(cause: Cause, arm: Arm, springs: Mapping[str, float]) -> dict[str, float]:
+def quantities(cause: Cause, springs: Mapping[str, float]) -> dict[str, float]:
     """Parameter name -> true value (SI), as the product's model file would write it."""
     out = {}
     for key, value in cause.sizes.items():
@@ -41,9 +41,6 @@ def quantities(cause: Cause, arm: Arm, springs: Mapping[str, float]) -> dict[str
             out[RECIPROCAL[cause.name][key]] = 1.0 / value
         if key in DIRECT.get(cause.name, {}):
             out[DIRECT[cause.name][key]] = value
-    if cause.name == "closure_rod" and arm.loop is not None:
-        lever = arm.loop.lever @ arm.loop.lever
-        out["stiffness"] = float(lever / cause.size("compliance"))
     if cause.name == "gear_hardening" and "cubic" in cause.sizes:
         full = float(cause.options["T"])  # type: ignore[arg-type]
         out["cubic"] = springs[cause.where] * cause.size("cubic") / (3.0 * full**2)

@@ -1,0 +1,198 @@
+"""The scorer on hand-made answers, and the runner on a stand-in program."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.hidden import run, score
+from tests.hidden.answers import identity, read_answer, read_predictions
+from tests.hidden.judge import coverage, heldout_ratio, mark
+
+TILT = {
+    "name": "joint_tilt",
+    "where": "joint_2_l",
+    "left": 30.0,
+    "quantities": {"stiffness_along": 1.0e7},
+    "rivals": [
+        {"name": "link_torsion", "where": "link_2_l", "separation": 0.4, "angle_deg": 2.0},
+        {"name": "base_rocking", "where": "base_link", "separation": 20.0, "angle_deg": 40.0},
+    ],
+}
+ROCK = {
+    "name": "base_rocking",
+    "where": "base_link",
+    "left": 12.0,
+    "quantities": {"stiffness_x": 1e7},
+    "rivals": [],
+}
+
+
+def truth(level: str, *effects: dict[str, Any], expected: str = "named") -> dict[str, Any]:
+    return {
+        "level": level, "robot": "sk120", "note": "", "expected": expected,
+        "effects": list(effects), "springs": {"joint_2_l": 4e5}, "count": len(effects),
+        "accepted": ["joint_tilt:joint_2_l", "link_torsion:link_2_l"],
+        "pair": ["link_torsion:link_2_l"],
+    }  # fmt: skip
+
+
+def answered(tmp_path: Path, verdict: str, *effects: tuple[str, str, list[str]], **more: Any):  # type: ignore[no-untyped-def]
+    document = {
+        "verdict": verdict,
+        "effects": [
+            {"name": name, "where": where, "alternatives": others, "parameters": []}
+            for name, where, others in effects
+        ],
+        **more,
+    }
+    (tmp_path / "verdict.json").write_text(json.dumps(document))
+    (tmp_path / "run.json").write_text(json.dumps({"exit": 0, "seconds": 1.0}))
+    return read_answer(tmp_path)
+
+
+RIGHT = ("joint_tilt", "joint_2_l", [])
+BOTH = ("joint_tilt", "joint_2_l", ["link_torsion:link_2_l"])
+OTHER = ("joint_tilt", "joint_1_s", [])
+ROCKS = ("base_rocking", "foundation", [])
+
+
+@pytest.mark.parametrize(
+    ("level", "hidden", "verdict", "effects", "share", "wrong"),
+    [
+        ("L0", (), "none", (), 1.0, 0),
+        ("L0", (), "named", (RIGHT,), 0.0, 1),
+        ("L0", (), "outside", (), 0.0, 0),
+        ("L8", (), "ambiguous", (BOTH,), 0.0, 1),
+        ("L1", (TILT,), "named", (RIGHT,), 1.0, 0),
+        ("L1", (TILT,), "named", (OTHER,), 0.0, 1),  # right name, wrong joint
+        ("L1", (TILT,), "ambiguous", (BOTH,), 0.5, 0),
+        ("L1", (TILT,), "none", (), 0.0, 0),
+        ("L1", (TILT,), "named", (RIGHT, ROCKS), 0.0, 1),
+        ("L1", (ROCK,), "named", (ROCKS,), 1.0, 0),  # one base: any place is right
+        ("L6", (TILT, ROCK), "named", (ROCKS, RIGHT), 1.0, 0),
+        ("L6", (TILT, ROCK), "named", (RIGHT,), 0.0, 0),
+        ("L6", (TILT, ROCK), "ambiguous", (ROCKS, BOTH), 0.5, 0),
+        ("L6", (TILT, {**ROCK, "left": 2.0}), "named", (RIGHT,), 1.0, 0),
+        ("L5", (TILT,), "ambiguous", (BOTH,), 1.0, 0),
+        ("L5", (TILT,), "named", (RIGHT,), 0.0, 0),
+        ("L7", (TILT,), "outside", (), 1.0, 0),
+        ("L7", (TILT,), "outside", (ROCKS,), 0.0, 1),
+        ("L7", (TILT,), "none", (), 0.0, 0),
+        ("L4", (TILT,), "named", (RIGHT,), 0.0, 0),
+        ("L4", (TILT,), "ambiguous", (BOTH,), 0.5, 0),  # no poses that settle it
+        ("L4", (TILT,), "ambiguous", (OTHER,), 0.0, 1),
+    ],
+)
+def test_marks(  # type: ignore[no-untyped-def]
+    tmp_path, level, hidden, verdict, effects, share, wrong
+) -> None:
+    expected = "none" if level in {"L0", "L8"} else "named"
+    answer = answered(tmp_path, verdict, *effects)
+    assert mark(truth(level, *hidden, expected=expected), answer)[:2] == (share, wrong)
+
+
+def test_near_pair_with_poses_is_right(tmp_path: Path) -> None:
+    (tmp_path / "next_poses.csv").write_text("pose\n1\n")
+    answer = answered(tmp_path, "ambiguous", BOTH, next_poses="next_poses.csv")
+    assert mark(truth("L4", TILT), answer)[0] == 1.0
+    crowd = ("joint_tilt", "joint_2_l", ["link_torsion:link_2_l", "base_rocking:base_link"])
+    answer = answered(tmp_path, "ambiguous", crowd, next_poses="next_poses.csv")
+    assert mark(truth("L4", TILT), answer)[0] == 0.5
+
+
+def test_swallowed_cause_may_stay_unnamed(tmp_path: Path) -> None:
+    yaw = {**ROCK, "left": 0.0}
+    assert mark(truth("L5", yaw, expected="none"), answered(tmp_path, "none"))[0] == 1.0
+    named = answered(tmp_path, "named", ROCKS)
+    assert mark(truth("L5", yaw, expected="none"), named)[0] == 0.0
+
+
+def test_no_answer_is_no_point(tmp_path: Path) -> None:
+    (tmp_path / "run.json").write_text(json.dumps({"exit": None, "seconds": 300.0}))
+    answer = read_answer(tmp_path)
+    assert answer.verdict == "error"
+    assert mark(truth("L0", expected="none"), answer)[0] == 0.0
+    assert mark(truth("L7", TILT), answer)[0] == 0.0
+
+
+def test_one_spelling_per_name() -> None:
+    assert identity("closure_coupling", "joint_3_u, joint_2_l") == identity(
+        "closure_coupling", "joint_2_l+joint_3_u"
+    )
+    assert identity("force_bias", "sensor") == identity("force_bias", "tool0")
+    assert identity("joint_tilt", "a") != identity("joint_tilt", "b")
+
+
+def test_coverage_reads_intervals(tmp_path: Path) -> None:
+    document = {
+        "verdict": "named",
+        "effects": [{
+            "name": "joint_tilt", "where": "joint_2_l", "alternatives": [],
+            "parameters": [{"name": "stiffness_along", "value": 1.1e7, "std": 0.06e7,
+                            "unit": "N*m/rad"}],
+        }],
+    }  # fmt: skip
+    (tmp_path / "verdict.json").write_text(json.dumps(document))
+    (tmp_path / "model.yaml").write_text(
+        "effects:\n- name: joint_springs\n  where: joint_2_l\n  parameters:\n"
+        "    stiffness: {value: 410000.0, unit: N*m/rad, std: 1000.0}\n"
+    )
+    answer = read_answer(tmp_path)
+    assert coverage(truth("L1", TILT), answer, 1.0) == ([True], [False])
+    assert coverage(truth("L1", TILT), answer, 0.5) == ([], [])
+
+
+def test_heldout_ratio(tmp_path: Path) -> None:
+    oracle = np.zeros((4, 3))
+    path = tmp_path / "predicted.csv"
+    lines = ["pose,dx_predicted[um],dy_predicted[um],dz_predicted[um]"] + ["1,6,6,6"] * 4
+    path.write_text("\n".join(lines))
+    case = {"oracle": oracle.tolist(), "sealed_sigma_um": 8.0}
+    assert heldout_ratio(case, read_predictions(path)) == pytest.approx(10.0 / 8.0)
+    assert heldout_ratio(case, read_predictions(tmp_path / "none.csv")) is None
+
+
+PROGRAM = """
+import json, pathlib, sys
+given = sys.argv[1:]
+out = pathlib.Path(given[given.index("--out") + 1])
+if given[0] == "explain":
+    (out / "model.yaml").write_text("effects: []")
+    (out / "verdict.json").write_text(json.dumps({"verdict": "none", "effects": []}))
+    with open(LOG, "a") as log:
+        log.write(given[1] + "\\n")
+else:
+    out.write_text("dx_predicted[m],dy_predicted[m],dz_predicted[m]\\n")
+"""
+
+
+def test_runner_resumes_and_freezes(  # type: ignore[no-untyped-def]
+    tmp_path, monkeypatch, capsys
+) -> None:
+    log = tmp_path / "log.txt"
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM.replace("LOG", repr(str(log))))
+    monkeypatch.setattr(run, "COMMAND", [sys.executable, str(program)])
+    folder = tmp_path / "bench"
+    for name in ("case_0000", "case_0001"):
+        (folder / "cases" / name).mkdir(parents=True)
+        (folder / "cases" / name / "command.json").write_text("[]")
+        (folder / "truth").mkdir(exist_ok=True)
+        sealed = {**truth("L0", expected="none"), "oracle": [], "sealed_sigma_um": 1.0}
+        (folder / "truth" / f"{name}.json").write_text(json.dumps(sealed))
+    with pytest.raises(score.NotFrozen):
+        score.main([str(folder)])
+    run.main([str(folder), "--jobs", "1"])
+    run.main([str(folder), "--jobs", "1"])  # nothing left to do
+    assert len(log.read_text().splitlines()) == 2
+    score.main([str(folder), "--failures"])
+    assert "| L0 | clean | 2 | 100" in capsys.readouterr().out
+    (folder / "answers/case_0000/verdict.json").write_text('{"verdict": "named"}')
+    with pytest.raises(score.NotFrozen):
+        score.main([str(folder)])
