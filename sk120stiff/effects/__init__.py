@@ -1,4 +1,4 @@
-"""Physical causes by name: each says how it enters, what its parameters are and where it can act."""
+"""Physical causes by name: each says how it enters, what it is described by, where it can act."""
 
 from sk120stiff.effects.base import (
     Effect,
@@ -7,8 +7,10 @@ from sk120stiff.effects.base import (
     Geometric,
     LinearElastic,
     LoadError,
+    Options,
     ParameterSpec,
     ReadingError,
+    Switching,
 )
 from sk120stiff.effects.catalogue import BY_NAME, CATALOGUE, all_effects, effect
 from sk120stiff.effects.situation import Situation, situation_of, situation_of_load
@@ -22,9 +24,11 @@ __all__ = [
     "Geometric",
     "LinearElastic",
     "LoadError",
+    "Options",
     "ParameterSpec",
     "ReadingError",
     "Situation",
+    "Switching",
     "all_effects",
     "effect",
     "situation_of",

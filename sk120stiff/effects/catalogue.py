@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
-from sk120stiff.effects.base import Effect
+from sk120stiff.effects.base import Effect, Options
 from sk120stiff.effects.closure import ClosureCoupling, ClosureRod
 from sk120stiff.effects.force_sensor import ForceBias, ForceCrosstalk, ForceRotation, ForceScale
 from sk120stiff.effects.foundation import BaseRocking, BaseSliding
@@ -57,6 +57,7 @@ def effect(
     *,
     poses: Sequence[str] = (),
     timed: bool = False,
+    breaks: Sequence[float] = (),
 ) -> Effect:
     """One effect at one place of a robot.
 
@@ -72,6 +73,8 @@ def effect(
         Poses of the experiment, for `zero_offset`.
     timed
         The experiment has times, for `reading_drift`.
+    breaks
+        Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
 
     Raises
     ------
@@ -93,16 +96,12 @@ def effect(
             f"the effect {name!r} cannot act at {where!r} on {robot.name}",
             remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
         )
-    if kind is ZeroOffset:
-        return ZeroOffset(where, tuple(poses))
-    if kind is ReadingDrift:
-        return ReadingDrift(where, timed)
-    if issubclass(kind, JointSprings | JointOffset):
-        return kind.at(robot, where)
-    return kind(where)
+    return kind.at(robot, where, Options(tuple(poses), timed, tuple(breaks)))
 
 
-def all_effects(robot: Robot, *, poses: Sequence[str] = (), timed: bool = False) -> tuple[Effect, ...]:
+def all_effects(
+    robot: Robot, *, poses: Sequence[str] = (), timed: bool = False
+) -> tuple[Effect, ...]:
     """Every effect of the catalogue at every place of a robot where it can act."""
     return tuple(
         effect(robot, kind.name, where, poses=poses, timed=timed)

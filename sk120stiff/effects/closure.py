@@ -25,7 +25,9 @@ class ClosureCoupling(LinearElastic):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """The cross compliance, given as its reciprocal; it may have either sign."""
-        return (compliance("cross_stiffness", softest=2e5, typical=1e7, signed=True),)
+        return (
+            compliance("cross_stiffness", softest=2e5, typical=1e7, scale=self.scale, signed=True),
+        )
 
     def sentence(self) -> str:
         """What happens."""
@@ -48,14 +50,18 @@ class ClosureCoupling(LinearElastic):
 
 @dataclass(frozen=True)
 class ClosureRod(LinearElastic):
-    """The linkage rod stretches: c / sin²γ on the joint it holds, γ the crank–rod angle."""
+    """The linkage rod stretches: c / (r sin γ)² on the joint whose crank it holds.
+
+    r is the crank's length and γ the angle between crank and rod. A rod longer by δ stands where a
+    crank further by δ / (r sin γ) would put it, in any four-bar linkage.
+    """
 
     name: ClassVar[str] = "closure_rod"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Joint stiffness that the rod alone would give where crank and rod are square."""
-        return (compliance("stiffness", softest=1e6, typical=2e7),)
+        """Axial stiffness of the rod, EA/L for a plain one, with its pins."""
+        return (compliance("stiffness", softest=3e6, typical=7e7, scale=self.scale, unit="N/m"),)
 
     def sentence(self) -> str:
         """What happens."""
@@ -75,11 +81,12 @@ class ClosureRod(LinearElastic):
         return (self.linkage(robot).drivers[1],)
 
     def patterns(self, situation: Situation) -> Array:
-        """1 / sin²γ at the unloaded pose."""
+        """1 / (r sin γ)² at the unloaded pose [1/m²]."""
         corners = self.linkage(situation.robot).corners
         pivot, elbow, end = (
             situation.robot.screws(situation.a, frame).position for frame in corners
         )
         crank, rod = elbow - pivot, end - elbow
-        square = (np.cross(crank, rod) ** 2).sum(-1) / ((crank**2).sum(-1) * (rod**2).sum(-1))
-        return (1.0 / np.maximum(square, 1e-6))[None, :, None, None]
+        lever = (np.cross(crank, rod) ** 2).sum(-1) / (rod**2).sum(-1)  # (r sin γ)² [m²]
+        folded = 1e-6 * (crank**2).sum(-1)  # where crank and rod fall in line, no rod holds
+        return np.asarray(1.0 / np.maximum(lever, folded))[None, :, None, None]

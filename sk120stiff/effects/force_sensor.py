@@ -62,8 +62,10 @@ class ForceBias(ForceSensorEffect):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True force where the sensor reads zero."""
+        size = self.scale**2
         return tuple(
-            ParameterSpec(f"force_{axis}", "N", "N", plausible=30.0, typical=5.0) for axis in AXES
+            ParameterSpec(f"force_{axis}", "N", "N", plausible=30.0 * size, typical=5.0 * size)
+            for axis in AXES
         )
 
     def sentence(self) -> str:

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import Elastic, Elongation, ParameterSpec
+from sk120stiff.effects.base import (
+    Elastic,
+    Elongation,
+    Options,
+    ParameterSpec,
+    Switching,
+    scale_of,
+)
 from sk120stiff.effects.situation import Situation
+from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
+
+BELOW = "extra_below_"  # extra_below_150: softer by the value of this parameter below 150 N·m
 
 
 @dataclass(frozen=True)
@@ -35,15 +46,50 @@ class GearEffect(Elastic):
 
 @dataclass(frozen=True)
 class GearHardening(GearEffect):
-    """e = −κ [(τ + τ_g)³ − τ_g³]: the gear yields less than in proportion."""
+    """The gear yields less than in proportion: e(τ + τ_g) − e(τ_g), τ_g the weight's torque.
 
+    As a series, whatever the torque range::
+
+        e = −κ₂ τ|τ| − κ₃ τ³
+
+    The two terms together come within a fifth of any stiffness that rises in steps. Where a data
+    sheet gives the torques T_k of the steps, they are told to the effect, which is then piecewise
+    linear: the gear is softer by c_k as long as |τ| < T_k::
+
+        e = Σ c_k min(max(τ, −T_k), T_k)
+    """
+
+    breaks: tuple[float, ...] = ()
     name: ClassVar[str] = "gear_hardening"
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The gear of one joint, with the steps of its data sheet where they are known."""
+        return cls(where, scale_of(robot), breaks=options.breaks)
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Cubic coefficient κ."""
-        unit = "rad/(N*m)**3"
-        return (ParameterSpec("cubic", unit, unit, plausible=1e-11, typical=3e-13, lower=0.0),)
+        """Coefficients κ₂ and κ₃, or the extra compliance c_k below each break torque."""
+        size = self.scale**-3  # torques grow with the cube of an arm's length, compliances fall
+        if self.breaks:
+            unit = "rad/(N*m)"
+            return tuple(
+                ParameterSpec(
+                    f"{BELOW}{torque:g}", unit, unit, plausible=1e-4 * size, typical=5e-7 * size,
+                    lower=0.0,
+                )
+                for torque in self.breaks
+            )  # fmt: skip
+        square, cube = "rad/(N*m)**2", "rad/(N*m)**3"
+        return (
+            ParameterSpec(
+                "quadratic", square, square, plausible=1e-8 * size**2, typical=3e-10 * size**2,
+                lower=0.0,
+            ),
+            ParameterSpec(
+                "cubic", cube, cube, plausible=1e-11 * size**3, typical=3e-13 * size**3
+            ),
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -53,16 +99,28 @@ class GearHardening(GearEffect):
         """See `Elastic.elongation`."""
         weight = self.weight_torque(situation)
         total = torques + weight
-        shape = -(total**3 - weight**3)
+        by_parameter = self._shapes(total) - self._shapes(weight)
         return Elongation(
-            value=values[0] * shape,
-            by_torque=(-3.0 * values[0] * total**2)[..., None],
-            by_parameter=shape[..., None],
+            value=by_parameter @ values,
+            by_torque=(self._slopes(total) @ values)[..., None],
+            by_parameter=by_parameter,
         )
+
+    def _shapes(self, torque: Array) -> Array:
+        """(N, 1, P) elongation per unit of each parameter at torques (N, 1)."""
+        if self.breaks:
+            return np.stack([np.clip(torque, -T, T) for T in self.breaks], axis=-1)
+        return np.stack([-torque * np.abs(torque), -(torque**3)], axis=-1)
+
+    def _slopes(self, torque: Array) -> Array:
+        """(N, 1, P) derivative of `_shapes` by the torque."""
+        if self.breaks:
+            return np.stack([1.0 * (np.abs(torque) < T) for T in self.breaks], axis=-1)
+        return np.stack([-2.0 * np.abs(torque), -3.0 * torque**2], axis=-1)
 
 
 @dataclass(frozen=True)
-class LostMotion(GearEffect):
+class LostMotion(GearEffect, Switching):
     """e = b [sign(τ + τ_g) − sign(τ_g)]: the play is crossed when the total torque turns round."""
 
     name: ClassVar[str] = "lost_motion"
@@ -81,13 +139,9 @@ class LostMotion(GearEffect):
         weight = self.weight_torque(situation)
         return _step(np.sign(torques + weight) - np.sign(weight), values)
 
-    def aliases(self, robot: Robot) -> tuple[str, ...]:
-        """None: with falling loads in the data friction looks different (see `Friction`)."""
-        return ()
-
 
 @dataclass(frozen=True)
-class FrictionHysteresis(GearEffect):
+class FrictionHysteresis(GearEffect, Switching):
     """e = ∓h sign(τ): friction holds the joint back while the load grows, and up while it falls."""
 
     name: ClassVar[str] = "friction_hysteresis"
@@ -104,6 +158,31 @@ class FrictionHysteresis(GearEffect):
     def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
         """See `Elastic.elongation`."""
         return _step(-situation.branch[:, None] * np.sign(torques), values)
+
+
+def breaks_of(names: Iterable[str]) -> tuple[float, ...]:
+    """Break torques [N·m] that the names of parameters tell.
+
+    Raises
+    ------
+    InputError
+        A name begins as theirs but ends in no positive number.
+    """
+    found = []
+    for name in names:
+        if not name.startswith(BELOW):
+            continue
+        try:
+            torque = float(name.removeprefix(BELOW))
+        except ValueError:
+            torque = np.nan
+        if not (np.isfinite(torque) and torque > 0.0 and f"{BELOW}{torque:g}" == name):
+            raise InputError(
+                f"the parameter {name!r} names no break torque",
+                remedy=f"Write {BELOW}150 for a gear that is softer below 150 N·m.",
+            )
+        found.append(torque)
+    return tuple(found)
 
 
 def _step(shape: Array, values: Array) -> Elongation:

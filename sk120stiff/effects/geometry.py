@@ -1,15 +1,20 @@
-"""The rigid geometry is wrong. It shows in deflections only through the Jacobian, so hardly ever."""
+"""The rigid geometry is wrong. It shows in deflections through the Jacobian only: hardly ever."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import Geometric, ParameterSpec
+from sk120stiff.effects.base import Geometric, Options, ParameterSpec, scale_of
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, arm_links
+
+
+def length_error(name: str, *, typical: float, scale: float) -> ParameterSpec:
+    """An error of a length [m]; `typical` on an arm of the reference length."""
+    return ParameterSpec(name, "m", "m", plausible=0.02 * scale, typical=typical * scale)
 
 
 @dataclass(frozen=True)
@@ -23,7 +28,7 @@ class JointOffset(Geometric):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True coordinate minus reading."""
         if self.slides:
-            return (ParameterSpec("offset", "m", "m", plausible=0.02, typical=1e-3),)
+            return (length_error("offset", typical=1e-3, scale=self.scale),)
         return (ParameterSpec("offset", "rad", "rad", plausible=0.02, typical=1e-3),)
 
     def sentence(self) -> str:
@@ -36,9 +41,10 @@ class JointOffset(Geometric):
         return robot.actuated
 
     @classmethod
-    def at(cls, robot: Robot, where: str) -> JointOffset:
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The offset of one joint, in rad or m as the joint asks for."""
-        return cls(where, slides=robot.prismatic[robot.actuated.index(where)])
+        slides = robot.prismatic[robot.actuated.index(where)]
+        return cls(where, scale_of(robot), slides=slides)
 
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """The actuated joint itself."""
@@ -55,8 +61,7 @@ class ToolOffset(Geometric):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True position minus stated position of the point, tool axes."""
         return tuple(
-            ParameterSpec(f"offset_{axis}", "m", "m", plausible=0.02, typical=2e-3)
-            for axis in "xyz"
+            length_error(f"offset_{axis}", typical=2e-3, scale=self.scale) for axis in "xyz"
         )
 
     def sentence(self) -> str:
@@ -93,7 +98,7 @@ class LinkLength(Geometric):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True length minus stated length."""
-        return (ParameterSpec("offset", "m", "m", plausible=0.02, typical=2e-3),)
+        return (length_error("offset", typical=2e-3, scale=self.scale),)
 
     def sentence(self) -> str:
         """What happens."""

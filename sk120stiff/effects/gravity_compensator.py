@@ -1,4 +1,4 @@
-"""A balancer (spring or gas) beside a joint: extra stiffness that goes with the arm's posture."""
+"""A balancer or the arm's own weight beside a joint: stiffness that goes with the posture."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from sk120stiff.robot.coupling import Array
 class GravityCompensator(LinearElastic):
     """The joint's compliance falls by γ cos θ, θ the link's angle from the vertical.
 
-    To first order this is a stiffness K + ΔK cos θ with γ = ΔK/K².
+    To first order this is a stiffness K + ΔK cos θ with γ = ΔK/K². A balancer that pulls the link
+    upright adds stiffness there (γ > 0); a weight that no URDF states takes some away (γ < 0).
     """
 
     name: ClassVar[str] = "gravity_compensator"
@@ -27,7 +28,12 @@ class GravityCompensator(LinearElastic):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Drop of the compliance where the link stands upright."""
         unit = "rad/(N*m)"
-        return (ParameterSpec("compliance_drop", unit, unit, plausible=5e-7, typical=1e-7),)
+        size = self.scale**-3
+        return (
+            ParameterSpec(
+                "compliance_drop", unit, unit, plausible=5e-7 * size, typical=1e-7 * size
+            ),
+        )
 
     def sentence(self) -> str:
         """What happens."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.base import LinearElastic, Options, ParameterSpec, compliance, scale_of
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joints
@@ -28,8 +28,10 @@ class JointSprings(LinearElastic):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """The spring's stiffness."""
         if self.slides:
-            return (compliance("stiffness", softest=1e4, typical=1e7, unit="N/m"),)
-        return (compliance("stiffness", softest=1e3, typical=1e6),)
+            return (
+                compliance("stiffness", softest=1e4, typical=1e7, scale=self.scale, unit="N/m"),
+            )
+        return (compliance("stiffness", softest=1e3, typical=1e6, scale=self.scale),)
 
     def sentence(self) -> str:
         """What happens."""
@@ -41,9 +43,10 @@ class JointSprings(LinearElastic):
         return robot.actuated
 
     @classmethod
-    def at(cls, robot: Robot, where: str) -> JointSprings:
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The spring of one joint, in N·m/rad or N/m as the joint asks for."""
-        return cls(where, slides=robot.prismatic[robot.actuated.index(where)])
+        slides = robot.prismatic[robot.actuated.index(where)]
+        return cls(where, scale_of(robot), slides=slides)
 
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """The actuated joint itself."""

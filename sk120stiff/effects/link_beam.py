@@ -1,7 +1,8 @@
 """Links as elastic beams: bending and torsion between one joint and the next.
 
-A uniform beam cut at s turns there by M(s)/(EI) ds. The displacement it causes at the point is
-∫ j(s) j(s)ᵀ W ds / (EI); the integrand is of second degree in s, so two Gauss points are exact.
+A beam cut at s turns there by M(s) ds / EI(s). The displacement it causes at the point is
+∫ j(s) j(s)ᵀ W ds / EI(s). With 1/EI(s) = ρ(s)/EI, ρ of mean one, the integrand is ρ times a
+polynomial of second degree in s, for which the two Gauss points of the weight ρ are exact.
 """
 
 from __future__ import annotations
@@ -17,19 +18,41 @@ from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on
 from sk120stiff.robot.coupling import Array
 
-GAUSS_POINTS = tuple(0.5 + sign / np.sqrt(12.0) for sign in (-1.0, 1.0))
+TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
+
+
+def gauss_points(taper: float) -> tuple[Array, Array]:
+    """Places (2,) along a beam from 0 to 1 and their weights (2,), which add up to one.
+
+    The flexibility ρ(s) goes with (1 − taper · s)⁻³, the cube of the section's depth.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    s = 0.5 * (nodes + 1.0)
+    rho = weights * (1.0 - taper * s) ** -3
+    rho /= rho.sum()
+    mean = rho @ s
+    spread = rho @ (s - mean) ** 2
+    skewness = rho @ (s - mean) ** 3
+    # roots of the orthogonal polynomial (s − mean)² − (skewness / spread)(s − mean) − spread
+    half = 0.5 * skewness / spread
+    root = np.sqrt(half**2 + spread)
+    near, far = half - root, half + root
+    return mean + np.array([near, far]), np.array([far, -near]) / (far - near)
 
 
 @dataclass(frozen=True)
 class LinkBending(LinearElastic):
-    """A beam of equal bending stiffness EI in both planes along the link."""
+    """A beam of equal bending stiffness in both planes along the link, slimmer at its far end.
+
+    EI is that of the uniform beam whose end a moment would turn as far.
+    """
 
     name: ClassVar[str] = "link_bending"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Bending stiffness EI."""
-        return (compliance("EI", softest=3e5, typical=7e6, unit="N*m**2"),)
+        return (compliance("EI", softest=3e5, typical=7e6, scale=self.scale, unit="N*m**2"),)
 
     def sentence(self) -> str:
         """What happens."""
@@ -50,6 +73,7 @@ class LinkBending(LinearElastic):
         tied = passed_on(robot, link)
         if tied:
             across, third = _split(link)
+        places, _ = gauss_points(TAPER)
         return tuple(
             VirtualJoint(
                 f"{self.id}[{k}].{label}",
@@ -58,14 +82,15 @@ class LinkBending(LinearElastic):
                 axis,
                 followers=tied if tied and label == "in_plane" else (),
             )
-            for k, fraction in enumerate(GAUSS_POINTS)
+            for k, fraction in enumerate(places)
             for label, axis in (("in_plane", third), ("out_of_plane", across))
         )
 
     def patterns(self, situation: Situation) -> Array:
-        """Every slice of the beam yields by its share of the length."""
+        """Every slice of the beam yields by its share of the flexibility."""
         length = arm_joint(situation.robot, self.where).length
-        return 0.5 * length * np.eye(2 * len(GAUSS_POINTS))[None]
+        _, shares = gauss_points(TAPER)
+        return np.diag(length * np.repeat(shares, 2))[None]
 
 
 @dataclass(frozen=True)
@@ -77,7 +102,7 @@ class LinkTorsion(LinearElastic):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Torsional stiffness GJ."""
-        return (compliance("GJ", softest=2e5, typical=4e6, unit="N*m**2"),)
+        return (compliance("GJ", softest=2e5, typical=4e6, scale=self.scale, unit="N*m**2"),)
 
     def sentence(self) -> str:
         """What happens."""

@@ -15,18 +15,32 @@ from sk120stiff.robot.coupling import Array
 
 @dataclass(frozen=True)
 class ToolCompliance(LinearElastic):
-    """What is bolted to the flange, round about the tool axis z: it bends, twists and shifts."""
+    """What is bolted to the flange turns about and shifts along the axes of the tool frame.
+
+    Fixtures are rarely round, so every axis has a stiffness of its own.
+    """
 
     name: ClassVar[str] = "tool_compliance"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Stiffness against bending (about x and y), twisting (about z) and shifting."""
-        return (
-            compliance("stiffness_bending", softest=3e3, typical=2e5),
-            compliance("stiffness_torsion", softest=3e3, typical=2e5),
-            compliance("stiffness_shift", softest=2e6, typical=5e7, unit="N/m"),
+        """Stiffness against turning about x, y, z and against shifting along them."""
+        turning = (
+            compliance(f"stiffness_turn_{label}", softest=3e3, typical=2e5, scale=self.scale)
+            for label in "xyz"
         )
+        shifting = (
+            compliance(
+                f"stiffness_shift_{label}", softest=2e6, typical=5e7, scale=self.scale, unit="N/m"
+            )
+            for label in "xyz"
+        )
+        return (*turning, *shifting)
+
+    @property
+    def ties(self) -> tuple[tuple[int, ...], ...]:
+        """Often as stiff against bending both ways, and against shifting all ways."""
+        return ((0, 1), (3, 4, 5))
 
     def sentence(self) -> str:
         """What happens."""
@@ -50,6 +64,5 @@ class ToolCompliance(LinearElastic):
         )
 
     def patterns(self, situation: Situation) -> Array:
-        """Bending acts about x and y alike, shifting along all axes alike."""
-        diagonals = ([1, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 1, 1])
-        return np.array([np.diag(np.array(d, dtype=float)) for d in diagonals])
+        """Each axis has a compliance of its own."""
+        return np.array([np.diag(row) for row in np.eye(6)])

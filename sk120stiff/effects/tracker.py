@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import ParameterSpec, ReadingError
+from sk120stiff.effects.base import Options, ParameterSpec, ReadingError, scale_of
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.chain import skew
@@ -83,6 +83,11 @@ class ReadingDrift(TrackerEffect):
     per_second: bool = False
     name: ClassVar[str] = "reading_drift"
 
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """Drift by the clock where there is one, else by the order of the readings."""
+        return cls(where, scale_of(robot), per_second=options.timed)
+
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Drift rates along the base axes."""
@@ -121,6 +126,11 @@ class ZeroOffset(TrackerEffect):
 
     poses: tuple[str, ...] = ()
     name: ClassVar[str] = "zero_offset"
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """Offsets of the poses of an experiment."""
+        return cls(where, scale_of(robot), poses=options.poses)
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ from sk120stiff.effects import (
     ReadingError,
     Situation,
 )
-from sk120stiff.effects.base import Misreading
+from sk120stiff.effects.base import Misreading, Switching
 from sk120stiff.robot import Mechanism, Robot, Screws
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import ElasticLaw, Equilibrium, equilibrium
@@ -57,7 +58,7 @@ class Assembly:
     def slices(self) -> tuple[slice, ...]:
         """Each effect's part of the vector of values."""
         ends = np.cumsum([0, *(len(effect.parameters) for effect in self.effects)])
-        return tuple(slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False))
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -114,21 +115,22 @@ class Assembly:
         loads = _misread(self._of(LoadError), situation, values, _to_sensor(situation))
         wrench = _rotate(situation.rotation, loads.value)
         z_0 = self.start(situation, values)
+        unloaded = self.mechanism.screws(z_0, situation.point)
+        onset = unloaded.at(situation.force_point).torques(wrench)
         rest = equilibrium(
             self.mechanism,
             z_0,
             wrench,
-            self._law(situation, values),
+            self._law(situation, values, onset),
             point=situation.point,
             force_point=situation.force_point,
             soft=self._soft(values),
         )
-        unloaded = self.mechanism.screws(z_0, situation.point)
         displacement = rest.screws.position - unloaded.position
         readings = _misread(self._of(ReadingError), situation, values, displacement)
-        return Solution(situation, wrench, loads, unloaded, rest, readings)
+        return Solution(situation, wrench, loads, unloaded, onset, rest, readings)
 
-    def _of(self, kind: type[Misreading]) -> list[tuple[Misreading, slice]]:
+    def _of(self, kind: type[LoadError] | type[ReadingError]) -> list[tuple[Misreading, slice]]:
         pairs = zip(self.effects, self.slices, strict=True)
         return [(effect, part) for effect, part in pairs if isinstance(effect, kind)]
 
@@ -137,14 +139,19 @@ class Assembly:
         found = [index for _, part, index in self._elastic if values[part].any()]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.intp)
 
-    def _law(self, situation: Situation, values: Array) -> ElasticLaw:
-        """Elongation of all coordinates; patterns of linear effects are evaluated only once."""
+    def _law(self, situation: Situation, values: Array, onset: Array) -> ElasticLaw:
+        """Elongation of all coordinates; what does not change with them is evaluated only once."""
         n = self.mechanism.n
         constant = np.zeros((n, n))
         varying: Array | None = None
+        jumps = np.zeros((situation.count, n))
         nonlinear: list[tuple[Elastic, slice, Index]] = []
         for effect, part, index in self._elastic:
             if not values[part].any():
+                continue
+            if isinstance(effect, Switching):
+                found = effect.elongation(onset[:, index], situation, values[part])
+                jumps[:, index] += found.value
                 continue
             if not isinstance(effect, LinearElastic):
                 nonlinear.append((effect, part, index))
@@ -160,7 +167,7 @@ class Assembly:
         linear = constant if varying is None else constant + varying
 
         def law(torques: Array) -> tuple[Array, Array]:
-            elongation = (linear @ torques[..., None])[..., 0]
+            elongation = jumps + (linear @ torques[..., None])[..., 0]
             if not nonlinear:
                 return elongation, linear
             tangent = np.broadcast_to(linear, (situation.count, n, n)).copy()
@@ -180,7 +187,8 @@ class Assembly:
         adjoint = _adjoint(J, rest.compliance, rest.K_C, soft)  # (N, 3, n_z) = J N⁻¹
         out = np.zeros((situation.count, 3, int(self.slices[-1].stop) if self.slices else 0))
         for effect, part, index in self._elastic:
-            found = effect.elongation(rest.torques[:, index], situation, values[part])
+            torques = solution.onset if isinstance(effect, Switching) else rest.torques
+            found = effect.elongation(torques[:, index], situation, values[part])
             out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
         J_0 = solution.unloaded.linear_jacobian
         for part, index in self._geometric:
@@ -223,12 +231,27 @@ class Misread:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A solved set of readings; what `Assembly.sensitivities` builds on."""
+    """A solved set of readings; what `Assembly.sensitivities` builds on.
+
+    Attributes
+    ----------
+    situation
+        The readings.
+    wrench
+        (N, 6) true load, base axes [N, N·m].
+    loads, readings
+        What the instruments made of load and displacement.
+    unloaded, rest
+        Kinematics before the load, and equilibrium under it.
+    onset
+        (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or N].
+    """
 
     situation: Situation
     wrench: Array
     loads: Misread
     unloaded: Screws
+    onset: Array
     rest: Equilibrium
     readings: Misread
 
@@ -278,4 +301,4 @@ def _adjoint(J: Array, C: Array, K_C: Array, soft: Index) -> Array:
     Y_soft = np.swapaxes(
         np.linalg.solve(np.swapaxes(newton, -1, -2), np.swapaxes(J[..., soft], -1, -2)), -1, -2
     )
-    return J + Y_soft @ C_soft @ K_C[..., soft, :]
+    return np.asarray(J + Y_soft @ C_soft @ K_C[..., soft, :])

@@ -22,6 +22,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sk120stiff.effects import effect
+from sk120stiff.effects.gear import breaks_of
 from sk120stiff.errors import InputError
 from sk120stiff.files import read_text, write_atomically
 from sk120stiff.model.model import Model, Parameter
@@ -106,6 +107,7 @@ def model_from_text(
                 entry.where,
                 poses=tuple(dict.fromkeys(key.rpartition(".")[0] for key in entry.parameters)),
                 timed=any(item.unit == "m/s" for item in entry.parameters.values()),
+                breaks=breaks_of(entry.parameters),
             )
         except InputError as error:
             raise InputError(error.what, where=place, remedy=error.remedy) from error

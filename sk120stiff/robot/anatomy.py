@@ -88,6 +88,15 @@ def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
     )
 
 
+def arm_length(robot: Robot) -> float:
+    """Stretched length of the arm from its first joint to the tool [m]; slides count at full travel."""
+    total = sum(joint.length for joint in arm_joints(robot))
+    for slides, low, high in zip(robot.prismatic, robot.lower, robot.upper, strict=True):
+        if slides and np.isfinite([low, high]).all():
+            total += float(max(abs(low), abs(high)))
+    return total
+
+
 def arm_links(robot: Robot) -> tuple[ArmJoint, ...]:
     """Joints whose link is long enough to bend, twist or have the wrong length."""
     return tuple(joint for joint in arm_joints(robot) if joint.length > SHORTEST_LINK)
