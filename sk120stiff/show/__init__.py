@@ -15,7 +15,8 @@ Report (`sk120stiff.show.report`)
     `Section` (a subsection). One file, readable offline, prints to PDF.
 
 Scene (`sk120stiff.show.scene`)
-    ``Scene(robot, elastic=Elastic.of_springs(robot, springs), poses=[ScenePose(...)])``, then
+    ``scene_of_model(model, data, models={"before": m0, "after": m1})``, or by hand
+    ``Scene(robot, elastic=Elastic.of_springs(robot, springs), poses=[ScenePose(...)])``; then
     ``static_scene(path, scene)`` for a self-contained page with sliders, ``scene_html(scene)`` for
     its text, and the scene itself shows in a notebook.
 
@@ -29,10 +30,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from sk120stiff.show.building import scene_of_model
     from sk120stiff.show.elastic import Elastic
     from sk120stiff.show.report import (
         Code,
         Items,
+        KeyFigure,
         KeyFigures,
         Note,
         Picture,
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
         SceneFrame,
         Section,
         Table,
+        reproducibility,
     )
     from sk120stiff.show.saving import inline_svg, save_figure
     from sk120stiff.show.scene import Reading, Scene, ScenePose
@@ -49,6 +53,7 @@ _HOME = {
     "Code": "report",
     "Elastic": "elastic",
     "Items": "report",
+    "KeyFigure": "report",
     "KeyFigures": "report",
     "Note": "report",
     "Picture": "report",
@@ -61,7 +66,9 @@ _HOME = {
     "Table": "report",
     "inline_svg": "saving",
     "save_figure": "saving",
+    "reproducibility": "report",
     "scene_html": "static",
+    "scene_of_model": "building",
     "static_scene": "static",
 }
 
@@ -69,6 +76,7 @@ __all__ = [
     "Code",
     "Elastic",
     "Items",
+    "KeyFigure",
     "KeyFigures",
     "Note",
     "Picture",
@@ -80,8 +88,10 @@ __all__ = [
     "Section",
     "Table",
     "inline_svg",
+    "reproducibility",
     "save_figure",
     "scene_html",
+    "scene_of_model",
     "static_scene",
 ]
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Mechanism, Robot
-from sk120stiff.stiffness import ElasticLaw
+from sk120stiff.stiffness import ElasticLaw, Equilibrium, equilibrium
+
+if TYPE_CHECKING:
+    from sk120stiff.model import Model
 
 Array = NDArray[np.float64]
 
@@ -33,15 +37,24 @@ class Elastic:
         Where the values come from, in a few words.
     assumed
         True if the values are only assumed: every page then says so.
+    offset
+        (n,) what a wrong rigid geometry adds to the unloaded z [rad or m].
+    model
+        The model behind it where its compliance changes with pose or load, else None. Python then
+        asks the model; a page without Python uses `compliance`, and says so.
     """
 
     mechanism: Mechanism
     compliance: Array
     label: str
     assumed: bool = False
+    offset: Array = field(default_factory=lambda: np.zeros(0))
+    model: Model | None = None
 
     def __post_init__(self) -> None:
         n = self.mechanism.n
+        if not self.offset.size:
+            object.__setattr__(self, "offset", np.zeros(n))
         if self.compliance.shape != (n, n):
             raise InputError(f"the compliance is {self.compliance.shape}, not ({n}, {n})")
         if not np.isfinite(self.compliance).all() or (np.diag(self.compliance) < 0.0).any():
@@ -96,26 +109,105 @@ class Elastic:
             found.mechanism, found.compliance, "100 kN·m/rad assumed at every joint", assumed=True
         )
 
+    @classmethod
+    def of_model(cls, model: Model, *, at: ArrayLike | None = None, label: str = "") -> Elastic:
+        """A model's arm, without its instruments.
+
+        Parameters
+        ----------
+        at
+            (n,) pose whose compliance stands for a model that changes with the pose.
+        label
+            Where the values come from; the effects' names by default.
+
+        Raises
+        ------
+        InputError
+            Nothing in the model yields.
+        """
+        arm = model.physical()
+        pose = np.zeros(arm.robot.n) if at is None else np.asarray(at, dtype=float)
+        offset, compliance = _unloaded(arm, pose)
+        if not compliance.any():
+            raise InputError(
+                "nothing in this model yields under load",
+                where=arm.robot.name,
+                remedy="Give a model with joint_springs or another elastic effect.",
+            )
+        names = ", ".join(dict.fromkeys(effect.name for effect in arm.effects))
+        return cls(
+            mechanism=arm.assembly.mechanism,
+            compliance=compliance,
+            label=label or f"model of {names}",
+            offset=offset,
+            model=None if _is_constant(arm) else arm,
+        )
+
     @property
     def n_virtual(self) -> int:
         """Number of coordinates that no motor drives."""
         return len(self.mechanism.virtual)
 
-    @property
-    def soft(self) -> NDArray[np.bool_]:
-        """(n,) true where a coordinate yields."""
-        return np.asarray(np.diag(self.compliance) > 0.0)
+    def coordinates(self, a: ArrayLike) -> Array:
+        """(..., n) unloaded z for actuated coordinates `a`."""
+        actuated = np.asarray(a, dtype=float)
+        rest = np.zeros((*actuated.shape[:-1], self.n_virtual))
+        return np.asarray(np.concatenate([actuated, rest], axis=-1) + self.offset)
+
+    def tangent(self, a: Array) -> Array:
+        """(n, n) tangent compliance of the unloaded arm at a pose [rad/(N·m)]."""
+        return self.compliance if self.model is None else _unloaded(self.model, a)[1]
+
+    def rest(self, a: Array, wrench: Array, point: Array) -> Equilibrium:
+        """Exact equilibrium under a wrench at the point.
+
+        Raises
+        ------
+        Refusal
+            The springs cannot hold the load.
+        """
+        if self.model is None:
+            return equilibrium(self.mechanism, self.coordinates(a), wrench, self._law, point=point)
+        from sk120stiff.effects import situation_of_load
+
+        situation = situation_of_load(self.model.robot, a, wrench, point=point)
+        found = self.model.solve(situation).rest
+        return Equilibrium(
+            z=found.z[0],
+            screws=self.mechanism.screws(found.z[0], point),
+            torques=found.torques[0],
+            compliance=found.compliance[0],
+            K_C=found.K_C[0],
+            iterations=found.iterations,
+        )
 
     @property
-    def law(self) -> ElasticLaw:
-        """Elongations for given torques, as `equilibrium` wants them."""
-
+    def _law(self) -> ElasticLaw:
         def law(torques: Array) -> tuple[Array, Array]:
             return torques @ self.compliance, self.compliance
 
         return law
 
-    def coordinates(self, a: Sequence[float] | Array) -> Array:
-        """(..., n) unloaded z for actuated coordinates `a`."""
-        actuated = np.asarray(a, dtype=float)
-        return np.concatenate([actuated, np.zeros((*actuated.shape[:-1], self.n_virtual))], axis=-1)
+
+def _unloaded(model: Model, a: Array) -> tuple[Array, Array]:
+    """(n,) offset of the unloaded coordinates and (n, n) tangent compliance at a pose."""
+    from sk120stiff.effects import situation_of_load
+
+    rest = model.solve(situation_of_load(model.robot, a, np.zeros(6))).rest
+    offset = rest.z[0].copy()
+    offset[: model.robot.n] -= a
+    compliance = np.broadcast_to(rest.compliance, (1, *rest.compliance.shape[-2:]))[0]
+    return offset, 0.5 * (compliance + compliance.T)
+
+
+def _is_constant(model: Model) -> bool:
+    """Is the compliance the same at every pose and load?"""
+    from sk120stiff.effects import Elastic as ElasticEffect
+    from sk120stiff.effects import LinearElastic, situation_of_load
+
+    situation = situation_of_load(model.robot, np.zeros(model.robot.n), np.zeros(6))
+    return all(
+        isinstance(effect, LinearElastic) and effect.patterns(situation).ndim == 3
+        for effect in model.effects
+        if isinstance(effect, ElasticEffect)
+    )

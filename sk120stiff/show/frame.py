@@ -18,7 +18,6 @@ from sk120stiff.show.links import LinkTree, joint_motion
 from sk120stiff.stiffness import (
     complementary_stiffness,
     definiteness_of,
-    equilibrium,
     symmetric_part,
 )
 
@@ -99,27 +98,28 @@ class Frame:
 def compute_frame(robot: Robot, tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
     """Kinematics, compliance, deflection and verdicts of one request."""
     z = elastic.coordinates(request.a)
-    mechanism, C = elastic.mechanism, elastic.compliance
+    mechanism, C = elastic.mechanism, elastic.tangent(request.a)
     start = mechanism.screws(z, request.point)
     J = start.jacobian
     K_C = complementary_stiffness(start, request.wrench)
-    loaded = np.linalg.solve(np.eye(len(z)) - C @ K_C, C)  # (K_θ − K_C)⁻¹, rigid ones included
+    # (K_θ − K_C)⁻¹, rigid coordinates included
+    loaded = np.asarray(np.linalg.solve(np.eye(len(z)) - C @ K_C, C))
     torques = start.torques(request.wrench)
     deflection = {
         "conventional": J[:3] @ C @ torques,
         "enhanced": J[:3] @ loaded @ torques,
     }
-    links = tree.place(robot.coupling.motion(request.a).q)
+    links = place_elastic(robot, tree, elastic, z)
     deflected: Array | None = None
     try:
-        rest = equilibrium(mechanism, z, request.wrench, elastic.law, point=request.point)
+        rest = elastic.rest(request.a, request.wrench, request.point)
     except Refusal:
         pass  # the page says so; every other number still holds
     else:
         deflection["equilibrium"] = rest.screws.position - start.position
         exaggerated = z + request.exaggeration * (rest.z - z)
         deflected = place_elastic(robot, tree, elastic, exaggerated)
-    soft = elastic.soft
+    soft = np.diag(C) > 0.0
     K_C_soft = symmetric_part(K_C[np.ix_(soft, soft)])
     root = np.linalg.cholesky(C[np.ix_(soft, soft)]) if soft.any() else np.zeros((0, 0))
     shares = np.linalg.eigvalsh(root.T @ K_C_soft @ root) if soft.any() else np.zeros(1)

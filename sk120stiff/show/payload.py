@@ -41,7 +41,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
         "robot": robot.name,
         "base": robot.base_frame,
         "frame": frame,
-        "elastic": {"label": elastic.label, "assumed": elastic.assumed},
+        "elastic": {"label": _source(scene, live=live), "assumed": elastic.assumed},
         "joints": _joints(scene),
         "links": list(tree.names),
         "bodies": bodies,
@@ -63,6 +63,15 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
             "model": scene.model_argument,
         },
     }
+
+
+def _source(scene: Scene, *, live: bool) -> str:
+    if scene.elastic.model is None or live:
+        return scene.elastic.label
+    return (
+        f"{scene.elastic.label}; effects that change with pose or load are held as they are at the "
+        "first pose, unloaded"
+    )
 
 
 def frame_payload(frame: Frame) -> dict[str, Any]:
@@ -119,6 +128,7 @@ def _kinematics(scene: Scene) -> dict[str, Any]:
     return {
         "A": [_list(row) for row in coupling.A],
         "b": _list(coupling.b),
+        "offset": _list(elastic.offset),
         "compliance": [_list(row) for row in elastic.compliance],
         "chain": {
             "placements": _matrices(chain.placements),
@@ -155,7 +165,7 @@ def _scale(scene: Scene) -> dict[str, Any]:
     for a in poses:
         screws = scene.elastic.mechanism.screws(scene.elastic.coordinates(a), scene.point)
         for name, J in (("translation", screws.jacobian[:3]), ("rotation", screws.jacobian[3:])):
-            values = np.linalg.eigvalsh(J @ scene.elastic.compliance @ J.T)
+            values = np.linalg.eigvalsh(J @ scene.elastic.tangent(a) @ J.T)
             soft[name].append(float(values[-1]))
             stiff[name].append(float(values[1]))  # the middle one: no singularity carries it away
     references = {}

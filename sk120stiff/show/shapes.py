@@ -98,6 +98,41 @@ def capsules(tree: LinkTree, reach: float, links: Sequence[int] | None = None) -
     return bodies
 
 
+def welded(mesh: Mesh) -> Mesh:
+    """The mesh with corners at one place made one; many files repeat them for every triangle."""
+    size = float(np.ptp(mesh.vertices, axis=0).max()) or 1.0
+    return _clustered(mesh, mesh.vertices.min(axis=0), 1e-6 * size)
+
+
+def simplified(mesh: Mesh, triangles: int) -> Mesh:
+    """A mesh with about that many triangles at most, by merging the corners of a grid's cells."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    cells = max(8.0, np.sqrt(triangles))  # a surface meets about cells² of the cells³
+    found = mesh
+    for _ in range(12):
+        if len(found.faces) <= triangles:
+            break
+        size = float(np.max(high - low)) / cells
+        found = _clustered(mesh, low, size)
+        cells *= 0.8
+    return found
+
+
+def _clustered(mesh: Mesh, low: NDArray[np.float32], size: float) -> Mesh:
+    cell = np.floor((mesh.vertices - low) / size).astype(np.int64)
+    _, inverse = np.unique(cell, axis=0, return_inverse=True)
+    inverse = inverse.reshape(-1)
+    count = np.bincount(inverse)
+    vertices = np.stack(
+        [np.bincount(inverse, weights=mesh.vertices[:, k]) / count for k in range(3)], axis=1
+    )
+    faces = inverse[mesh.faces]
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
+    return Mesh(vertices.astype(np.float32), faces[np.sort(first)].astype(np.uint32))
+
+
 def _along(direction: Array) -> Array:
     """(4, 4) rotation that turns z into a direction."""
     z = direction / np.linalg.norm(direction)

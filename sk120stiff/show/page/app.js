@@ -75,7 +75,7 @@ SK.start = (scene) => {
     Object.values(arrows).forEach((arrow) => arrow.hide());
     const from = frame.position, force = state.wrench.slice(0, 3), moment = state.wrench.slice(3);
     if (state.show.load) {
-      const longest = 0.3 * reach;
+      const longest = 0.22 * reach;
       if (m.norm(force) > 0) arrows.force.set(from, m.scaled(force, longest / scale.load), `${number(m.norm(force))} N`);
       if (m.norm(moment) > 0) arrows.moment.set(from, m.scaled(moment, longest / scale.load), `${number(m.norm(moment))} N·m`);
     }
@@ -117,7 +117,7 @@ SK.start = (scene) => {
       if (state.formulation !== "conventional") rows.push(entry("enhanced", `${text}, with K`, K_C));
       if (state.formulation !== "enhanced") rows.push(entry("conventional", state.formulation === "both" ? "the same without K" : `${text}, without K`, K_C.cloneNode(true)));
     }
-    const times = `\u00d7 ${number(state.exaggeration, 3)}`;
+    const times = `\u00d7 ${Number(state.exaggeration.toPrecision(3))}`;
     if (state.show.deflected && m.norm(state.wrench) > 0) rows.push(entry("deflected", frame.deflected ? `deflected shape, ${times}` : "no equilibrium: beyond the critical load"));
     if (currentReading() && state.show.displacements)
       rows.push(entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", `predicted, ${state.model}`), entry("gap", "gap")] : []));

@@ -36,7 +36,7 @@ SK.makeCamera = (stage) => {
   // A ball around the robot, what is marked at the point, and the floor under them.
   function whole(point) {
     const box = stage.bounds();
-    if (point) box.expandByPoint(toWorld(point));
+    if (point) box.union(new THREE.Box3().setFromCenterAndSize(toWorld(point), new THREE.Vector3().setScalar(0.3 * reach)));
     const ball = box.getBoundingSphere(new THREE.Sphere());
     return ball;
   }
@@ -52,7 +52,7 @@ SK.makeCamera = (stage) => {
       return;
     }
     const ball = whole(point), away = toWorld(views[name]).normalize();
-    look(ball.center.clone().addScaledVector(away, (0.94 * ball.radius) / Math.sin(narrow)), ball.center, smoothly);
+    look(ball.center.clone().addScaledVector(away, (0.9 * ball.radius) / Math.sin(narrow)), ball.center, smoothly);
   }
 
   pane.addEventListener("keydown", (event) => {

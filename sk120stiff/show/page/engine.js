@@ -3,7 +3,7 @@
 "use strict";
 SK.makeEngine = (constants) => {
   const m = SK.algebra;
-  const { A, b, compliance: C, chain, tree } = constants;
+  const { A, b, offset, compliance: C, chain, tree } = constants;
   const joints = b.length, drives = A[0].length, n = C.length;
   const soft = C.map((row, i) => i).filter((i) => C[i][i] > 0);
   const pick = (M, rows) => rows.map((i) => rows.map((j) => M[i][j]));
@@ -119,7 +119,7 @@ SK.makeEngine = (constants) => {
 
   function compute(request) {
     const { wrench, point, exaggeration } = request;
-    const z = request.a.concat(new Array(n - drives).fill(0));
+    const z = m.add(request.a.concat(new Array(n - drives).fill(0)), offset);
     const values = jointValues(z), screws = sweep(values, point), J = jacobian(screws);
     const K_C = complementary(screws, wrench), loaded = loadedCompliance(K_C);
     const torques = torquesOf(J, wrench), top = J.slice(0, 3), bottom = J.slice(3);
@@ -132,7 +132,7 @@ SK.makeEngine = (constants) => {
     const K_theta = m.solve(pick(C, soft), m.identity(soft.length));
     const enhanced = loaded || C;
     return {
-      links: placeTree(values),
+      links: placeElastic(z, point),
       deflected: rest && placeElastic(m.add(z, m.scaled(m.minus(rest.z, z), exaggeration)), point),
       position: screws.position,
       rotation: [0, 1, 2, 4, 5, 6, 8, 9, 10].map((k) => screws.end[k]),

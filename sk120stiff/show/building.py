@@ -1,0 +1,110 @@
+"""From a model and measurements to a scene: the usual way to one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff.show.elastic import Elastic
+from sk120stiff.show.scene import Reading, Scene, ScenePose
+
+if TYPE_CHECKING:
+    from sk120stiff.effects import Situation
+    from sk120stiff.measurements import Measurements
+    from sk120stiff.model import Model
+
+Array = NDArray[np.float64]
+
+
+def scene_of_model(
+    model: Model,
+    data: Measurements | None = None,
+    *,
+    models: Mapping[str, Model] | None = None,
+    title: str = "",
+    subtitle: str = "",
+    label: str = "",
+    a: ArrayLike | None = None,
+    wrench: ArrayLike | None = None,
+    model_file: str | os.PathLike[str] = "",
+) -> Scene:
+    """The scene of a modelled robot, with the poses of its data.
+
+    Parameters
+    ----------
+    model
+        What yields in the scene.
+    data
+        Readings to list, with arrows for what was measured and what was predicted; masked rows are
+        left out.
+    models
+        Name → model whose predictions are shown beside the measured displacements, before and
+        after an explanation for example; ``{"model": model}`` by default.
+    title, subtitle, label
+        Headings, and where the springs come from.
+    a, wrench
+        (n,) pose and (6,) load shown at first; the first reading's by default.
+    model_file
+        The model's file, for "copy as command".
+
+    Raises
+    ------
+    InputError
+        The data belong to another robot, or nothing in the model yields.
+    """
+    robot = model.robot
+    poses = _poses(data, dict(models or {"model": model})) if data is not None else ()
+    start = a if a is not None else (poses[0].a if poses else None)
+    return Scene(
+        robot=robot,
+        elastic=Elastic.of_model(model, at=start, label=label),
+        poses=poses,
+        title=title,
+        subtitle=subtitle,
+        point=np.zeros(3) if data is None else np.asarray(data.point, dtype=float),
+        a=None if a is None else np.asarray(a, dtype=float),
+        wrench=None if wrench is None else np.asarray(wrench, dtype=float),
+        robot_argument=robot.source,
+        model_argument=os.fspath(model_file),
+    )
+
+
+def _poses(data: Measurements, models: Mapping[str, Model]) -> tuple[ScenePose, ...]:
+    from sk120stiff.effects import situation_of
+
+    used = data.masked()
+    situation = situation_of(next(iter(models.values())).robot, used)
+    predicted = {name: _in_base(situation, m.predict(situation)) for name, m in models.items()}
+    measured = None if used.displacement is None else _in_base(situation, used.displacement)
+    wrench = _at_point(situation)
+    poses = []
+    for k, pose in enumerate(situation.poses):
+        rows = np.flatnonzero(situation.pose == k)
+        readings = tuple(
+            Reading(
+                wrench=wrench[row],
+                measured=None if measured is None else measured[row],
+                predicted={name: values[row] for name, values in predicted.items()},
+                label=f"reading {number + 1}",
+            )
+            for number, row in enumerate(rows)
+        )
+        poses.append(ScenePose(f"pose {pose}", situation.a[rows[0]], readings))
+    return tuple(poses)
+
+
+def _in_base(situation: Situation, values: Array) -> Array:
+    """(N, 3) displacements in base axes."""
+    return np.asarray(np.einsum("nij,nj->ni", situation.reading_axes, values))
+
+
+def _at_point(situation: Situation) -> Array:
+    """(N, 6) loads moved to the measured point: the same wrench, seen from there."""
+    arm = situation.rotation @ (situation.force_point - situation.point)
+    wrench = situation.wrench.copy()
+    wrench[:, 3:] += np.cross(arm, wrench[:, :3])
+    return wrench
