@@ -151,7 +151,7 @@ def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
 def _beyond_poses(fit: Fit, r: Array, inside: Array) -> tuple[float, int]:
     """Sum of squares that model and pose-by-pose regression together leave, and its freedom."""
     situation = fit.problem.situation
-    local = fit.problem.whitener.apply(pose_columns(load_basis(situation, cubic=False)))
+    local = fit.problem.whitener.apply(pose_columns(load_basis(situation)))
     group = np.repeat(situation.pose, 3)
     left, columns, rank = r.copy(), inside.copy(), 0
     for pose in np.unique(group):

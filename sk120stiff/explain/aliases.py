@@ -15,7 +15,7 @@ SAME = 1e-3  # share of the signature that may differ
 
 
 def exact_aliases(
-    model: Model, effect: Effect, others: Sequence[Effect], *, point: Array
+    model: Model, effect: Effect, others: Sequence[Effect], *, point: Array, tied: bool = False
 ) -> tuple[str, ...]:
     """Those of `others` that imitate the fitted `effect` at all poses and loads.
 
@@ -29,6 +29,8 @@ def exact_aliases(
         Contenders.
     point
         (3,) measured point in the tool frame [m].
+    tied
+        The readings give no reason to doubt that tied parameters of the effect are equal.
     """
     pool = random_pool(model.robot, poses=150, directions=3, force=300.0, point=point, seed=1)
     full = model
@@ -40,7 +42,10 @@ def exact_aliases(
     typical = np.array([parameter.spec.typical for parameter in full.parameters])
     X = (derivative * typical).reshape(-1, len(typical))
     owner = np.array([parameter.effect.id for parameter in full.parameters])
-    signature = X[:, owner == effect.id] @ (full.values / typical)[owner == effect.id]
+    values = (full.values / typical)[owner == effect.id]
+    for group in effect.ties if tied else ():
+        values[list(group)] = values[list(group)].mean()
+    signature = X[:, owner == effect.id] @ values
     base = X[:, np.isin(owner, list(present - {effect.id}))]
     reference = np.linalg.norm(_without(base, signature))
     found = []

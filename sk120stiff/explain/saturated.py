@@ -20,11 +20,12 @@ from sk120stiff.robot.coupling import Array
 STRONG = 10.0  # twice the log-likelihood by which a less simple noise model must win
 
 
-def load_basis(situation: Situation, *, cubic: bool) -> Array:
+def load_basis(situation: Situation, *, jump: bool = False, cubic: bool = False) -> Array:
     """(N, k) the loads of every pose in their own principal directions, sizes of order one.
 
-    Column j of one pose has nothing to do with column j of another. With `cubic` a column for what
-    grows with the cube of the load is added where a pose has readings enough.
+    Column j of one pose has nothing to do with column j of another. Where a pose has readings
+    enough, `jump` adds a constant (lost motion) and `cubic` what grows with the cube of the load
+    (hardening).
     """
     scale = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # a moment of 1 N·m counts like 2 N
     loads = situation.wrench * scale
@@ -37,8 +38,10 @@ def load_basis(situation: Situation, *, cubic: bool) -> Array:
         _, singular, Vt = np.linalg.svd(loads[rows] / size, full_matrices=False)
         rank = int((singular > 0.02 * singular[0]).sum()) if singular[0] > 0.0 else 0
         basis = loads[rows] / size @ Vt[:rank].T
-        if cubic and rank and len(rows) >= rank + 3:
-            along = np.linalg.norm(basis, axis=1, keepdims=True)
+        along = np.linalg.norm(basis, axis=1, keepdims=True)
+        if jump and len(rows) >= rank + 3:
+            basis = np.hstack([basis, np.sign(along)])
+        if cubic and rank and len(rows) >= rank + 4:
             basis = np.hstack([basis, basis[:, :1] * along**2])
         parts.append((rows, basis))
     width = max((basis.shape[1] for _, basis in parts), default=0)
@@ -81,13 +84,19 @@ class PoseNoise:
         return float(np.sqrt(self.rss / self.freedom)) if self.freedom else 1.0
 
 
-def pose_noise(noise: NoiseModel, measurements: Measurements, situation: Situation) -> PoseNoise:
-    """Restricted likelihood of a noise model under the pose-by-pose regression."""
+def pose_noise(
+    noise: NoiseModel, measurements: Measurements, situation: Situation, *, jump: bool
+) -> PoseNoise:
+    """Restricted likelihood of a noise model under the pose-by-pose regression.
+
+    With `jump` a constant per pose is free: then lost motion does not pass for noise, but neither
+    can a shared zero reading be told from separate ones.
+    """
     if measurements.displacement is None:
         raise ValueError("noise cannot be judged without displacements")
     whitener = noise.whitener(measurements)
     y = whitener.apply(measurements.displacement)
-    X = whitener.apply(pose_columns(load_basis(situation, cubic=True)))
+    X = whitener.apply(pose_columns(load_basis(situation, jump=jump, cubic=True)))
     rss, freedom, information = 0.0, len(y), 0.0
     group = np.repeat(situation.pose, 3)
     for pose in np.unique(group):
@@ -113,31 +122,43 @@ def choose_noise(measurements: Measurements, situation: Situation) -> tuple[Nois
     noise, reasons
         The model, and what was decided beyond the description, in sentences.
     """
-    judged = [pose_noise(noise, measurements, situation) for noise in candidates(measurements)]
-    best = judged[0]
+    offered = candidates(measurements)
     reasons: list[str] = []
+    if len({noise.zero for noise in offered}) > 1:
+        plain = [noise for noise in offered if noise.growth == offered[0].growth]
+        judged = [pose_noise(noise, measurements, situation, jump=False) for noise in plain]
+        zero = max(judged, key=lambda found: found.likelihood).noise.zero
+        offered = [noise for noise in offered if noise.zero == zero]
+        reasons.append(f"Nobody said how zero readings were shared; the scatter says: {zero}.")
+    judged = [pose_noise(noise, measurements, situation, jump=True) for noise in offered]
+    best = judged[0]
     if best.freedom >= 10:
         for other in judged[1:]:
-            needed = STRONG if other.noise.growth != best.noise.growth else 0.0
-            if other.likelihood > best.likelihood + needed:
+            if other.likelihood > max(best.likelihood, judged[0].likelihood + STRONG):
                 best = other
-        if best is not judged[0]:
-            reasons.append(
-                f"The readings themselves ask for another noise model: {best.noise.describe()}"
-            )
+    if best is not judged[0]:
+        reasons.append(
+            f"The scatter grows with the displacement: {best.noise.growth * 100:.2g} % of it."
+        )
+    return _scaled(best, reasons), reasons
+
+
+def _scaled(best: PoseNoise, reasons: list[str]) -> NoiseModel:
+    """The noise model with the size that the scatter within poses shows."""
     noise = best.noise
-    if best.freedom >= 30 and noise.stated:
+    if noise.stated:
         excess = best.factor - 1.0
-        if excess > 4.0 / np.sqrt(2.0 * best.freedom) and excess > 0.1:
-            noise = noise.scaled(best.factor)
-            reasons.append(
-                f"Within a pose the readings scatter {best.factor:.2f} times as much as their "
-                "stated uncertainty; the larger value is used."
-            )
-    elif best.freedom >= 10 and not noise.stated:
+        if best.freedom < 30 or excess < max(4.0 / np.sqrt(2.0 * best.freedom), 0.1):
+            return noise
+        reasons.append(
+            f"Within a pose the readings scatter {best.factor:.2f} times as much as their stated "
+            "uncertainty; the larger value is used."
+        )
+        return noise.scaled(best.factor)
+    if best.freedom >= 10:
         noise = noise.scaled(best.factor)
         reasons.append(
             f"No uncertainty is stated; the scatter within a pose gives "
             f"{noise.sigma * 1e6:.3g} µm for one reading."
         )
-    return noise, reasons
+    return noise

@@ -33,25 +33,29 @@ class Scored:
         The least-squares solution.
     plausible
         No parameter lies beyond its plausible range.
+    variants
+        By which of its variants each effect entered; 0 has all its parameters, 1 ties some.
     """
 
     effects: tuple[int, ...]
     score: float
     solved: Solved
     plausible: bool
+    variants: tuple[int, ...]
 
 
 def score_set(regression: Regression, sums: Sums, effects: Iterable[int]) -> Scored:
     """Score the base model with some candidates added."""
     chosen = tuple(sorted(effects))
     best: Scored | None = None
-    for variant in product(*(regression.variants[e] for e in chosen)):
-        columns = np.concatenate([regression.base, *variant]).astype(np.intp)
+    for variants in product(*(range(len(regression.variants[e])) for e in chosen)):
+        parts = [regression.variants[e][k] for e, k in zip(chosen, variants, strict=True)]
+        columns = np.concatenate([regression.base, *parts]).astype(np.intp)
         solved = solve_columns(sums, columns, regression.lower)
         plausible = bool((np.abs(solved.values) <= regression.plausible[solved.columns]).all())
         score = _score(regression, sums, solved, len(chosen))
         if best is None or (plausible, -score) > (best.plausible, -best.score):
-            best = Scored(chosen, score, solved, plausible)
+            best = Scored(chosen, score, solved, plausible, variants)
     if best is None:
         raise ValueError("a model without variants")
     return best
@@ -131,7 +135,9 @@ def beam_search(
         grown = sorted((m for m in grown if m.plausible), key=lambda m: m.score)[:width]
         if not grown:
             break
-        best_before = min(model.score for model in seen.values() if model not in grown)
+        best_before = min(
+            (m.score for m in seen.values() if m.plausible and m not in grown), default=np.inf
+        )
         front = grown
         # Larger models that lose to a smaller one by far have no future.
         if grown[0].score > best_before + 40.0:

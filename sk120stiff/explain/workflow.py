@@ -240,6 +240,7 @@ def _findings(
             chosen,
             [regression.candidates[e] for e in same],
             point=final.problem.situation.point,
+            tied=with_it.variants[with_it.effects.index(effect)] > 0,
         )
         findings.append(
             Finding(
