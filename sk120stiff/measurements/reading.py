@@ -23,7 +23,7 @@ from sk120stiff.measurements.subtraction import displacements
 from sk120stiff.measurements.table import Table, read_table
 
 if TYPE_CHECKING:
-    from sk120stiff.measurements.settings import SettingsFile
+    from sk120stiff.measurements.settings import Settings, SettingsFile
 
 Floats = NDArray[np.float64]
 
@@ -142,9 +142,20 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile) -> Measurements:
         zero_order=found.order,
         zero_time=found.time,
         use=found.use,
-        notes=found.notes,
+        notes=(*_assumed_frames(settings), *found.notes),
         data_hash=_hash(table.path, file.path),
     )
+
+
+def _assumed_frames(settings: Settings) -> list[str]:
+    return [
+        f"Nobody said in which axes the {name} is given: those of the base frame are taken."
+        for name, said in (
+            ("force", "force" in settings.model_fields_set),
+            ("displacement", "frame" in settings.displacement.model_fields_set),
+        )
+        if not said
+    ]
 
 
 def _sigma(file: SettingsFile) -> float | None:

@@ -35,9 +35,12 @@ class PointEntry(_Entry):
 
 
 class ForceEntry(_Entry):
-    """Axes of the reported wrench, and its point of attack if that is not the measured point."""
+    """Axes of the reported wrench, and its point of attack if that is not the measured point.
 
-    frame: _Frame = "base"
+    Whoever writes about the force says its frame; only without the section it is the base.
+    """
+
+    frame: _Frame
     point: PointEntry | None = None
 
 
@@ -68,7 +71,7 @@ class Settings(_Entry):
     base_frame: str | None = None
     tool_frame: str | None = None
     point: PointEntry | None = None
-    force: ForceEntry = ForceEntry()
+    force: ForceEntry = ForceEntry(frame="base")
     displacement: DisplacementEntry = DisplacementEntry()
     noise: NoiseEntry = NoiseEntry()
     source: str = ""

@@ -10,6 +10,11 @@ from sk120stiff.measurements import read_measurements
 GOOD = "pose,q1[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm]\n1,0,1,0,0,1,0,0\n"
 
 YAML = {
+    "force without frame": (
+        "robot: a\nforce: {point: {xyz: [0, 0, 1], unit: m}}\n",
+        ["line 2", "'force.frame' is missing", "force: {frame: base"],
+    ),
+    "force with an empty frame": ("force: {frame: }\n", ["line 1", "'force.frame' is missing"]),
     "not yaml": ("robot: motoman_sk120\nforce: {frame: base\nnoise: 3\n", ["line 3", "not YAML"]),
     "tab": ("robot: a\nforce:\n\tframe: base\n", ["line 3", "not YAML"]),
     "a list": ("- robot\n", ["holds no keys", "robot"]),
@@ -44,7 +49,7 @@ YAML = {
     ),
     "point infinite": ("point: {xyz: [1, 2, .inf], unit: mm}\n", ["key point.xyz", "finite"]),
     "force point unit": (
-        "force: {point: {xyz: [1, 2, 3], unit: yards}}\n",
+        "force: {frame: base, point: {xyz: [1, 2, 3], unit: yards}}\n",
         ["force.point.unit", "'yards'"],
     ),
     "negative sigma": ("noise: {sigma: -1, unit: um}\n", ["line 1", "key noise.sigma", "-1"]),

@@ -76,6 +76,7 @@ def test_every_column_and_key_arrives_in_si(tmp_path: Path) -> None:
     assert (m.force_frame, m.displacement_frame, m.zero) == ("tool", "tool", "separate")
     assert m.noise == NoiseStatement(1e-5, 0.01)
     assert m.source == "a test"
+    assert m.notes == ()
     np.testing.assert_array_equal(m.zero_group, [0, 1, 2])
     digest = hashlib.sha256(path.read_bytes() + path.with_suffix(".yaml").read_bytes())
     assert m.data_hash == digest.hexdigest()
@@ -84,12 +85,13 @@ def test_every_column_and_key_arrives_in_si(tmp_path: Path) -> None:
 PLAIN = "pose,q1[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm]\n1,0,1,0,0,1,0,0\n1,0,2,0,0,2,0,0\n"
 
 
-@pytest.mark.parametrize("yaml", [None, "", "# nothing\n", "noise:\nforce: {frame: }\n"])
+@pytest.mark.parametrize("yaml", [None, "", "# nothing\n", "noise:\nforce:\n"])
 def test_defaults(tmp_path: Path, yaml: str | None) -> None:
     m = read_measurements(put(tmp_path, PLAIN, yaml))
     assert m.robot is None
     assert m.base_frame is None
     assert (m.force_frame, m.displacement_frame, m.zero) == ("base", "base", "unknown")
+    assert sum("Nobody said in which axes" in note for note in m.notes) == 2
     assert m.noise == NoiseStatement(None, None)
     np.testing.assert_array_equal(m.point, np.zeros(3))
     np.testing.assert_array_equal(m.force_point, np.zeros(3))
@@ -167,7 +169,8 @@ def test_selecting_keeps_every_row_field_together(tmp_path: Path) -> None:
 
 
 def test_every_row_field_is_cut(tmp_path: Path) -> None:
-    m = read_measurements(put(tmp_path, CSV, YAML))
+    read = read_measurements(put(tmp_path, CSV, YAML))
+    m = dataclasses.replace(read, zero_order=[7.0, 8.0, 9.0], zero_time=[4.0, 5.0, 6.0])
     part = m.select([1])
     for field in dataclasses.fields(Measurements):
         whole, cut = getattr(m, field.name), getattr(part, field.name)

@@ -39,8 +39,8 @@ A,0,0,0,0,1002,500,0,6,60
     np.testing.assert_allclose(m.zero_time, [35, 50, 35])
     np.testing.assert_allclose(m.since_zero, [20 - 35, 30 - 50, 40 - 35])
     np.testing.assert_array_equal(m.line, [3, 4, 5])
-    assert "3 rows without load" in m.notes[0]
-    assert "1 to 2" in m.notes[0]
+    assert "3 rows without load" in m.notes[-1]
+    assert "1 to 2" in m.notes[-1]
 
 
 RUNS = f"""{HEAD},order
