@@ -1,0 +1,203 @@
+"""How fast it is, beside other means of doing the same, in one run: a table, and JSON on request.
+
+    python scripts/bench.py [--seconds 3] [--json FILE] [--only speed,growth,…]
+
+Peers come with `pip install "sk120stiff[bench]"`; one that is not installed is named as absent.
+Every road runs in a process of its own that is held to one core (or to all of them), and the best
+of several runs counts, so other work on the machine shows as little as possible.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime as dt
+import importlib.metadata
+import json
+import os
+import platform
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # for bench_roads
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measured number, or the reason why there is none."""
+
+    group: str
+    what: str
+    value: float | None
+    unit: str
+    note: str = ""
+
+
+def speed(seconds: float) -> Iterator[Row]:
+    """Every road on one core, and the kernel on all of them."""
+    import bench_roads as roads
+
+    rates: dict[str, float] = {}
+    for name, (_, title) in roads.ROADS.items():
+        value, note = on_cores(name, seconds, 1)
+        if value is not None:
+            rates[name] = value
+            if name != "kernel" and "kernel" in rates:
+                note = f"the kernel is {rates['kernel'] / value:.0f} times as fast"
+        yield Row("speed, 6R, one core", title, value, "poses/s", note)
+    cores = len(os.sched_getaffinity(0))
+    if cores > 1 and "kernel" in rates:
+        value, note = on_cores("kernel", seconds, cores)
+        if value is not None:
+            note = f"{value / rates['kernel']:.2f} times one core"
+        yield Row("speed, 6R, all cores", f"batch kernel on {cores} cores", value, "poses/s", note)
+
+
+def on_cores(road: str, seconds: float, cores: int) -> tuple[float | None, str]:
+    """Run one road in a process held to some cores: its rate, or why there is none."""
+    command = [sys.executable, __file__, "--road", road, "--cores", str(cores)]
+    done = subprocess.run(
+        [*command, "--seconds", str(seconds)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "OMP_NUM_THREADS": str(cores), "OPENBLAS_NUM_THREADS": str(cores)},
+    )
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        missing = "ModuleNotFoundError" in last
+        return None, f"absent: {last.split(': ', 1)[-1]}" if missing else f"failed: {last}"
+    return float(done.stdout.split()[-1]), ""
+
+
+def road_here(name: str, seconds: float, cores: int) -> None:
+    """Body of the process that `on_cores` starts."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, set(sorted(os.sched_getaffinity(0))[:cores]))
+    import bench_roads as roads
+
+    if name == "kernel":
+        print(roads.kernel(seconds, threads=cores))
+    else:
+        print(roads.ROADS[name][0](seconds))
+
+
+def growth(seconds: float) -> Iterator[Row]:
+    """How the cost of the kernel grows with the number of poses and of joints."""
+    import bench_roads as roads
+
+    for count in (1, 100, 10_000, 1_000_000):
+        value = roads.kernel(seconds / 4, count=count)
+        yield Row("growth with N", f"{count:,} poses", 1e6 * count / value, "µs a call")
+    for joints in (2, 3, 4, 6, 7, 9, 12):
+        value = roads.kernel(seconds / 4, count=100_000, joints=joints)
+        yield Row("growth with joints", f"{joints} joints", 1e9 / value, "ns a pose")
+
+
+def start(_seconds: float) -> Iterator[Row]:
+    """What a user waits for before anything is computed."""
+    commands = {
+        "sk120stiff --help": "from sk120stiff.cli.main import main; main(['--help'])",
+        "load the bundled robot": "import sk120stiff; sk120stiff.load_robot('motoman_sk120')",
+        "first batch, compiled code found": (
+            "import sk120stiff as s, numpy as n\n"
+            "from sk120stiff.stiffness import stiffness_batch\n"
+            "r = s.load_robot('motoman_sk120')\n"
+            "stiffness_batch(r, n.zeros((1, 6)), n.ones(6), n.zeros(6))"
+        ),
+    }
+    for what, program in commands.items():
+        best = min(_process(program) for _ in range(3))
+        yield Row("start", what, best, "s")
+    empty = min(_process("pass") for _ in range(3))
+    yield Row("start", "an empty Python process, for comparison", empty, "s")
+
+
+def _process(program: str) -> float:
+    begin = time.perf_counter()
+    subprocess.run([sys.executable, "-c", program], check=True, stdout=subprocess.DEVNULL)
+    return time.perf_counter() - begin
+
+
+#: What `--only` chooses from, in the order of the table.
+MEASUREMENTS: dict[str, Callable[[float], Iterator[Row]]] = {
+    "speed": speed,
+    "growth": growth,
+    "start": start,
+}
+
+
+def machine() -> dict[str, object]:
+    """On what this was measured."""
+    model = platform.processor()
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.exists():
+        named = [x for x in cpuinfo.read_text().splitlines() if x.startswith("model name")]
+        model = named[0].split(":", 1)[1].strip() if named else model
+    versions = {}
+    for name in ("numpy", "numba", "pin", "jax", "roboticstoolbox-python"):
+        try:
+            versions[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            versions[name] = "absent"
+    return {
+        "date": dt.datetime.now(dt.UTC).date().isoformat(),
+        "processor": model,
+        "cores": len(os.sched_getaffinity(0)),
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "load": os.getloadavg()[0],
+        **versions,
+    }
+
+
+def print_table(rows: list[Row], about: dict[str, object]) -> None:
+    """The rows as text."""
+    print(", ".join(f"{key} {value}" for key, value in about.items()))
+    group = ""
+    for row in rows:
+        if row.group != group:
+            group = row.group
+            print(f"\n{group}")
+        number = "—" if row.value is None else f"{row.value:,.4g}"
+        if row.value is not None and row.value >= 1e4:
+            number = f"{row.value:,.0f}"
+        print(f"  {row.what:<58}{number:>14} {row.unit:<10} {row.note}")
+
+
+def main() -> int:
+    """Measure, print, and write JSON where asked to."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=3.0, help="time for each number")
+    parser.add_argument("--json", type=Path, help="file to write the numbers to")
+    parser.add_argument("--only", default=",".join(MEASUREMENTS), help="which measurements")
+    parser.add_argument("--road", help=argparse.SUPPRESS)
+    parser.add_argument("--cores", type=int, default=1, help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.road:
+        road_here(given.road, given.seconds, given.cores)
+        return 0
+    chosen = given.only.split(",")
+    unknown = [name for name in chosen if name not in MEASUREMENTS]
+    if unknown:
+        parser.error(f"no measurement {', '.join(unknown)}; there are {', '.join(MEASUREMENTS)}")
+    about = machine()
+    rows: list[Row] = []
+    for name in chosen:
+        for row in MEASUREMENTS[name](given.seconds):
+            print(f"{row.group}: {row.what}", file=sys.stderr)
+            rows.append(row)
+    print_table(rows, about)
+    if given.json:
+        from sk120stiff.files import write_atomically
+
+        document = {"machine": about, "rows": [asdict(row) for row in rows]}
+        write_atomically(given.json, json.dumps(document, indent=1) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
