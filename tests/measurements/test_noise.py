@@ -159,9 +159,12 @@ def test_large_data_are_whitened_in_milliseconds() -> None:
     m = make([str(i // 5) for i in range(2000)], displacement=rng.normal(size=(2000, 3)) * 1e-4)
     whitener = NoiseModel(SIGMA, 0.01).whitener(m)
     x = rng.normal(size=(2000, 3, 100))
-    start = time.perf_counter()
-    whitener.apply(x)
-    assert time.perf_counter() - start < 0.25  # some 8 ms on a quiet machine
+    seconds = []
+    for _ in range(5):
+        start = time.process_time()
+        whitener.apply(x)
+        seconds.append(time.process_time() - start)
+    assert min(seconds) < 0.1  # some 8 ms on a quiet machine
 
 
 def test_what_cannot_be_whitened() -> None:
