@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,7 +17,15 @@ from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_pose, parse_wrench
 
 if TYPE_CHECKING:
+    from sk120stiff.measurements import Measurements
     from sk120stiff.model import Model
+
+
+class Opened(NamedTuple):
+    """Measurements and their robot."""
+
+    data: Measurements
+    robot: Robot
 
 
 def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
@@ -69,3 +79,53 @@ def pose_of(robot: Robot, text: str | None) -> Array:
 def wrench_of(text: str | None) -> Array:
     """Wrench (6,) [N, N·m] from --wrench; no load where nothing is given."""
     return np.zeros(6) if text is None else parse_wrench(text, where="--wrench")
+
+
+def open_data(path: Path, base: str | None = None, tool: str | None = None) -> Opened:
+    """Measurements, and the robot that their YAML file names.
+
+    Raises
+    ------
+    InputError
+        The data cannot be read, name no robot, or do not fit it.
+    """
+    from sk120stiff.measurements import read_measurements
+
+    data = read_measurements(path)
+    if data.robot is None:
+        raise InputError(
+            "the measurements do not say which robot they are of",
+            where=str(path),
+            remedy=f"Write 'robot: ...' (a name or a path) into {path.with_suffix('.yaml')}.",
+        )
+    robot = open_robot(data.robot, base or data.base_frame, tool or data.tool_frame)
+    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
+    return Opened(data.with_joints(robot.actuated, kinds), robot)
+
+
+def start_model(robot: Robot, path: Path | None) -> Model:
+    """The model of that file, else the robot's own, else a spring in every actuated joint."""
+    from sk120stiff.model import base_model, joint_spring_model, read_model
+
+    if path is not None:
+        return read_model(path, robot)
+    known = base_model(robot)
+    if known is not None:
+        return known
+    note("No model was given: a spring in every actuated joint is assumed (give one with --model).")
+    return joint_spring_model(robot)
+
+
+def provenance(path: Path, data: Measurements) -> dict[str, str]:
+    """Where a result comes from: command line, data and their hash, version, date."""
+    from datetime import UTC, datetime
+
+    from sk120stiff import __version__
+
+    return {
+        "command": " ".join(["sk120stiff", *(shlex.quote(word) for word in sys.argv[1:])]),
+        "data": str(path),
+        "data_hash": f"sha256:{data.data_hash}",
+        "version": __version__,
+        "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+    }

@@ -1,5 +1,6 @@
 """Find where model and readings disagree, name what is missing, add it, show the gap shrink."""
 
+from sk120stiff.explain.document import noise_floor, verdict_document
 from sk120stiff.explain.explanation import (
     Detectable,
     Evidence,
@@ -19,4 +20,6 @@ __all__ = [
     "Step",
     "Verdict",
     "explain",
+    "noise_floor",
+    "verdict_document",
 ]

@@ -1,0 +1,111 @@
+"""An explanation as the JSON document that callers rely on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sk120stiff.explain.explanation import Explanation, Finding
+from sk120stiff.identify import Fit
+from sk120stiff.model import Parameter
+
+
+def verdict_document(answer: Explanation, next_poses: str | None = None) -> dict[str, Any]:
+    """The content of `verdict.json`.
+
+    Parameters
+    ----------
+    answer
+        The explanation.
+    next_poses
+        Name of the file that holds the poses to measure next.
+    """
+    return {
+        "verdict": answer.verdict,
+        "effects": [_effect(answer, finding) for finding in answer.findings],
+        "parameters": parameters_before_and_after(answer),
+        "gap": {
+            "unit": "um",
+            "noise_floor": noise_floor(answer.final) * 1e6,
+            "steps": [
+                {
+                    "model": step.label,
+                    "fit_rms": step.fit_rms * 1e6,
+                    "heldout_rms": step.heldout_rms * 1e6,
+                }
+                for step in answer.steps
+            ],
+        },
+        "where": list(answer.where),
+        "suspects": list(answer.suspects),
+        "noise": {
+            "model": answer.noise.describe(),
+            "sigma_um": answer.final.sigma * 1e6,
+            "decided": list(answer.noise_reasons),
+            "set_aside": list(answer.set_aside),
+        },
+        "adequacy": {
+            "probability": answer.adequacy.probability,
+            "left_over": answer.adequacy.excess,
+            "tests": dict(answer.adequacy.tests),
+        },
+        "not_observable": list(answer.not_observable),
+        "smallest_detectable": [
+            {"name": item.name, "value": item.value, "unit": item.unit}
+            for item in answer.smallest_detectable
+        ],
+        "next_poses": next_poses,
+    }
+
+
+def noise_floor(fit: Fit) -> float:
+    """Rms per axis that noise alone would give the gap [m]."""
+    own, zero = fit.problem.noise.variances(fit.problem.measurements)
+    factor = 1.0 if fit.sigma_stated else fit.noise_factor
+    return float(np.sqrt(np.mean(own + zero)) * factor)
+
+
+def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
+    """All parameters of the final model, with the base model's estimate of each."""
+    before = {p.name: p for p in answer.base.model.parameters}
+    return [
+        {**_parameter(p), "before": before[p.name].public_value if p.name in before else None}
+        for p in answer.final.model.parameters
+    ]
+
+
+def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
+    found = [p for p in answer.final.model.parameters if p.effect == finding.effect]
+    evidence = finding.evidence
+    return {
+        "name": finding.effect.name,
+        "where": finding.effect.where,
+        "alternatives": list(finding.alternatives),
+        "exact_aliases": list(finding.exact),
+        "parameters": [_parameter(p) for p in found],
+        "sentence": finding.effect.sentence(),
+        "evidence": {
+            "delta_bic": evidence.score_gain,
+            "delta_chi_square": evidence.misfit_gain,
+            "runner_up": evidence.runner_up,
+            "runner_up_delta_bic": evidence.runner_up_gap,
+            "folds_improved": evidence.confirmation.folds_improved,
+            "folds": evidence.confirmation.folds,
+            "heldout_gain": evidence.confirmation.gain,
+            "heldout_gain_std": evidence.confirmation.gain_error,
+            "name_frequency": evidence.confirmation.frequency,
+        },
+    }
+
+
+def _parameter(p: Parameter) -> dict[str, Any]:
+    return {
+        "name": p.name,
+        "value": p.public_value,
+        "std": p.public_std,
+        "unit": p.spec.unit,
+        "internal_value": p.value,
+        "internal_std": p.std,
+        "internal_unit": p.spec.internal_unit,
+    }
