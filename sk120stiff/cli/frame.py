@@ -41,11 +41,14 @@ class Answer:
         The same for people: lines of text and rich renderables, printed in order.
     exit_code
         1 where the answer is a refusal that `parts` and `document` explain.
+    afterwards
+        What the command goes on with once its answer is printed (a server that runs).
     """
 
     document: Mapping[str, object]
     parts: Sequence[object] = ()
     exit_code: int = 0
+    afterwards: Callable[[], None] | None = None
 
 
 def framed(body: Callable[..., Answer]) -> Callable[..., None]:
@@ -57,6 +60,8 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
         with guarded(debug=debug), _messages(debug=debug):
             answer = body(**options)
             emit(answer, as_json=as_json)
+            if answer.afterwards is not None:
+                answer.afterwards()
         if answer.exit_code:
             raise typer.Exit(answer.exit_code)
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sk120stiff.effects import Situation
     from sk120stiff.measurements import Measurements
     from sk120stiff.model import Model
+    from sk120stiff.robot import Robot
 
 Array = NDArray[np.float64]
 
@@ -57,7 +58,8 @@ def scene_of_model(
         The data belong to another robot, or nothing in the model yields.
     """
     robot = model.robot
-    poses = _poses(data, dict(models or {"model": model})) if data is not None else ()
+    shown = {"model": model} if models is None else dict(models)
+    poses = poses_of(robot, data, shown) if data is not None else ()
     start = a if a is not None else (poses[0].a if poses else None)
     return Scene(
         robot=robot,
@@ -73,11 +75,21 @@ def scene_of_model(
     )
 
 
-def _poses(data: Measurements, models: Mapping[str, Model]) -> tuple[ScenePose, ...]:
+def poses_of(
+    robot: Robot, data: Measurements, models: Mapping[str, Model] | None = None
+) -> tuple[ScenePose, ...]:
+    """The poses of measurements with their readings in base axes, and what models predict.
+
+    Raises
+    ------
+    InputError
+        The data belong to another robot.
+    """
     from sk120stiff.effects import situation_of
 
     used = data.masked()
-    situation = situation_of(next(iter(models.values())).robot, used)
+    situation = situation_of(robot, used)
+    models = models or {}
     predicted = {name: _in_base(situation, m.predict(situation)) for name, m in models.items()}
     measured = None if used.displacement is None else _in_base(situation, used.displacement)
     wrench = _at_point(situation)

@@ -96,14 +96,22 @@ class Frame:
 
 
 def compute_frame(robot: Robot, tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
-    """Kinematics, compliance, deflection and verdicts of one request."""
+    """Kinematics, compliance, deflection and verdicts of one request.
+
+    Raises
+    ------
+    Refusal
+        The load is exactly critical.
+    """
     z = elastic.coordinates(request.a)
     mechanism, C = elastic.mechanism, elastic.tangent(request.a)
     start = mechanism.screws(z, request.point)
     J = start.jacobian
     K_C = complementary_stiffness(start, request.wrench)
-    # (K_θ − K_C)⁻¹, rigid coordinates included
-    loaded = np.asarray(np.linalg.solve(np.eye(len(z)) - C @ K_C, C))
+    try:  # (K_θ − K_C)⁻¹, rigid coordinates included
+        loaded = np.asarray(np.linalg.solve(np.eye(len(z)) - C @ K_C, C))
+    except np.linalg.LinAlgError as error:
+        raise Refusal("this load is exactly critical: K_θ − K_C is singular") from error
     torques = start.torques(request.wrench)
     deflection = {
         "conventional": J[:3] @ C @ torques,

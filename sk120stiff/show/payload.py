@@ -20,6 +20,7 @@ from sk120stiff.show.shapes import Body, Mesh, reach_of
 Array = NDArray[np.float64]
 SAMPLES = 64  # poses from which the scale of the ellipsoids is taken
 DEFAULT_LOAD = 1000.0  # N, upper end of the load sliders without data
+EXAGGERATION = (1.0, 10000.0)
 
 
 def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
@@ -43,6 +44,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
         "frame": frame,
         "elastic": {"label": _source(scene, live=live), "assumed": elastic.assumed},
         "joints": _joints(scene),
+        "limits": _limits(scene),
         "links": list(tree.names),
         "bodies": bodies,
         "meshes": [_mesh(mesh) for mesh in meshes],
@@ -77,8 +79,8 @@ def _source(scene: Scene, *, live: bool) -> str:
 def frame_payload(frame: Frame) -> dict[str, Any]:
     """A computed frame in the form in which the page's own engine returns it."""
     return {
-        "links": _matrices(frame.links),
-        "deflected": None if frame.deflected is None else _matrices(frame.deflected),
+        "links": _matrices(frame.links, 9),
+        "deflected": None if frame.deflected is None else _matrices(frame.deflected, 9),
         "position": _list(frame.position),
         "rotation": _list(frame.rotation.T),
         "translation": {name: _axes(axes) for name, axes in frame.translation.items()},
@@ -96,22 +98,38 @@ def _axes(axes: PrincipalAxes) -> dict[str, Any]:
 
 def _joints(scene: Scene) -> list[dict[str, Any]]:
     robot = scene.robot
-    joints = []
+    joints: list[dict[str, Any]] = []
     for name, lower, upper, slides in zip(
         robot.actuated, robot.lower, robot.upper, robot.prismatic, strict=True
     ):
-        limited = math.isfinite(lower) and math.isfinite(upper)
         span = 1.0 if slides else math.pi
         joints.append(
             {
                 "name": name,
                 "slides": slides,
-                "limited": limited,
                 "lower": float(lower) if math.isfinite(lower) else -span,
                 "upper": float(upper) if math.isfinite(upper) else span,
             }
         )
+    for a in (scene.first_pose, *(pose.a for pose in scene.poses)):  # measured beyond a limit
+        for joint, value in zip(joints, a, strict=True):
+            joint["lower"] = min(joint["lower"], float(value))
+            joint["upper"] = max(joint["upper"], float(value))
     return joints
+
+
+def _limits(scene: Scene) -> dict[str, Any]:
+    """Largest values that the controls offer and that the live server takes."""
+    loads = [r.wrench for pose in scene.poses for r in pose.readings]
+    largest = np.max(np.abs([scene.first_load, *loads]), axis=0)
+    force, moment = float(largest[:3].max()), float(largest[3:].max())
+    reach = reach_of(scene.robot, scene.frame)
+    return {
+        "force": max(_round_up(1.2 * force), 100.0) if force else DEFAULT_LOAD,
+        "moment": max(_round_up(1.2 * moment), 100.0) if moment else DEFAULT_LOAD,
+        "point": max(0.25 * reach, 1.2 * float(np.max(np.abs(scene.point)))),
+        "exaggeration": list(EXAGGERATION),
+    }
 
 
 def _kinematics(scene: Scene) -> dict[str, Any]:
@@ -176,12 +194,9 @@ def _scale(scene: Scene) -> dict[str, Any]:
             "compliance": compliance,
             "stiffness": 1.0 / float(np.median(middle)) if middle else 1.0 / compliance,
         }
-    load = [abs(v) for p in scene.poses for r in p.readings for v in np.asarray(r.wrench)[:3]]
-    load += [abs(float(v)) for v in scene.first_load[:3]]
     return {
         "reach": reach,
         "references": references,
-        "load": max(_round_up(1.2 * max(load)), 100.0) if any(load) else DEFAULT_LOAD,
         "exaggeration": _exaggeration(scene, reach),
     }
 
@@ -199,7 +214,7 @@ def _exaggeration(scene: Scene, reach: float) -> float:
     largest = max(sizes)
     if largest < 1e-12:
         return 100.0
-    return min(max(_round_up(0.1 * reach / largest) / 2.0, 1.0), 10000.0)
+    return float(np.clip(_round_up(0.1 * reach / largest) / 2.0, *EXAGGERATION))
 
 
 def _round_up(value: float) -> float:
@@ -257,8 +272,8 @@ def _binary(array: NDArray[Any]) -> str:
     return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
 
 
-def _matrices(many: Array) -> list[list[float]]:
-    return [_list(T.T) for T in many]
+def _matrices(many: Array, digits: int | None = None) -> list[list[float]]:
+    return [_list(T.T, digits) for T in many]
 
 
 def _list(array: Array, digits: int | None = None) -> list[float]:

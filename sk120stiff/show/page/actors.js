@@ -56,7 +56,7 @@ SK.makeActors = (stage, scene) => {
         move(path.concat("shaft"), along(from, direction, size, Math.max(length - head, 1e-6)));
         move(path.concat("head"), along(m.add(from, m.scaled(direction, length - head)), direction, size, size));
         if (doubled) move(path.concat("second"), along(m.add(from, m.scaled(direction, length - 1.9 * head)), direction, size, size));
-        if (text) words.set(m.add(from, m.scaled(direction, length + 5 * thin)), text);
+        if (text && length > 0.03 * reach) words.set(m.add(from, m.scaled(direction, length + 5 * thin)), text);
         else words.hide();
       },
       hide() { show(path, false); words.hide(); },
@@ -133,7 +133,7 @@ SK.makeActors = (stage, scene) => {
     const placed = [];
     for (const box of boxes) {
       const start = box.y;
-      for (let step = 1; step < 14 && placed.some((other) => overlap(box, other)); step++)
+      for (let step = 1; step < 22 && placed.some((other) => overlap(box, other)); step++)
         box.y = start + (step % 2 ? 1 : -1) * Math.ceil(step / 2) * 6;
       placed.push(box);
     }

@@ -37,7 +37,7 @@ SK.start = (scene) => {
   };
   const engine = scene.mode === "live"
     ? SK.makeSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket`, onState)
-    : SK.makeEngine(scene.kinematics);
+    : SK.makeEngine(scene.kinematics, onState);
 
   function changed() {
     if (pending) return;
@@ -76,8 +76,8 @@ SK.start = (scene) => {
     const from = frame.position, force = state.wrench.slice(0, 3), moment = state.wrench.slice(3);
     if (state.show.load) {
       const longest = 0.22 * reach;
-      if (m.norm(force) > 0) arrows.force.set(from, m.scaled(force, longest / scale.load), `${number(m.norm(force))} N`);
-      if (m.norm(moment) > 0) arrows.moment.set(from, m.scaled(moment, longest / scale.load), `${number(m.norm(moment))} N·m`);
+      if (m.norm(force) > 0) arrows.force.set(from, m.scaled(force, longest / scene.limits.force), `${number(m.norm(force))} N`);
+      if (m.norm(moment) > 0) arrows.moment.set(from, m.scaled(moment, longest / scene.limits.moment), `${number(m.norm(moment))} N·m`);
     }
     const reading = currentReading(), factor = state.exaggeration;
     if (reading && state.show.displacements) {
@@ -185,7 +185,7 @@ SK.start = (scene) => {
   const readouts = SK.makeReadouts(scene, state);
   document.getElementById("panel").append(readouts.root);
   const panel = SK.makePanel(scene, state, actions);
-  const legendList = document.getElementById("legend"), narrow = window.matchMedia("(max-width: 720px)");
+  const legendList = document.getElementById("legend"), narrow = window.matchMedia("(max-width: 900px)");
   const settle = () => (narrow.matches ? panel.root.prepend(legendList) : pane.after(legendList));
   narrow.addEventListener("change", settle);
   settle();

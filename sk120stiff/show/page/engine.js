@@ -1,7 +1,7 @@
 // The physics of a page without a server: kinematics with the coupling q = A a + b, the Jacobian of
 // the point, K_C, compliance, loaded equilibrium. The same formulas as in Python (show/frame.py).
 "use strict";
-SK.makeEngine = (constants) => {
+SK.makeEngine = (constants, onState = () => {}) => {
   const m = SK.algebra;
   const { A, b, offset, compliance: C, chain, tree } = constants;
   const joints = b.length, drives = A[0].length, n = C.length;
@@ -123,21 +123,20 @@ SK.makeEngine = (constants) => {
     const values = jointValues(z), screws = sweep(values, point), J = jacobian(screws);
     const K_C = complementary(screws, wrench), loaded = loadedCompliance(K_C);
     const torques = torquesOf(J, wrench), top = J.slice(0, 3), bottom = J.slice(3);
-    const deflection = { conventional: m.apply(top, m.apply(C, torques)) };
-    if (loaded) deflection.enhanced = m.apply(top, m.apply(loaded, torques));
+    if (!loaded) return null;
+    const deflection = { conventional: m.apply(top, m.apply(C, torques)), enhanced: m.apply(top, m.apply(loaded, torques)) };
     const rest = equilibrium(z, wrench, point);
     if (rest) deflection.equilibrium = m.minus(rest.position, screws.position);
     const K_Csoft = m.symmetric(pick(K_C, soft)), L = m.cholesky(pick(C, soft));
     const shares = m.eigen(m.symmetric(m.times(m.transposed(L), m.times(K_Csoft, L)))).values;
     const K_theta = m.solve(pick(C, soft), m.identity(soft.length));
-    const enhanced = loaded || C;
     return {
       links: placeElastic(z, point),
       deflected: rest && placeElastic(m.add(z, m.scaled(m.minus(rest.z, z), exaggeration)), point),
       position: screws.position,
       rotation: [0, 1, 2, 4, 5, 6, 8, 9, 10].map((k) => screws.end[k]),
-      translation: { conventional: axesOf(top, C), enhanced: axesOf(top, enhanced) },
-      rotationAxes: { conventional: axesOf(bottom, C), enhanced: axesOf(bottom, enhanced) },
+      translation: { conventional: axesOf(top, C), enhanced: axesOf(top, loaded) },
+      rotationAxes: { conventional: axesOf(bottom, C), enhanced: axesOf(bottom, loaded) },
       deflection,
       classes: {
         K_C: K_Csoft.some((row) => row.some((v) => v !== 0)) ? definiteness(K_Csoft) : "zero",
@@ -150,6 +149,10 @@ SK.makeEngine = (constants) => {
 
   return {
     compute,
-    request(state, done) { done(compute(state)); },
+    request(state, done) {
+      const frame = compute(state);
+      if (frame) done(frame);
+      onState(...(frame ? ["open"] : ["refused", "this load is exactly critical"]));
+    },
   };
 };

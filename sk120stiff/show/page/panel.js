@@ -4,7 +4,7 @@ SK.makePanel = (scene, state, actions) => {
   const { element, slider, choice, select, toggle, button, section, more } = SK.widgets;
   const controls = [];
   const keep = (control) => { controls.push(control); return control.row; };
-  const { joints, poses, scale } = scene;
+  const { joints, poses, limits } = scene;
 
   const jointSliders = joints.map((joint, k) => keep(slider({
     label: joint.name, unit: joint.slides ? "mm" : "\u00b0", factor: joint.slides ? 1e3 : 180 / Math.PI,
@@ -39,17 +39,18 @@ SK.makePanel = (scene, state, actions) => {
       ...known.map((reading, k) => element("option", { value: String(k) }, `${reading.label}: ${SK.words.number(SK.algebra.norm(reading.wrench.slice(0, 3)), 3)} N`)));
   }
 
+  const largest = (k) => (k < 3 ? limits.force : limits.moment);
   const loadSlider = (k) => keep(slider({
     label: ["Force x", "Force y", "Force z", "Moment x", "Moment y", "Moment z"][k], unit: k < 3 ? "N" : "N\u00b7m", factor: 1,
-    lower: -scale.load, upper: scale.load, step: scale.load / 500, places: 2,
+    lower: -largest(k), upper: largest(k), step: largest(k) / 500, places: 2,
     read: () => state.wrench[k], write: (value) => { state.wrench[k] = value; actions.leaveReading(); },
   }));
   const pointSlider = (k) => keep(slider({
-    label: `Point ${"xyz"[k]}`, unit: "mm", factor: 1e3, lower: -0.25 * scale.reach, upper: 0.25 * scale.reach, step: 1, places: 2,
+    label: `Point ${"xyz"[k]}`, unit: "mm", factor: 1e3, lower: -limits.point, upper: limits.point, step: 1, places: 2,
     read: () => state.point[k], write: (value) => { state.point[k] = value; actions.leavePose(); },
   }));
 
-  const sizes = element("div", {}, exponential("Size of the ellipsoid", "scale", 0.2, 5), exponential("Exaggeration", "exaggeration", 1, 10000));
+  const sizes = element("div", {}, exponential("Size of the ellipsoid", "scale", 0.2, 5), exponential("Exaggeration", "exaggeration", ...limits.exaggeration));
   // A slider over powers of ten whose field shows the factor itself.
   function exponential(label, key, lower, upper) {
     const made = slider({

@@ -18,10 +18,10 @@ SK.makeSocket = (address, onState) => {
     socket.onopen = () => { pause = 500; onState("open"); send(); };
     socket.onmessage = (message) => {
       const answer = JSON.parse(message.data);
-      if (!inFlight || answer.id !== inFlight.id) return;
+      if (!inFlight || (answer.id !== null && answer.id !== inFlight.id)) return;
       const { done, sent } = inFlight;
       inFlight = null;
-      if (answer.frame) { SK.lastRoundTrip = performance.now() - sent; done(answer.frame); }
+      if (answer.frame) { SK.roundTrip = performance.now() - sent; onState("open"); done(answer.frame); }
       else onState("refused", answer.error);
       send();
     };

@@ -19,7 +19,7 @@ SK.words = (() => {
 
   const percent = (share) => {
     const value = 100 * share;
-    return value === 0 ? "0 %" : Math.abs(value) < 1e-3 ? "< 0.001 %" : `${number(value, 2)} %`;
+    return (value === 0 ? "0" : Math.abs(value) < 1e-3 ? "< 0.001" : number(value, 2)) + "\u00a0%";
   };
 
   // What an ellipsoid can show. `inverse`: one over the compliance.

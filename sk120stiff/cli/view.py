@@ -1,0 +1,138 @@
+"""`sk120stiff view ROBOT`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.cli.frame import Answer, note
+from sk120stiff.cli.opening import open_robot, pose_of, wrench_of
+from sk120stiff.cli.options import (
+    BaseOption,
+    ModelOption,
+    PoseOption,
+    RobotArgument,
+    ToolOption,
+    WrenchOption,
+)
+
+if TYPE_CHECKING:
+    from sk120stiff.measurements import Measurements
+    from sk120stiff.robot import Robot
+    from sk120stiff.show import Scene
+
+DataOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--data",
+        metavar="DATA",
+        help="Measurements (CSV) whose poses are listed, with measured and predicted arrows.",
+        show_default=False,
+    ),
+]
+NoOpenOption = Annotated[
+    bool, typer.Option("--no-open", help="Print the address without opening a browser.")
+]
+PortOption = Annotated[
+    int, typer.Option("--port", metavar="N", help="First port to try; 0 takes any that is free.")
+]
+HostOption = Annotated[
+    str,
+    typer.Option(
+        "--host",
+        metavar="ADDRESS",
+        help="Address to listen on. Anything but loopback shows the page to your network.",
+    ),
+]
+StaticOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--static",
+        metavar="FILE",
+        help="Write the scene as one HTML file that works offline, instead of serving it.",
+        show_default=False,
+    ),
+]
+
+
+def command(
+    robot: RobotArgument,
+    model: ModelOption = None,
+    data: DataOption = None,
+    pose: PoseOption = None,
+    wrench: WrenchOption = None,
+    static: StaticOption = None,
+    no_open: NoOpenOption = False,
+    port: PortOption = 7400,
+    host: HostOption = "127.0.0.1",
+    base: BaseOption = None,
+    tool: ToolOption = None,
+) -> Answer:
+    """The robot, its ellipsoids and its gaps, live in the browser.
+
+    Opens a page on this machine and runs until it is interrupted (Ctrl-C). The page has a slider
+    for every motor and for the load. With --static it writes the page as a file and ends.
+    """
+    measured = None if data is None else _read(data)
+    if measured is not None:  # the frames that the readings are about
+        base, tool = base or measured.base_frame, tool or measured.tool_frame
+    arm = open_robot(robot, base, tool)
+    scene = _scene(arm, model, measured, pose, wrench)
+    if static is not None:
+        from sk120stiff.show import static_scene
+
+        written = static_scene(static, scene)
+        document = {"url": written.resolve().as_uri(), "scene": str(written)}
+        return Answer(document, parts=[f"Scene: {written}"])
+    from sk120stiff.show.live import LiveServer
+
+    server = LiveServer(scene, host=host, port=port)
+    if host not in ("127.0.0.1", "localhost", "::1"):
+        note(f"Everyone who can reach {host} can see this page.")
+    parts = [f"Open {server.url}", "Ctrl-C ends it."]
+    return Answer(
+        {"url": server.url}, parts, afterwards=lambda: server.serve(open_browser=not no_open)
+    )
+
+
+def _read(data: Path) -> Measurements:
+    from sk120stiff.measurements import read_measurements
+
+    return read_measurements(data)
+
+
+def _scene(
+    robot: Robot,
+    model_file: Path | None,
+    data: Measurements | None,
+    pose: str | None,
+    wrench: str | None,
+) -> Scene:
+    from sk120stiff.model import base_model, read_model
+    from sk120stiff.show import Elastic, Scene, scene_of_model
+    from sk120stiff.show.building import poses_of
+
+    a = None if pose is None else pose_of(robot, pose)
+    load = None if wrench is None else wrench_of(wrench)
+    model = base_model(robot) if model_file is None else read_model(model_file, robot)
+    if model is not None:
+        return scene_of_model(
+            model, data, title=robot.name, a=a, wrench=load, model_file=model_file or ""
+        )
+    note(
+        "No stiffness is known for this robot; the page shows an assumed one and says so. "
+        "Give a model with --model."
+    )
+    return Scene(
+        robot,
+        Elastic.assumed_for(robot),
+        poses=() if data is None else poses_of(robot, data),
+        title=robot.name,
+        point=np.zeros(3) if data is None else data.point,
+        a=a,
+        wrench=load,
+        robot_argument=robot.source,
+    )

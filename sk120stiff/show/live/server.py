@@ -1,0 +1,166 @@
+"""A small server on loopback, gone with its process; closed pages leave nothing behind."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import webbrowser
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from tornado.httpserver import HTTPServer
+from tornado.netutil import bind_sockets
+from tornado.web import Application
+
+from sk120stiff.errors import InputError
+from sk120stiff.show.frame import Request, compute_frame
+from sk120stiff.show.live.handlers import (
+    MissingHandler,
+    PageHandler,
+    SocketHandler,
+    ViewerHandler,
+)
+from sk120stiff.show.live.messages import MAX_BYTES, Bounds
+from sk120stiff.show.payload import frame_payload, scene_payload
+from sk120stiff.show.scene import Scene
+from sk120stiff.show.static import render_page, viewer_script
+
+LOOPBACK = "127.0.0.1"
+FIRST_PORT = 7400
+TRIES = 50
+
+
+class LiveServer:
+    """Serves one scene to any number of pages, each with its own pose and load.
+
+    Parameters
+    ----------
+    scene
+        What to show.
+    host
+        Address to listen on; anything but loopback opens the page to the network.
+    port
+        First port to try; the next ones follow where it is busy. 0 takes any.
+
+    Raises
+    ------
+    InputError
+        The address cannot be used, or no port is free.
+    """
+
+    def __init__(self, scene: Scene, *, host: str = LOOPBACK, port: int = FIRST_PORT) -> None:
+        self.scene = scene
+        payload = scene_payload(scene, live=True)
+        self.bounds = Bounds.of(payload)
+        self.page = render_page(payload, viewer=None)
+        self.viewer = viewer_script()
+        self.sockets: set[SocketHandler] = set()
+        self._listening = _bind(host, port)
+        self.host = host
+        self.port = int(self._listening[0].getsockname()[1])
+        names = {host, "localhost", LOOPBACK} if host in (LOOPBACK, "localhost") else {host}
+        self.hosts = {f"{_bracketed(name)}:{self.port}" for name in names}
+
+    @property
+    def url(self) -> str:
+        """Address of the page."""
+        return f"http://{_bracketed(self.host)}:{self.port}/"
+
+    def frame(self, request: Request) -> dict[str, Any]:
+        """What the page draws for a request."""
+        scene = self.scene
+        return frame_payload(compute_frame(scene.robot, scene.tree, scene.elastic, request))
+
+    def start(self) -> HTTPServer:
+        """Begin to answer, in the running event loop."""
+        mine = {"server": self}
+        application = Application(
+            [
+                (r"/", PageHandler, mine),
+                (r"/meshcat\.js", ViewerHandler, mine),
+                (r"/socket", SocketHandler, mine),
+            ],
+            default_handler_class=MissingHandler,
+            default_handler_args=mine,
+            compress_response=True,
+            log_function=lambda _: None,
+            websocket_max_message_size=MAX_BYTES,
+            websocket_ping_interval=20,
+            websocket_ping_timeout=15,
+        )
+        server = HTTPServer(application, max_body_size=MAX_BYTES, idle_connection_timeout=60)
+        server.add_sockets(self._listening)
+        return server
+
+    async def run(self, ready: Callable[[str], None] | None = None) -> None:
+        """Serve until cancelled."""
+        server = self.start()
+        try:
+            if ready is not None:
+                ready(self.url)
+            await asyncio.Event().wait()
+        finally:
+            for socket in list(self.sockets):
+                socket.close(1001, "the program ends")
+            server.stop()
+            await server.close_all_connections()
+
+    def serve(
+        self, *, open_browser: bool = True, ready: Callable[[str], None] | None = None
+    ) -> None:
+        """Serve until the program is interrupted (Ctrl-C)."""
+
+        def announce(url: str) -> None:
+            if ready is not None:
+                ready(url)
+            if open_browser:
+                asyncio.get_running_loop().run_in_executor(None, webbrowser.open, url)
+
+        with suppress(KeyboardInterrupt):
+            asyncio.run(self.run(announce))
+
+
+def serve(
+    scene: Scene,
+    *,
+    host: str = LOOPBACK,
+    port: int = FIRST_PORT,
+    open_browser: bool = True,
+    ready: Callable[[str], None] | None = None,
+) -> None:
+    """Show a scene live until the program is interrupted (Ctrl-C).
+
+    Parameters
+    ----------
+    scene
+        What to show.
+    host, port
+        See `LiveServer`.
+    open_browser
+        Open the page in the default browser.
+    ready
+        Called with the address as soon as the page can be opened.
+    """
+    LiveServer(scene, host=host, port=port).serve(open_browser=open_browser, ready=ready)
+
+
+def _bind(host: str, port: int) -> list[Any]:
+    if not 0 <= port <= 65535:
+        raise InputError(f"there is no port {port}", remedy="Choose one from 0 to 65535.")
+    last = min(port + TRIES, 65536) if port else 1
+    for candidate in range(port, last):
+        try:
+            return bind_sockets(candidate, address=host)
+        except OSError as error:
+            if error.errno in (errno.EADDRINUSE, errno.EACCES) and candidate + 1 < last:
+                continue
+            raise InputError(
+                f"cannot listen on {host}, port {candidate} ({error.strerror})",
+                remedy="Choose another --host or --port.",
+            ) from error
+    raise InputError("no port is free", where=host)
+
+
+def _bracketed(host: str) -> str:
+    return f"[{host}]" if ":" in host else host
