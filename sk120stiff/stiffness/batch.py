@@ -29,6 +29,7 @@ PATIENCE = 0.5  # seconds after which a compilation is announced
 #: What `stiffness_batch` can compute.
 QUANTITIES = (
     "position",
+    "rotation",
     "jacobian",
     "condition",
     "compliance",
@@ -40,7 +41,7 @@ QUANTITIES = (
     "critical",
 )
 
-BY_LOAD = frozenset(QUANTITIES) - {"position", "jacobian", "condition"}
+BY_LOAD = frozenset(QUANTITIES) - {"position", "rotation", "jacobian", "condition"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +56,8 @@ class StiffnessBatch:
         (s,) indices of the coordinates with a finite spring.
     position
         (N, 3) of the point [m].
+    rotation
+        (N, 3, 3) of the end frame.
     jacobian
         (N, 6, n) of the point by all coordinates, [linear; angular], base axes.
     condition
@@ -75,6 +78,7 @@ class StiffnessBatch:
 
     soft: NDArray[np.int64]
     position: Array | None = None
+    rotation: Array | None = None
     jacobian: Array | None = None
     condition: Array | None = None
     compliance: Array | None = None
@@ -94,6 +98,7 @@ def stiffness_batch(
     *,
     frame: str | None = None,
     point: ArrayLike | None = None,
+    virtual: ArrayLike | None = None,
     want: Collection[str] = ("position", "compliance", "values", "stiffness_class"),
     threads: int | None = None,
 ) -> StiffnessBatch:
@@ -104,7 +109,7 @@ def stiffness_batch(
     robot
         A robot, or a mechanism with its virtual joints; the coupling must be linear.
     a
-        (N, n_a) actuated coordinates [rad or m]; virtual joints stand at zero.
+        (N, n_a) actuated coordinates [rad or m].
     springs
         (n,) spring of every coordinate [N·m/rad or N/m], infinite where rigid; or (n, n) their
         symmetric K_θ.
@@ -115,6 +120,8 @@ def stiffness_batch(
         Frame that carries the point, for a robot; its tool frame by default.
     point
         (3,) in that frame [m]; its origin by default.
+    virtual
+        (n_v,) where the virtual joints stand [rad or m]; zero by default.
     want
         What to compute, of `QUANTITIES`.
     threads
@@ -129,7 +136,8 @@ def stiffness_batch(
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     if at.shape != (3,) or not np.isfinite(at).all():
         raise InputError("the point is not three finite numbers", remedy="Give x, y, z in metres.")
-    folded = fold(mechanism, np.asarray(springs, dtype=float), at)
+    still = np.zeros(len(mechanism.virtual)) if virtual is None else np.asarray(virtual, float)
+    folded = fold(mechanism, np.asarray(springs, dtype=float), at, still)
     poses = _poses(a, folded)
     loads, several = _loads(wrench, len(poses))
     unknown = set(want) - set(QUANTITIES)
@@ -204,6 +212,7 @@ def _run(
         count, quantity, n, s = len(poses), len(loads), folded.coordinates, len(folded.soft)
         shapes: dict[str, tuple[int, ...]] = {
             "position": (count, 3),
+            "rotation": (count, 3, 3),
             "jacobian": (count, 6, n),
             "condition": (count,),
             "compliance": (quantity, count, 3, 3),

@@ -27,6 +27,7 @@ from sk120stiff.stiffness.lanes.layout import (
     LANES,
     LOAD,
     POSITION,
+    ROTATION,
     SAFE,
     TENSOR,
     at,
@@ -41,12 +42,14 @@ SURE, SPAN = 1e-6, 1e-4
 class Outputs(NamedTuple):
     """Arrays to fill, for Q loads and N poses; one of size zero is left out.
 
-    position (N, 3), jacobian (N, 6, n), condition (N,), compliance (Q, N, 3, 3),
+    position (N, 3), rotation (N, 3, 3), jacobian (N, 6, n), condition (N,); compliance
+    (Q, N, 3, 3),
     values (Q, N, 3), directions (Q, N, 3, 3), K_C (Q, N, s, s); stiffness_class,
     complementary_class and critical (Q, N).
     """
 
     position: Array
+    rotation: Array
     jacobian: Array
     condition: Array
     compliance: Array
@@ -133,11 +136,19 @@ def _load(x: Array, loads: Array, load: int, first: int, count: int) -> tuple[bo
 def _store_motion(
     x: Array, fold: Fold, first: int, count: int, axes: int, levers: int, columns: int, out: Outputs
 ) -> None:
-    """Position, Jacobian, and how far the position Jacobian is from losing a direction."""
+    """Placement, Jacobian, and how far the position Jacobian is from losing a direction."""
     if out.position.size:
         for k in range(count):
             for i in range(3):
                 out.position[first + k, i] = x[(POSITION + i) * LANES + k]
+    if out.rotation.size:
+        for k in range(count):
+            for i in range(3):
+                rx, ry = x[(ROTATION + i) * LANES + k], x[(ROTATION + 3 + i) * LANES + k]
+                rz = x[(ROTATION + 6 + i) * LANES + k]
+                for j in range(3):
+                    turned = rx * fold.final[0, j] + ry * fold.final[1, j]
+                    out.rotation[first + k, i, j] = turned + rz * fold.final[2, j]
     if out.jacobian.size:
         for k in range(count):
             for j in range(fold.column_joint.shape[0]):

@@ -31,6 +31,8 @@ class Fold(NamedTuple):
         (9,) columns of the rotation before the first joint.
     shift
         (m + 1, 3) translation before each joint, and to the point after the last [m].
+    final
+        (3, 3) rotation from the axes after the last joint to the end frame.
     tilt
         (m, 2) cosine and sine of the turn about x before each joint.
     pose_map, value
@@ -64,6 +66,7 @@ class Fold(NamedTuple):
 
     start: Array
     shift: Array
+    final: Array
     tilt: Array
     pose_map: Array
     value: Array
@@ -84,7 +87,7 @@ class Fold(NamedTuple):
     factor: Array
 
 
-def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
+def fold(mechanism: Mechanism, springs: Array, point: Array, virtual: Array) -> Fold:
     """Fold a mechanism with springs for the kernel.
 
     Parameters
@@ -96,6 +99,8 @@ def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
         ones (on the diagonal) are rigid.
     point
         (3,) the point in the end frame [m].
+    virtual
+        (n_v,) where the virtual joints stand [rad or m].
 
     Raises
     ------
@@ -109,8 +114,8 @@ def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
             remedy="Use the functions of sk120stiff.stiffness, which take any coupling.",
         )
     soft, K_theta = _soft(springs, mechanism.n)
-    to_joints, pose_map, value = _maps(mechanism, coupling)
-    start, shift, tilt, offset = _frames(mechanism, point)
+    to_joints, pose_map, value = _maps(mechanism, coupling, virtual)
+    start, shift, final, tilt, offset = _frames(mechanism, point)
     moves = (pose_map != 0.0).any(axis=1) | (value != 0.0)
     slides = ~mechanism.chain.revolute
     kind = np.where(moves & ~slides, VARIABLE, np.where(offset != 0.0, CONSTANT, NONE))
@@ -119,6 +124,7 @@ def fold(mechanism: Mechanism, springs: Array, point: Array) -> Fold:
     return Fold(
         start=start,
         shift=shift,
+        final=final,
         tilt=tilt,
         pose_map=pose_map,
         value=value,
@@ -163,19 +169,21 @@ def _soft(springs: Array, n: int) -> tuple[Indices, Array]:
     return soft, K_theta
 
 
-def _maps(mechanism: Mechanism, coupling: LinearCoupling) -> tuple[Array, Array, Array]:
+def _maps(
+    mechanism: Mechanism, coupling: LinearCoupling, virtual: Array
+) -> tuple[Array, Array, Array]:
     """(m, n) factors of the chain joints by all coordinates; (m, n_a) and (m,) of the pose."""
     total, actuated = coupling.A.shape
     wide = np.zeros((total + len(mechanism.virtual), mechanism.n))
     wide[:total, :actuated] = coupling.A
     wide[total:, actuated:] = np.eye(len(mechanism.virtual))
-    at_rest = np.concatenate([coupling.b, np.zeros(len(mechanism.virtual))])
+    at_rest = np.concatenate([coupling.b, virtual])
     pick = mechanism.chain.coordinates
     return wide[pick], np.ascontiguousarray(wide[pick][:, :actuated]), at_rest[pick]
 
 
-def _frames(mechanism: Mechanism, point: Array) -> tuple[Array, Array, Array, Array]:
-    """start, shift, tilt and offset of `Fold`."""
+def _frames(mechanism: Mechanism, point: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """start, shift, final, tilt and offset of `Fold`."""
     chain = mechanism.chain
     m = chain.m
     shift, tilt, offset = np.empty((m + 1, 3)), np.empty((m, 2)), np.zeros(m)
@@ -199,7 +207,8 @@ def _frames(mechanism: Mechanism, point: Array) -> tuple[Array, Array, Array, Ar
     shift[m] = before.T @ (chain.placements[m, :3, 3] + chain.placements[m, :3, :3] @ point)
     if m:
         shift[0] = start.T @ shift[0]
-    return start.T.reshape(9).copy(), shift, tilt, offset
+    final = np.ascontiguousarray(before.T @ chain.placements[m, :3, :3])
+    return start.T.reshape(9).copy(), shift, final, tilt, offset
 
 
 def _rotation_to(axis: Array) -> Array:
