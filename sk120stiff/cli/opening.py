@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import shlex
 import sys
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from sk120stiff.cli.frame import note
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, find_robot, load_robot
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_pose, parse_wrench
@@ -29,7 +28,7 @@ class Opened(NamedTuple):
 
 
 def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
-    """Load a robot; frames that nobody named and repairs of the file are told on stderr."""
+    """Load a robot; frames that nobody named are told on stderr."""
     robot = load_robot(source, base=base, tool=tool)
     described = find_robot(source).description
     for told, kept, option, frame in (
@@ -38,8 +37,6 @@ def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
     ):
         if told is None and kept is None:
             note(f"{option[2:].capitalize()} frame: {frame} (choose another with {option} FRAME).")
-    for finding in robot.document.warnings:
-        warnings.warn(str(finding), ToolkitWarning, stacklevel=2)
     return robot
 
 
