@@ -8,8 +8,8 @@ import numpy as np
 from scipy import stats
 
 from sk120stiff.explain.regression import Index, Regression
-from sk120stiff.explain.saturated import load_basis, pose_columns
 from sk120stiff.identify import Fit
+from sk120stiff.identify.saturated import load_basis, pose_columns
 from sk120stiff.robot.coupling import Array
 
 LEVEL = 1e-3

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff.effects import BY_NAME, Effect, all_effects, situation_of
 from sk120stiff.errors import InputError
@@ -17,9 +16,9 @@ from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.explanation import Evidence, Explanation, Finding, Step, Verdict
 from sk120stiff.explain.outliers import outlying_rows
 from sk120stiff.explain.regression import Regression, regression_at
-from sk120stiff.explain.saturated import choose_noise
 from sk120stiff.explain.search import Scored, beam_search, gains, score_set
 from sk120stiff.identify import Fit, Problem, fit, solve
+from sk120stiff.identify.saturated import choose_noise
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
