@@ -18,10 +18,10 @@ PROGRAM = "sk120stiff"
 COMMANDS = {
     "check": "Does a robot load, what moves, what is suspicious.",
     "stiffness": "How stiff the arm is: here, in this direction, under this load.",
-    "view": "The robot, its ellipsoids and its gaps, live in the browser.",
-    "identify": "Spring values from measured deflections, and what the data cannot tell.",
-    "predict": "Predicted displacement of every reading, and the gap if it was measured.",
+    "identify": "Spring values from measured deflections, with their uncertainty.",
+    "predict": "Predicted displacement of every reading, and the gap to it.",
     "explain": "What is missing when simulation and measurement disagree.",
+    "view": "The robot, its ellipsoids and its gaps, live in the browser.",
 }
 
 

@@ -20,7 +20,7 @@ AXES = "xyz"
 
 
 def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> Answer:
-    """Predicted displacement of every reading, and the gap if it was measured.
+    """Predicted displacement of every reading, and the gap to it.
 
     Example: sk120stiff predict model.yaml robots/motoman_sk120/data/table2_measured.csv
     """
