@@ -1,0 +1,192 @@
+"""Figures draw the numbers they are given, name units, and become files and page parts."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from sk120stiff.errors import InputError
+from sk120stiff.show import figures as f
+from sk120stiff.show import inline_svg, palette, save_figure
+
+X, Y = np.linspace(-1.2, 1.2, 9), np.linspace(-2.0, 0.6, 7)
+GRID = np.add.outer(Y, X)
+C = np.diag([1.0, 2.0, 3.0]) * 1e-6
+
+
+def every_figure() -> dict[str, Figure]:
+    force = np.array([0.0, 100.0, 200.0])
+    moved = np.outer(force, [1e-6, -2e-6, 3e-6])
+    generator = np.random.default_rng(3)
+    gap = generator.normal(size=30) * 1e-5
+    return {
+        "force_deflection": f.force_deflection(
+            [f.LoadCurve("pose 1", force, moved, np.full((3, 3), 1e-5), models={"m": moved})]
+        ),
+        "surface_parts": f.surface_parts(
+            X, Y, np.stack([GRID, 0 * GRID, -GRID]), element="C22", x_label="q2", y_label="q3"
+        ),
+        "curve_parts": f.curve_parts(
+            np.degrees(X), {"a": np.stack([X, X, X])}, element="C11", x_label="joint_2_l"
+        ),
+        "stiffness_slice": f.stiffness_slice(
+            X, Y, 1e6 * (3.0 + GRID), x_label="q2", y_label="q3", marks={"pose 1": (0.0, -1.0)}
+        ),
+        "definiteness_map": f.definiteness_map(
+            X, Y, (GRID > 0).astype(int) * 4, x_label="q2", y_label="q3"
+        ),
+        "plane_ellipses": f.plane_ellipses(
+            [f.PlaneEllipse(np.array([1.0, 0.0, 0.5]), C, "pose 1", reference=1.1 * C)]
+        ),
+        "gap_per_pose": f.gap_per_pose(
+            ["1", "2"], {"before": [4e-5, 3e-5], "after": [1e-5, 2e-5]}, noise_floor=1e-5
+        ),
+        "gap_waterfall": f.gap_waterfall(
+            [f.GapStep("springs", 4e-5, 5e-5), f.GapStep("+ rocking", 1e-5)], noise_floor=1e-5
+        ),
+        "residual_suspects": f.residual_suspects(
+            gap, [f.Suspect("torque [N·m]", gap * 1e7), f.Suspect("q [deg]", gap[::-1] ** 2)]
+        ),
+        "parameter_forest": f.parameter_forest(
+            [f.Estimate("a.b", 2.0, 0.1, "N·m/rad", 1.9), f.Estimate("c.d", 3.0, None, "m/N")]
+        ),
+    }
+
+
+@pytest.fixture(scope="module")
+def drawn() -> dict[str, Figure]:
+    return every_figure()
+
+
+def test_no_text_is_cut_off(drawn: dict[str, Figure], tmp_path) -> None:
+    for name, figure in drawn.items():
+        pixels = plt.imread(save_figure(figure, tmp_path / f"{name}.png", dpi=80))[..., :3]
+        edges = [pixels[:2], pixels[-2:], pixels[:, :2], pixels[:, -2:]]
+        assert all((edge == 1.0).all() for edge in edges), name
+        assert (pixels < 0.9).any(), name
+
+
+def test_labels_of_ticks_do_not_cover_each_other(drawn: dict[str, Figure]) -> None:
+    for name, figure in drawn.items():
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        for axes in figure.axes:
+            for axis in (axes.xaxis, axes.yaxis):
+                boxes = [
+                    label.get_window_extent(renderer)
+                    for label in axis.get_ticklabels()
+                    if label.get_visible() and label.get_text()
+                ]
+                assert sum(box.count_overlaps(boxes) for box in boxes) <= len(boxes), name
+
+
+def test_every_numeric_axis_names_its_unit(drawn: dict[str, Figure]) -> None:
+    unitless = {("parameter_forest", "x"), ("gap_per_pose", "x")}  # ratios, and labels of poses
+    for name, figure in drawn.items():
+        said = " ".join(
+            t.get_text() for axes in figure.axes for t in (axes.xaxis.label, axes.yaxis.label)
+        )
+        assert "[" in said or "N·m/rad per N" in said or (name, "x") in unitless, (name, said)
+
+
+def test_bars_stand_for_micrometres(drawn: dict[str, Figure]) -> None:
+    heights = [bar.get_height() for bar in drawn["gap_per_pose"].axes[0].patches]
+    assert heights == pytest.approx([40.0, 30.0, 10.0, 20.0])
+    widths = [bar.get_width() for bar in drawn["gap_waterfall"].axes[0].patches]
+    assert widths == pytest.approx([40.0, 30.0, 10.0])  # first model, what is saved, second model
+
+
+def test_measured_points_and_model_lines_are_the_data(drawn: dict[str, Figure]) -> None:
+    axes = drawn["force_deflection"].axes[0]
+    plotted = [line.get_ydata() for line in axes.lines if len(line.get_xdata()) == 3]
+    assert any(np.allclose(y, [0.0, -200.0, -400.0]) for y in plotted)
+
+
+def test_ellipse_is_the_compliance_times_unit_forces() -> None:
+    figure = f.plane_ellipses([f.PlaneEllipse(np.zeros(3), C)], plane="xz")
+    curve = max((line.get_xydata() for line in figure.axes[0].lines), key=len)
+    assert np.ptp(curve[:, 1]) / np.ptp(curve[:, 0]) == pytest.approx(3.0, rel=1e-3)
+
+
+def test_strongest_suspect_is_the_one_that_is_marked(drawn: dict[str, Figure]) -> None:
+    titles = [axes.get_title(loc="left") for axes in drawn["residual_suspects"].axes]
+    assert titles[0].startswith("strongest, 100 %")
+    assert not titles[1].startswith("strongest")
+
+
+def test_definiteness_uses_one_colour_for_each_class() -> None:
+    figure = f.definiteness_map(X, Y, np.zeros((2, 7, 9), dtype=int), x_label="a", y_label="b")
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["positive definite"]
+
+
+@pytest.mark.parametrize("ending", ["svg", "png", "pdf"])
+def test_saved_as_vector_and_as_pixels(drawn: dict[str, Figure], tmp_path, ending: str) -> None:
+    starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
+    path = save_figure(drawn["gap_per_pose"], tmp_path / f"gap.{ending}")
+    assert path.read_bytes().startswith(starts[ending])
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+def test_other_endings_are_refused(drawn: dict[str, Figure], tmp_path) -> None:
+    with pytest.raises(InputError, match=r"\.svg, \.png or \.pdf"):
+        save_figure(drawn["gap_per_pose"], tmp_path / "gap.jpg")
+    assert not list(tmp_path.iterdir())
+
+
+def test_inline_figures_share_no_ids_and_tell_what_they_show(drawn: dict[str, Figure]) -> None:
+    pages = [inline_svg(drawn[name], 'a "quoted" alt') for name in ("gap_per_pose", "curve_parts")]
+    roots = [ET.fromstring(page) for page in pages]
+    ids = [element.get("id") for root in roots for element in root.iter() if element.get("id")]
+    assert len(ids) == len(set(ids))
+    assert all(root.get("aria-label") == 'a "quoted" alt' for root in roots)
+    assert all(root.get("role") == "img" for root in roots)
+    for page in pages:
+        for reference in set(re.findall(r'(?:url\(|href=")#([^")]+)', page)):
+            assert reference in ids
+
+
+def test_the_caller_keeps_its_own_style() -> None:
+    before = dict(plt.rcParams)
+    every_figure()
+    assert dict(plt.rcParams) == before
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: f.surface_parts(X, Y, GRID, element="C", x_label="a", y_label="b"),
+        lambda: f.stiffness_slice(X, Y, GRID.T, x_label="a", y_label="b"),
+        lambda: f.gap_per_pose(["1"], {"m": [1.0, 2.0]}),
+        lambda: f.LoadCurve("p", np.zeros(3), np.zeros((2, 3))),
+        lambda: f.LoadCurve("p", np.zeros(3), models={"m": np.zeros((3, 2))}),
+        lambda: f.residual_suspects(np.zeros(3), [f.Suspect("s", np.zeros(2))]),
+        lambda: f.plane_ellipses([], plane="xz"),
+        lambda: f.gap_waterfall([]),
+    ],
+)
+def test_arrays_that_do_not_fit_are_refused(call) -> None:
+    with pytest.raises(InputError):
+        call()
+
+
+def _luminance(colour: str) -> float:
+    linear = [
+        c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+        for c in palette.channels(colour)
+    ]
+    return float(np.dot([0.2126, 0.7152, 0.0722], linear))
+
+
+def contrast(one: str, other: str) -> float:
+    high, low = sorted([_luminance(one), _luminance(other)], reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("text", [palette.INK, palette.SOFT_INK])
+@pytest.mark.parametrize("ground", [palette.PAPER, palette.WASH])
+def test_text_has_the_contrast_that_wcag_asks_for(text: str, ground: str) -> None:
+    assert contrast(text, ground) >= 4.5
