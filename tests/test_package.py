@@ -1,5 +1,6 @@
 """What an installed copy carries, and what importing it costs."""
 
+import ast
 import subprocess
 import sys
 import zipfile
@@ -18,6 +19,19 @@ def test_every_public_name_is_there() -> None:
     for name in sk120stiff.__all__:
         assert getattr(sk120stiff, name).__name__ == name
     assert set(sk120stiff.__all__) < set(dir(sk120stiff))
+    folders = {path.parent.name for path in ROOT.glob("sk120stiff/*/__init__.py")}
+    assert not folders & set(sk120stiff.__all__)  # importing a folder would hide the name
+
+
+def test_type_checkers_see_the_same_names() -> None:
+    tree = ast.parse(Path(sk120stiff.__file__).read_text(encoding="utf-8"))
+    imported = {
+        alias.name: node.module
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("sk120stiff")
+        for alias in node.names
+    }
+    assert imported == sk120stiff._HOME
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

@@ -32,7 +32,7 @@ def command(
     ] = Method.trf,
     out: OutOption = None,
 ) -> Answer:
-    """Spring values from measured deflections, with their uncertainty.
+    """Spring values and their uncertainty from measured deflections.
 
     Example: sk120stiff identify robots/motoman_sk120/data/table2_measured.csv --out model.yaml
     """

@@ -18,7 +18,7 @@ PROGRAM = "sk120stiff"
 COMMANDS = {
     "check": "Does a robot load, what moves, what is suspicious.",
     "stiffness": "How stiff the arm is: here, in this direction, under this load.",
-    "identify": "Spring values from measured deflections, with their uncertainty.",
+    "identify": "Spring values and their uncertainty from measured deflections.",
     "predict": "Predicted displacement of every reading, and the gap to it.",
     "explain": "What is missing when simulation and measurement disagree.",
     "view": "The robot, its ellipsoids and its gaps, live in the browser.",
