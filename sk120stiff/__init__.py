@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from sk120stiff.errors import InputError, Refusal, ToolkitError, ToolkitWarning
-    from sk120stiff.identify import Fit, fit
+    from sk120stiff.identify.fit import Fit, fit
     from sk120stiff.measurements import Measurements, read_measurements, write_measurements
     from sk120stiff.model import (
         Model,
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 # A name that is also a folder's (explain, plan) cannot stand here: importing the folder would
 # overwrite it.
 _HOME = {
-    "Fit": "sk120stiff.identify",
+    "Fit": "sk120stiff.identify.fit",
     "InputError": "sk120stiff.errors",
     "Measurements": "sk120stiff.measurements",
     "Model": "sk120stiff.model",
@@ -32,7 +32,7 @@ _HOME = {
     "ToolkitError": "sk120stiff.errors",
     "ToolkitWarning": "sk120stiff.errors",
     "base_model": "sk120stiff.model",
-    "fit": "sk120stiff.identify",
+    "fit": "sk120stiff.identify.fit",
     "joint_spring_model": "sk120stiff.model",
     "load_robot": "sk120stiff.robot",
     "loaded_stiffness": "sk120stiff.model",

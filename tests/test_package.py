@@ -40,7 +40,10 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
 
 
 def test_importing_the_package_imports_nothing_else() -> None:
-    code = "import sys; before = set(sys.modules); import sk120stiff; print(*set(sys.modules) - before)"
+    code = (
+        "import sys; before = set(sys.modules)\n"
+        "import sk120stiff; print(*set(sys.modules) - before)"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     outside = {name.partition(".")[0] for name in done.stdout.split()} - {"sk120stiff"}
     assert outside <= set(sys.stdlib_module_names)
