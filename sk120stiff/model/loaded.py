@@ -6,7 +6,7 @@ import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
@@ -20,7 +20,10 @@ from sk120stiff.stiffness import (
     complementary_stiffness,
     definiteness_of,
     principal_stiffness,
+    symmetric_part,
 )
+
+Index = NDArray[np.intp]
 
 _SINGULAR = 1e-12  # smallest eigenvalue of a compliance over the largest: a direction is rigid
 
@@ -41,7 +44,8 @@ class LoadedStiffness:
     jacobian
         (6, n) at the loaded point.
     K_theta
-        (n, n) tangent stiffness at zero torque [N·m/rad or N/m]; infinite where rigid.
+        (n, n) tangent stiffness at zero torque [N·m/rad or N/m]; infinite where rigid, NaN where
+        soft coordinates yield only together and no such matrix exists.
     K_C
         (n, n) complementary stiffness of the load [N·m/rad].
     compliance_conventional, compliance_enhanced
@@ -123,20 +127,18 @@ def loaded_stiffness(
             where=model.robot.name,
             remedy="Give a model with joint_springs or another elastic effect.",
         )
-    block = np.ix_(soft, soft)
     J, K_C = screws.jacobian, complementary_stiffness(screws, load)
-    K_soft = np.linalg.inv(C_theta[block])
-    K_theta = np.diag(np.where(C_theta.any(axis=0), 0.0, np.inf))
-    K_theta[block] = K_soft
-    enhanced = K_soft - K_C[block]
-    C_conventional = cartesian_compliance(J[:, soft], K_soft)
-    C_enhanced = cartesian_compliance(J[:, soft], enhanced)
+    c, V = _soft_directions(C_theta, soft)  # (r,) compliances, (n, r) orthonormal directions
+    K_soft, K_C_soft = np.diag(1.0 / c), V.T @ K_C @ V
+    enhanced = K_soft - K_C_soft
+    C_conventional = cartesian_compliance(J @ V, K_soft)
+    C_enhanced = cartesian_compliance(J @ V, enhanced)
     names = (*model.robot.actuated, *(joint.name for joint in mechanism.virtual))
     return LoadedStiffness(
         coordinates=names,
         soft=tuple(names[k] for k in soft),
         jacobian=J,
-        K_theta=K_theta,
+        K_theta=_joint_stiffness(C_theta, soft, full=len(c) == len(soft)),
         K_C=K_C,
         compliance_conventional=C_conventional,
         compliance_enhanced=C_enhanced,
@@ -145,9 +147,9 @@ def loaded_stiffness(
         K_X_6x6_conventional=_inverse(C_conventional),
         K_X_6x6_enhanced=_inverse(C_enhanced),
         principal=principal_stiffness(C_enhanced[:3, :3]),
-        definiteness_of_K_C=definiteness_of(K_C[block]),
+        definiteness_of_K_C=definiteness_of(K_C_soft),
         definiteness_of_K_theta_minus_K_C=definiteness_of(enhanced),
-        critical_factor=_critical_factor(K_soft, K_C[block]),
+        critical_factor=_critical_factor(c, K_C_soft),
         deflection_conventional=(C_conventional @ load)[:3],
         deflection_enhanced=(C_enhanced @ load)[:3],
         deflection_equilibrium=_at_equilibrium(model, a, load, point),
@@ -184,8 +186,28 @@ def _inverse(compliance: Array) -> Array:
     return np.asarray(np.linalg.inv(compliance))
 
 
-def _critical_factor(K_theta: Array, K_C: Array) -> float:
-    """Smallest positive λ at which K_θ − λ K_C is singular, by Cholesky of K_θ."""
-    inward = np.linalg.inv(np.linalg.cholesky(0.5 * (K_theta + K_theta.T)))
-    largest = float(np.linalg.eigvalsh(inward @ (0.5 * (K_C + K_C.T)) @ inward.T)[-1])
+def _soft_directions(C_theta: Array, soft: Index) -> tuple[Array, Array]:
+    """Principal compliances of the coordinates and their directions, the rigid ones left out."""
+    compliances, vectors = np.linalg.eigh(symmetric_part(C_theta[np.ix_(soft, soft)]))
+    yielding = np.abs(compliances) > _SINGULAR * np.max(np.abs(compliances))
+    directions = np.zeros((len(C_theta), int(yielding.sum())))
+    directions[soft] = vectors[:, yielding]
+    return compliances[yielding], directions
+
+
+def _joint_stiffness(C_theta: Array, soft: Index, *, full: bool) -> Array:
+    K_theta = np.zeros_like(C_theta)
+    rigid = np.setdiff1d(np.arange(len(C_theta)), soft)
+    K_theta[rigid, rigid] = np.inf
+    block = np.ix_(soft, soft)
+    K_theta[block] = np.linalg.inv(C_theta[block]) if full else np.nan
+    return K_theta
+
+
+def _critical_factor(compliances: Array, K_C: Array) -> float:
+    """Smallest λ ≥ 0 at which K_θ − λ K_C is not positive definite, in directions of K_θ."""
+    if (compliances < 0.0).any():
+        return 0.0  # a negative spring: unstable before any load
+    root = np.sqrt(compliances)
+    largest = float(np.linalg.eigvalsh(root[:, None] * symmetric_part(K_C) * root)[-1])
     return 1.0 / largest if largest > 0.0 else float(np.inf)
