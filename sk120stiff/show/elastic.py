@@ -154,6 +154,15 @@ class Elastic:
         rest = np.zeros((*actuated.shape[:-1], self.n_virtual))
         return np.asarray(np.concatenate([actuated, rest], axis=-1) + self.offset)
 
+    def joint_vector(self, z: Array) -> Array:
+        """(m + v,) values of all joints of the robot, then of the virtual ones, for z (n,)."""
+        n_a = self.mechanism.coupling.n
+        q = np.array(self.mechanism.coupling.motion(z[:n_a]).q, dtype=float)
+        for joint, value in zip(self.mechanism.virtual, z[n_a:], strict=True):
+            for index, multiplier in joint.followers:  # a linkage turns with a bent link
+                q[index] += multiplier * value
+        return np.concatenate([q, z[n_a:]])
+
     def tangent(self, a: Array) -> Array:
         """(n, n) tangent compliance of the unloaded arm at a pose [rad/(N·m)]."""
         return self.compliance if self.model is None else _unloaded(self.model, a)[1]

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.errors import Refusal
-from sk120stiff.robot import Robot
 from sk120stiff.show.elastic import Elastic
 from sk120stiff.show.links import LinkTree, joint_motion
 from sk120stiff.stiffness import (
@@ -95,7 +94,7 @@ class Frame:
         return 1.0 / self.softening if self.softening > 0.0 else float("inf")
 
 
-def compute_frame(robot: Robot, tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
+def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
     """Kinematics, compliance, deflection and verdicts of one request.
 
     Raises
@@ -117,7 +116,7 @@ def compute_frame(robot: Robot, tree: LinkTree, elastic: Elastic, request: Reque
         "conventional": J[:3] @ C @ torques,
         "enhanced": J[:3] @ loaded @ torques,
     }
-    links = place_elastic(robot, tree, elastic, z)
+    links = place_elastic(tree, elastic, z)
     deflected: Array | None = None
     try:
         rest = elastic.rest(request.a, request.wrench, request.point)
@@ -126,7 +125,7 @@ def compute_frame(robot: Robot, tree: LinkTree, elastic: Elastic, request: Reque
     else:
         deflection["equilibrium"] = rest.screws.position - start.position
         exaggerated = z + request.exaggeration * (rest.z - z)
-        deflected = place_elastic(robot, tree, elastic, exaggerated)
+        deflected = place_elastic(tree, elastic, exaggerated)
     soft = np.diag(C) > 0.0
     K_C_soft = symmetric_part(K_C[np.ix_(soft, soft)])
     root = np.linalg.cholesky(C[np.ix_(soft, soft)]) if soft.any() else np.zeros((0, 0))
@@ -153,14 +152,14 @@ def compute_frame(robot: Robot, tree: LinkTree, elastic: Elastic, request: Reque
     )
 
 
-def place_elastic(robot: Robot, tree: LinkTree, elastic: Elastic, z: Array) -> Array:
+def place_elastic(tree: LinkTree, elastic: Elastic, z: Array) -> Array:
     """(L, 4, 4) links when virtual joints move too: each link rides on its joint of the chain."""
-    q = robot.coupling.motion(z[: robot.n]).q
-    links = tree.place(q)
+    joints = elastic.joint_vector(z)
+    links = tree.place(joints)
     if not elastic.n_virtual:
         return links
     chain = elastic.mechanism.chain
-    values = np.concatenate([q, z[robot.n :]])[chain.coordinates]
+    values = joints[chain.coordinates]
     after = np.empty((chain.m, 4, 4))
     T = np.eye(4)
     for k in range(chain.m):

@@ -134,8 +134,7 @@ def _limits(scene: Scene) -> dict[str, Any]:
 
 def _kinematics(scene: Scene) -> dict[str, Any]:
     robot, elastic, tree = scene.robot, scene.elastic, scene.tree
-    coupling = robot.coupling
-    if not isinstance(coupling, LinearCoupling):
+    if not isinstance(robot.coupling, LinearCoupling):
         raise InputError(
             "the joints of this robot are coupled nonlinearly, which a page without a server "
             "cannot follow",
@@ -143,9 +142,13 @@ def _kinematics(scene: Scene) -> dict[str, Any]:
             remedy="Use the live view: sk120stiff view.",
         )
     chain = elastic.mechanism.chain
+    n = elastic.mechanism.n
+    b = elastic.joint_vector(np.zeros(n))
+    A = np.stack([elastic.joint_vector(unit) - b for unit in np.eye(n)], axis=1)
     return {
-        "A": [_list(row) for row in coupling.A],
-        "b": _list(coupling.b),
+        "drives": robot.n,
+        "A": [_list(row) for row in A],
+        "b": _list(b),
         "offset": _list(elastic.offset),
         "compliance": [_list(row) for row in elastic.compliance],
         "chain": {
@@ -209,7 +212,7 @@ def _exaggeration(scene: Scene, reach: float) -> float:
     ]  # fmt: skip
     if not sizes:
         request = Request(scene.first_pose, scene.first_load, np.asarray(scene.point))
-        frame = compute_frame(scene.robot, scene.tree, scene.elastic, request)
+        frame = compute_frame(scene.tree, scene.elastic, request)
         sizes = [float(np.linalg.norm(frame.deflection["conventional"]))]
     largest = max(sizes)
     if largest < 1e-12:

@@ -69,8 +69,7 @@ class LiveServer:
 
     def frame(self, request: Request) -> dict[str, Any]:
         """What the page draws for a request."""
-        scene = self.scene
-        return frame_payload(compute_frame(scene.robot, scene.tree, scene.elastic, request))
+        return frame_payload(compute_frame(self.scene.tree, self.scene.elastic, request))
 
     def start(self) -> HTTPServer:
         """Begin to answer, in the running event loop."""

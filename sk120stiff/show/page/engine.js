@@ -3,20 +3,15 @@
 "use strict";
 SK.makeEngine = (constants, onState = () => {}) => {
   const m = SK.algebra;
-  const { A, b, offset, compliance: C, chain, tree } = constants;
-  const joints = b.length, drives = A[0].length, n = C.length;
+  const { drives, A, b, offset, compliance: C, chain, tree } = constants;
+  const n = C.length;
   const soft = C.map((row, i) => i).filter((i) => C[i][i] > 0);
   const pick = (M, rows) => rows.map((i) => rows.map((j) => M[i][j]));
 
-  const jointValues = (z) => m.add(m.apply(A, z.slice(0, drives)), b).concat(z.slice(drives));
+  const jointValues = (z) => m.add(m.apply(A, z), b); // all joints, then the virtual ones
 
   // Derivative of the value of one chain joint by the coordinates z.
-  const rate = chain.coordinates.map((index) => {
-    const row = new Array(n).fill(0);
-    if (index < joints) A[index].forEach((value, j) => { row[j] = value; });
-    else row[drives + index - joints] = 1;
-    return row;
-  });
+  const rate = chain.coordinates.map((index) => A[index]);
 
   function placeTree(q) {
     const T = [];

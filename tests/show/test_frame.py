@@ -1,0 +1,129 @@
+"""What a picture shows against the stiffness layer and against exact kinematics."""
+
+import numpy as np
+import pytest
+
+from sk120stiff.effects import effect
+from sk120stiff.errors import InputError
+from sk120stiff.model import Model, Parameter, loaded_stiffness
+from sk120stiff.show import Elastic
+from sk120stiff.show.frame import Request, compute_frame, place_elastic
+from sk120stiff.show.links import link_tree
+from tests.show.scenes import random_pose, sk120, springs
+
+WRENCH = np.array([300.0, -800.0, 500.0, 40.0, -20.0, 60.0])
+A = np.array([0.3, 0.2, -0.7, 0.4, 0.5, -0.2])
+
+
+def with_effect(name: str, where: str, stiffness: float) -> Model:
+    added = effect(sk120(), name, where)
+    parameters = [
+        Parameter(added, spec, spec.internal(stiffness) if spec.reciprocal else 1e-4)
+        for spec in added.parameters
+    ]
+    return springs() + parameters
+
+
+def frame_of(model: Model, wrench: np.ndarray = WRENCH, exaggeration: float = 1.0):
+    request = Request(A, wrench, np.zeros(3), exaggeration)
+    return compute_frame(link_tree(sk120()), Elastic.of_model(model), request)
+
+
+@pytest.mark.parametrize(
+    "model",
+    [springs, lambda: with_effect("base_rocking", "base_link", 2e7)],
+    ids=["springs", "rocking"],
+)
+def test_agrees_with_the_stiffness_command(model) -> None:
+    frame, found = frame_of(model()), loaded_stiffness(model(), A, WRENCH)
+    for name, compliance in (
+        ("conventional", found.compliance_conventional),
+        ("enhanced", found.compliance_enhanced),
+    ):
+        for axes, part in (
+            (frame.translation[name], compliance[:3, :3]),
+            (frame.rotation_axes[name], compliance[3:, 3:]),
+        ):
+            again = (axes.directions.T * axes.values) @ axes.directions
+            symmetric = 0.5 * (part + part.T)
+            np.testing.assert_allclose(again, symmetric, atol=1e-9 * np.abs(part).max())
+    np.testing.assert_allclose(
+        1.0 / frame.translation["enhanced"].values, found.principal.values, rtol=1e-9
+    )
+    for name in ("conventional", "enhanced", "equilibrium"):
+        expected = getattr(found, f"deflection_{name}")
+        np.testing.assert_allclose(frame.deflection[name], expected, rtol=1e-8)
+    assert frame.K_C_class == found.definiteness_of_K_C
+    assert frame.stiffness_class == found.definiteness_of_K_theta_minus_K_C
+    assert frame.critical_factor == pytest.approx(found.critical_factor, rel=1e-9)
+
+
+def test_beyond_the_critical_load_it_says_so_and_draws_no_deflection() -> None:
+    factor = frame_of(springs()).critical_factor
+    beyond = frame_of(springs(), 1.5 * factor * WRENCH)
+    assert beyond.stiffness_class == "indefinite"
+    assert beyond.translation["enhanced"].values.min() < 0.0  # never hidden behind an absolute
+    assert beyond.softening > 1.0
+
+
+def test_no_load_no_share() -> None:
+    frame = frame_of(springs(), np.zeros(6))
+    assert frame.K_C_class == "zero"
+    assert frame.critical_factor == np.inf
+    assert np.array_equal(frame.links, frame.deflected)
+
+
+def test_exaggeration_scales_what_is_drawn_and_nothing_else() -> None:
+    one, many = frame_of(springs(), exaggeration=1.0), frame_of(springs(), exaggeration=10.0)
+    tool = link_tree(sk120()).names.index("tool0")
+    moved = one.deflected[tool, :3, 3] - one.links[tool, :3, 3]
+    exaggerated = many.deflected[tool, :3, 3] - many.links[tool, :3, 3]
+    np.testing.assert_allclose(moved, one.deflection["equilibrium"], atol=1e-12)
+    np.testing.assert_allclose(exaggerated, 10.0 * moved, atol=3e-4)
+    np.testing.assert_array_equal(one.deflection["equilibrium"], many.deflection["equilibrium"])
+
+
+@pytest.mark.parametrize(
+    ("name", "where"),
+    [("base_rocking", "base_link"), ("joint_tilt", "joint_2_l"), ("link_bending", "link_2_l")],
+)
+def test_links_ride_on_the_compliance_before_them(name: str, where: str) -> None:
+    model = with_effect(name, where, 1e7)
+    robot, elastic = sk120(), Elastic.of_model(model)
+    tree = link_tree(robot)
+    z = elastic.coordinates(A) + 0.01 * np.random.default_rng(5).normal(size=elastic.mechanism.n)
+    z[: robot.n] = A
+    moved = place_elastic(tree, elastic, z)
+    tool = moved[tree.names.index("tool0")]
+    screws = elastic.mechanism.screws(z)
+    np.testing.assert_allclose(tool[:3, 3], screws.position, atol=1e-12)
+    np.testing.assert_allclose(tool[:3, :3], screws.rotation, atol=1e-12)
+    np.testing.assert_allclose(moved[tree.names.index("base_link")], np.eye(4), atol=1e-15)
+
+
+def test_compliance_that_changes_with_the_pose_follows_the_pose() -> None:
+    model = with_effect("closure_rod", next(iter(effect_places("closure_rod"))), 1e7)
+    elastic = Elastic.of_model(model)
+    generator = np.random.default_rng(8)
+    one, other = (elastic.tangent(random_pose(sk120(), generator)) for _ in range(2))
+    assert elastic.model is not None
+    assert not np.allclose(one, other, rtol=1e-6, atol=0.0)
+    assert Elastic.of_model(springs()).model is None
+
+
+def effect_places(name: str) -> tuple[str, ...]:
+    from sk120stiff.effects import CATALOGUE
+
+    return next(kind for kind in CATALOGUE if kind.name == name).places(sk120())
+
+
+def test_springs_that_make_no_sense_are_refused() -> None:
+    robot = sk120()
+    with pytest.raises(InputError, match="no actuated joint 'elbow'"):
+        Elastic.of_springs(robot, {"elbow": 1.0})
+    with pytest.raises(InputError, match="above zero"):
+        Elastic.of_springs(robot, -np.ones(6))
+    with pytest.raises(InputError, match="2 springs given for 6"):
+        Elastic.of_springs(robot, [1.0, 2.0])
+    with pytest.raises(InputError, match="nothing in this model yields"):
+        Elastic.of_model(Model(robot))
