@@ -12,7 +12,10 @@ import pytest
 
 from tests.hidden import run, score
 from tests.hidden.answers import identity, read_answer, read_predictions
+from tests.hidden.generator.build import build
+from tests.hidden.generator.design import plan
 from tests.hidden.judge import coverage, heldout_ratio, mark
+from tests.hidden.settling import settles
 
 TILT = {
     "name": "joint_tilt",
@@ -196,3 +199,16 @@ def test_runner_resumes_and_freezes(  # type: ignore[no-untyped-def]
     (folder / "answers/case_0000/verdict.json").write_text('{"verdict": "named"}')
     with pytest.raises(score.NotFrozen):
         score.main([str(folder)])
+
+
+def test_more_readings_settle_a_near_pair(tmp_path: Path) -> None:
+    case = build("L4", 11, 0)
+    more = plan(case.arm, np.random.default_rng(1), poses=150, point=case.train.point)
+    header = ["pose", *(f"{name}[rad]" for name in case.arm.actuated), "fx[N]", "fy[N]", "fz[N]"]
+    table = np.column_stack([more.pose, *more.coordinates.values(), more.force])
+    for count, settled in ((1, False), (len(table), True)):
+        lines = [",".join(header), *(",".join(map(str, row)) for row in table[:count])]
+        (tmp_path / "next_poses.csv").write_text("\n".join(lines))
+        assert settles(case.truth(), tmp_path) is settled
+    (tmp_path / "next_poses.csv").write_text("pose\n1\n")
+    assert not settles(case.truth(), tmp_path)
