@@ -73,11 +73,11 @@ def read_request(text: str | bytes, bounds: Bounds) -> tuple[int, Request]:
 def _numbers(name: str, values: object, bounds: NDArray[np.float64]) -> NDArray[np.float64]:
     if not isinstance(values, list) or len(values) != len(bounds):
         raise InputError(f"{name!r} is a list of {len(bounds)} numbers")
-    for value, (lower, upper) in zip(values, bounds, strict=True):
+    for value, (lower, upper) in zip(values, bounds.tolist(), strict=True):
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InputError(f"{name!r} holds something that is no number")
         slack = _SLACK * max(1.0, abs(lower), abs(upper))
-        # A whole number may be too large for a float: compare before converting.
+        # Plain floats: against NumPy's, a whole number too large for a float would overflow.
         if not lower - slack <= value <= upper + slack or not math.isfinite(value):
             raise InputError(f"{name!r} holds a number outside {lower:g} .. {upper:g}")
     array = np.array(values, dtype=float)
