@@ -174,7 +174,7 @@ class Model:
             replace(
                 parameter,
                 value=float(value),
-                std=error,
+                std=None if error is None else float(error),
                 origin=parameter.origin if origin is None or not parameter.free else origin,
             )
             for parameter, value, error in zip(self.parameters, values, errors, strict=True)
