@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from sk120stiff.errors import InputError, Refusal, ToolkitError, ToolkitWarning
-    from sk120stiff.identify.fit import Fit, fit
+    from sk120stiff.identify.estimate import fit
+    from sk120stiff.identify.fit import Fit
     from sk120stiff.measurements import Measurements, read_measurements, write_measurements
     from sk120stiff.model import (
         Model,
@@ -32,7 +33,7 @@ _HOME = {
     "ToolkitError": "sk120stiff.errors",
     "ToolkitWarning": "sk120stiff.errors",
     "base_model": "sk120stiff.model",
-    "fit": "sk120stiff.identify.fit",
+    "fit": "sk120stiff.identify.estimate",
     "joint_spring_model": "sk120stiff.model",
     "load_robot": "sk120stiff.robot",
     "loaded_stiffness": "sk120stiff.model",
