@@ -1,0 +1,6 @@
+"""The 2005 paper recomputed: its tables, figures and claims beside ours."""
+
+from sk120stiff.paper.claims import Claim, Verdict
+from sk120stiff.paper.reproduction import Reproduction, reproduce
+
+__all__ = ["Claim", "Reproduction", "Verdict", "reproduce"]

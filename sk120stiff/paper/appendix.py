@@ -1,0 +1,203 @@
+"""Appendix I: the paper's Jacobian, coded from its text, against ours.
+
+How its angles (primed) follow from the readings of the bundled robot, whose joint 2 is measured
+from the vertical and whose joint 3 is the forearm's absolute elevation, positive up::
+
+    θ1' = θ1,  θ2' = θ2 + 90°,  θ3' = −θ3,  θ4' = θ4,  θ5' = θ5,  θ6' = θ6
+
+so that the third column of the paper's Jacobian is minus ours. The fixture adds to D6 along the
+tool's axis and is L6 across it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.paper.printed import DIMENSIONS, FIXTURE
+from sk120stiff.paper.setting import Setting, random_poses
+from sk120stiff.robot.coupling import Array
+
+#: Every length that Appendix I names.
+LENGTHS = ("L1", "L2", "L3", "L4", "L5", "L6", "D1", "D3", "D4", "D5", "D6")
+
+
+def printed_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
+    """Eq. (17) term by term as printed, misprints included.
+
+    Parameters
+    ----------
+    angles
+        (..., 6) the paper's angles θ1' to θ6' [rad].
+    lengths
+        Any of `LENGTHS` [m]; the others are zero.
+
+    Returns
+    -------
+    (..., 3, 3) derivatives of x, y, z by θ1', θ2', θ3' [m/rad].
+    """
+    t1, t2, t3, t4, t5, t6 = np.moveaxis(np.asarray(angles, dtype=float), -1, 0)
+    s1, c1, s2, c2 = np.sin(t1), np.cos(t1), np.sin(t2), np.cos(t2)
+    s3, c3, s4, c4 = np.sin(t3), np.cos(t3), np.sin(t4), np.cos(t4)
+    s5, c5, s6, c6 = np.sin(t5), np.cos(t5), np.sin(t6), np.cos(t6)
+    s23, c23 = np.sin(t2 - t3), np.cos(t2 - t3)
+    L1, L2, L3, L4, L5, L6, D1, D3, D4, D5, D6 = (lengths.get(name, 0.0) for name in LENGTHS)
+    J11 = (
+        L4 * c1 * s4 - D3 * c1 - L1 * s1
+        + L6 * c1 * s4 * c5 * c6 + D5 * c1 * c4
+        + L6 * c1 * c4 * s6 + L5 * c1 * s4 * c5
+        + D6 * c1 * s4 * s5 - D6 * s1 * c3 * c5
+        + L5 * s1 * c3 * s5 - L5 * s1 * s3 * c4 * c5
+        + L6 * s1 * c3 * s5 * c6 - L3 * s1 * s3
+        - L6 * s1 * s3 * c4 * c5 * c6
+        + L6 * s1 * s3 * s4 * s6
+        - D6 * s1 * s3 * c4 * s5
+        + D5 * s1 * s3 * s4 - L4 * s1 * s3 * c4
+        - D4 * s1 * c3 - L2 * s1 * s3 * s23
+        + L2 * s1 * c3 * c23
+    )  # fmt: skip
+    J12 = L2 * c1 * s2
+    J13 = (
+        L6 * c1 * s3 * s5 * c6
+        - L6 * c1 * c3 * s4 * s6 - D4 * c1 * s3
+        + L3 * c1 * c3 + D6 * c1 * c3 * c4 * s5
+        + L5 * c1 * c3 * c4 * c5
+        + L6 * c1 * c3 * c4 * c5 * c6
+        + L4 * c1 * c3 * c4 - D6 * c1 * s3 * c5
+        - D5 * c1 * c3 * s4 + L5 * c1 * s3 * s5
+    )  # fmt: skip
+    J21 = (
+        -D4 * c1 * c3 + L3 * c1 * s3
+        - L6 * c1 * c3 * s5 * c6
+        + D6 * c1 * s3 * c4 * s5
+        + D6 * c1 * c3 * c5 - D5 * c1 * s3 * s4
+        + L6 * s1 * s4 * c5 * c6
+        + D6 * s1 * s4 * s5 + L6 * s1 * c4 * s6
+        + L5 * s1 * s4 * c5 + L4 * s1 * s4
+        + D5 * s1 * c4 - D1 * s1
+        + L6 * c1 * s3 * c4 * c5 * c6
+        - L6 * c1 * s3 * s4 * s6
+        + L4 * c1 * s3 * c4 - L5 * c1 * c3 * s5
+        + L5 * c1 * s3 * c4 * c5 + L1 * c1
+        - L2 * c1 * c3 * c23
+        + L2 * c1 * s3 * s23
+    )  # fmt: skip
+    J22 = L2 * s1 * s2
+    J23 = (
+        -D5 * s1 * c3 * s4 + L5 * s1 * c3 * c4 * c5
+        + L3 * s1 * c3 - L6 * s1 * c3 * s4 * s6
+        + L6 * s1 * s3 * s5 * c6 + L4 * s1 * c3 * c4
+        - D4 * s1 * s3 + L5 * s1 * s3 * s5
+        + D6 * s1 * c3 * c4 * s5 - D6 * s1 * s3 * c5
+        + L6 * s1 * c3 * c4 * c5 * c6
+    )  # fmt: skip
+    J31 = np.zeros_like(t1)
+    J32 = L2 * c2
+    J33 = (
+        D5 * s3 * s4 - L4 * s3 * c4
+        - L5 * s3 * c4 * c5 - D4 * c3
+        + L6 * s3 * s4 * s6 - D6 * s3 * c4 * s5
+        - L6 * s3 * c4 * c5 * c6 - D6 * c3 * c5
+        + L5 * c3 * s5 - L3 * s3 + L6 * c3 * s5 * c6
+    )  # fmt: skip
+    rows = [(J11, J12, J13), (J21, J22, J23), (J31, J32 + 0.0 * t1, J33)]
+    return np.stack([np.stack(np.broadcast_arrays(*row), axis=-1) for row in rows], axis=-2)
+
+
+def mended_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
+    """Eq. (17) with + D4 cos θ1 cos θ3 and − D3 sin θ1 in J21."""
+    t1, _, t3 = np.moveaxis(np.asarray(angles, dtype=float)[..., :3], -1, 0)
+    J = printed_jacobian(angles, lengths)
+    D4, D1, D3 = (lengths.get(name, 0.0) for name in ("D4", "D1", "D3"))
+    J[..., 1, 0] += 2.0 * D4 * np.cos(t1) * np.cos(t3) + (D1 - D3) * np.sin(t1)
+    return J
+
+
+def paper_angles(readings: Array) -> Array:
+    """(..., 6) angles of Appendix I for joint readings (..., 6) [rad]."""
+    angles = np.array(readings, dtype=float)
+    angles[..., 1] += np.pi / 2
+    angles[..., 2] *= -1.0
+    return angles
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A term of eq. (17) that contradicts the others.
+
+    Attributes
+    ----------
+    element, length
+        Where it stands, e.g. ``"J21"`` and ``"D4"``.
+    size
+        How far it is off, in units of that length.
+    """
+
+    element: str
+    length: str
+    size: float
+
+
+@dataclass(frozen=True, eq=False)
+class Appendix:
+    """Appendix I against the bundled robot.
+
+    Attributes
+    ----------
+    slips
+        Terms that contradict the rest of eq. (17), found without our kinematics.
+    printed_error, mended_error
+        (3, 3) largest difference to our Jacobian over random poses of all six joints, at the
+        reflector [m/rad].
+    """
+
+    slips: tuple[Slip, ...]
+    printed_error: Array
+    mended_error: Array
+
+
+def appendix(setting: Setting, *, seed: int = 0) -> Appendix:
+    """Compare eq. (17) with our Jacobian at the reflector, and with itself."""
+    rng = np.random.default_rng(seed)
+    readings = np.concatenate(
+        [random_poses(rng, 200), rng.uniform(-np.pi, np.pi, (200, 3))], axis=1
+    )
+    ours = setting.arm(readings, "reflector").linear_jacobian * np.array([1.0, 1.0, -1.0])
+    lengths = {**DIMENSIONS, "D6": DIMENSIONS["D6"] + FIXTURE[0], "L6": FIXTURE[1]}
+    angles = paper_angles(readings)
+    return Appendix(
+        slips=slips(),
+        printed_error=np.max(np.abs(printed_jacobian(angles, lengths) - ours), axis=0),
+        mended_error=np.max(np.abs(mended_jacobian(angles, lengths) - ours), axis=0),
+    )
+
+
+def slips(*, seed: int = 1) -> tuple[Slip, ...]:
+    """Terms of eq. (17) that cannot belong to one arm which turns about a vertical axis.
+
+    J11 = −y and J21 = x, and a quarter turn of joint 1 carries x to y: so J21(θ1) must be
+    −J11(θ1 + 90°), length by length. Where they differ, the one whose slope is not J13 or −J23
+    is wrong.
+    """
+    angles = np.random.default_rng(seed).uniform(-np.pi, np.pi, (50, 6))
+    turned = angles + np.array([np.pi / 2, 0, 0, 0, 0, 0])
+    found = []
+    for length in LENGTHS:
+        unit = {length: 1.0}
+        apart = printed_jacobian(angles, unit)[:, 1, 0] + printed_jacobian(turned, unit)[:, 0, 0]
+        if np.max(np.abs(apart)) < 1e-12:
+            continue
+        wrong = "J11" if _slope_error(angles, unit, 0) > _slope_error(angles, unit, 1) else "J21"
+        found.append(Slip(wrong, length, float(np.max(np.abs(apart)))))
+    return tuple(found)
+
+
+def _slope_error(angles: Array, lengths: Mapping[str, float], row: int) -> float:
+    """How far ∂J11/∂θ3 is from −J23, or ∂J21/∂θ3 from J13."""
+    step = np.array([0, 0, 1e-5, 0, 0, 0])
+    ahead, behind = (printed_jacobian(angles + s, lengths)[:, row, 0] for s in (step, -step))
+    J = printed_jacobian(angles, lengths)
+    expected = -J[:, 1, 2] if row == 0 else J[:, 0, 2]
+    return float(np.max(np.abs((ahead - behind) / 2e-5 - expected)))

@@ -1,0 +1,159 @@
+"""Springs from Table II's measured columns: the paper's two algorithms, from far starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from scipy import stats
+
+from sk120stiff.identify import Fit, fit
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model
+from sk120stiff.paper.setting import Setting
+from sk120stiff.robot.coupling import Array
+
+#: Starting values for all three springs [N·m/rad]: 1e5 to 1e10 N·mm/rad; the paper starts from 1e8.
+STARTS = (1e2, 1e4, 1e5, 1e7)
+
+# Scatter is not published: these have a scale to start from, and are compared with each other only.
+SHARED_ZERO = NoiseModel(10e-6, zero="shared", stated=False)
+EQUAL_WEIGHTS = NoiseModel(10e-6, zero="separate", stated=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """One run of one algorithm.
+
+    Attributes
+    ----------
+    method
+        ``trf`` (interior-reflective Newton) or ``lm`` (Levenberg–Marquardt).
+    start
+        Starting value of all three springs [N·m/rad].
+    springs
+        (3,) where it ended [N·m/rad].
+    """
+
+    method: str
+    start: float
+    springs: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """What the three printed poses say of the springs.
+
+    Attributes
+    ----------
+    fit
+        What ``sk120stiff identify`` finds: each pose's rows share one zero reading, and the
+        covariance knows it.
+    equal_weights
+        The paper's criterion, eq. (12): plain least squares.
+    attempts
+        Both algorithms from `STARTS`.
+    by_pose
+        Pose → springs (3,) and their standard errors (3,), from that pose alone [N·m/rad].
+    F, probability
+        Test of common springs against springs of each pose's own: F ratio, and how probable a
+        larger one is if the springs are the same everywhere.
+    """
+
+    fit: Fit
+    equal_weights: Fit
+    attempts: tuple[Attempt, ...]
+    by_pose: dict[str, tuple[Array, Array]]
+    F: float
+    probability: float
+
+    @cached_property
+    def springs(self) -> Array:
+        """(3,) [N·m/rad]."""
+        return springs_of(self.fit)
+
+    @cached_property
+    def errors(self) -> Array:
+        """(3,) standard errors [N·m/rad]."""
+        return errors_of(self.fit)
+
+    @cached_property
+    def spread(self) -> float:
+        """Largest relative difference between the attempts."""
+        found = np.array([attempt.springs for attempt in self.attempts])
+        return float(np.max(np.ptp(found, axis=0) / found.mean(axis=0)))
+
+
+def identify_springs(
+    setting: Setting, measured: Measurements, step: Callable[[], None] = lambda: None
+) -> Identified:
+    """Identify the three springs from the measured rows.
+
+    Parameters
+    ----------
+    setting
+        Robot and the paper's model, which gives the start.
+    measured
+        Table II's measured columns.
+    step
+        Called after each fit.
+    """
+
+    def one(
+        model: Model,
+        data: Measurements,
+        noise: NoiseModel,
+        method: Literal["trf", "lm"] = "trf",
+    ) -> Fit:
+        found = fit(model, data, noise=noise, method=method)
+        step()
+        return found
+
+    model = setting.model
+    found = fit(model, measured)
+    step()
+    common = one(model, measured, SHARED_ZERO)
+    attempts = []
+    methods: tuple[Literal["trf", "lm"], ...] = ("trf", "lm")
+    for method in methods:
+        for start in STARTS:
+            far = model.with_public(**dict.fromkeys(model.names, start))
+            attempts.append(
+                Attempt(method, start, springs_of(one(far, measured, SHARED_ZERO, method)))
+            )
+    labels = np.array(measured.pose)
+    alone = {
+        pose: one(model, measured.select(np.flatnonzero(labels == pose)), SHARED_ZERO)
+        for pose in measured.poses
+    }
+    # Fits of parts and of the whole have the same noise model up to its scale: their χ² compare.
+    apart = sum(found.chi_square for found in alone.values())
+    more = (len(alone) - 1) * len(common.parameters)
+    left = common.degrees_of_freedom - more
+    F = (common.chi_square - apart) / more / (apart / left)
+    return Identified(
+        fit=found,
+        equal_weights=one(model, measured, EQUAL_WEIGHTS),
+        attempts=tuple(attempts),
+        by_pose={pose: (springs_of(f), errors_of(f)) for pose, f in alone.items()},
+        F=float(F),
+        probability=float(stats.f.sf(F, more, left)),
+    )
+
+
+#: Fits that `identify_springs` makes of three poses.
+FITS = 3 + 2 * len(STARTS) + 3
+
+
+def springs_of(found: Fit) -> Array:
+    """(P,) estimated springs [N·m/rad]."""
+    return np.array([parameter.public_value for parameter in found.parameters])
+
+
+def errors_of(found: Fit) -> Array:
+    """(P,) standard errors [N·m/rad]; NaN where an estimate lies on a bound."""
+    errors = [parameter.public_std for parameter in found.parameters]
+    return np.array([np.nan if error is None else error for error in errors])

@@ -1,0 +1,104 @@
+"""The arm on which the paper's numbers are recomputed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.model import Model, base_model
+from sk120stiff.paper.printed import LOWER, STEP, UPPER
+from sk120stiff.robot import Mechanism, Robot, Screws, load_robot
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness import spring_matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """The SK120 with the springs that the paper identified, loaded at its flange.
+
+    Attributes
+    ----------
+    robot
+        The bundled SK120.
+    model
+        Its base model: three springs, wrist rigid.
+    """
+
+    robot: Robot
+    model: Model
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """Base to flange."""
+        return self.robot.mechanism()
+
+    @cached_property
+    def springs(self) -> Array:
+        """(6,) [N·m/rad], infinite for the wrist."""
+        return self.model.joint_stiffness()
+
+    @cached_property
+    def arm_springs(self) -> Array:
+        """(3,) springs of the joints that yield [N·m/rad]."""
+        return self.springs[:3]
+
+    @cached_property
+    def K_theta(self) -> Array:
+        """(3, 3) joint stiffness [N·m/rad]."""
+        return spring_matrix(self.arm_springs)
+
+    def arm(
+        self, joints: ArrayLike, frame: str | None = None, point: ArrayLike | None = None
+    ) -> Screws:
+        """Kinematics by the first three joints alone, at (..., 3) or (..., 6) joint readings [rad].
+
+        Three readings stand for a straight wrist.
+        """
+        given = np.asarray(joints, dtype=float)
+        a = np.zeros((*given.shape[:-1], 6))
+        a[..., : given.shape[-1]] = given
+        screws = self.robot.screws(a, frame, point)
+        return replace(screws, first=screws.first[..., :3])
+
+
+def setting() -> Setting:
+    """The bundled SK120 with its bundled base model."""
+    robot = load_robot("motoman_sk120")
+    model = base_model(robot)
+    if model is None:
+        raise FileNotFoundError("the bundled robot has lost its model.yaml")
+    return Setting(robot, model)
+
+
+def motion_axes() -> tuple[Array, Array, Array]:
+    """Values of joints 1, 2, 3 that section VI steps through, each from its lower limit [rad]."""
+    first, second, third = (
+        low + STEP * np.arange(int((high - low) / STEP + 1e-9) + 1)
+        for low, high in zip(LOWER, UPPER, strict=True)
+    )
+    return first, second, third
+
+
+def motion_grid() -> Array:
+    """(5824, 3) the grid of section VI [rad]."""
+    return np.array(list(product(*motion_axes())))
+
+
+def random_poses(rng: np.random.Generator, count: int) -> Array:
+    """(count, 3) readings of the first three joints, evenly over their ranges [rad]."""
+    return rng.uniform(LOWER, UPPER, size=(count, 3))
+
+
+def wrench_of(force: ArrayLike) -> Array:
+    """(..., 6) wrench of a force (..., 3) [N]."""
+    given = np.asarray(force, dtype=float)
+    return np.concatenate([given, np.zeros_like(given)], axis=-1)
+
+
+def rms(values: ArrayLike) -> float:
+    """Root mean square over all entries."""
+    return float(np.sqrt(np.mean(np.square(values))))
