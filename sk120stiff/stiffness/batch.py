@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import threading
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,6 +25,7 @@ Classes = NDArray[np.uint8]
 LARGEST_ANGLE = 1e5  # rad; beyond it sine and cosine lose digits
 PIECE = 16384  # poses that a thread takes at a time
 PATIENCE = 0.5  # seconds after which a compilation is announced
+_READY: list[Any] = []  # the compiled function and the type of its outputs, once they are loaded
 
 #: What `stiffness_batch` can compute.
 QUANTITIES = (
@@ -89,6 +90,19 @@ class StiffnessBatch:
     complementary_class: Classes | None = None
     critical: Array | None = None
 
+    def of(self, quantity: str) -> NDArray[Any]:
+        """A quantity that was asked for.
+
+        Raises
+        ------
+        KeyError
+            It was not.
+        """
+        found = getattr(self, quantity, None)
+        if found is None:
+            raise KeyError(quantity)
+        return np.asarray(found)
+
 
 def stiffness_batch(
     robot: Robot | Mechanism,
@@ -138,6 +152,24 @@ def stiffness_batch(
         raise InputError("the point is not three finite numbers", remedy="Give x, y, z in metres.")
     still = np.zeros(len(mechanism.virtual)) if virtual is None else np.asarray(virtual, float)
     folded = fold(mechanism, np.asarray(springs, dtype=float), at, still)
+    return run_folded(folded, a, wrench, want, threads=threads)
+
+
+def run_folded(
+    folded: Fold,
+    a: ArrayLike,
+    wrench: ArrayLike,
+    want: Collection[str],
+    *,
+    threads: int | None = None,
+) -> StiffnessBatch:
+    """`stiffness_batch` for a mechanism that is folded already, which saves most of a short call.
+
+    Raises
+    ------
+    InputError
+        Shapes do not fit, or a number is not finite.
+    """
     poses = _poses(a, folded)
     loads, several = _loads(wrench, len(poses))
     unknown = set(want) - set(QUANTITIES)
@@ -206,32 +238,28 @@ def _run(
     folded: Fold, poses: Array, loads: Array, want: frozenset[str], threads: int
 ) -> dict[str, NDArray[np.generic]]:
     """Fill the wanted arrays, in pieces shared out to threads."""
-    with announced():
-        from sk120stiff.stiffness.lanes.block import Outputs, work
-
-        count, quantity, n, s = len(poses), len(loads), folded.coordinates, len(folded.soft)
-        shapes: dict[str, tuple[int, ...]] = {
-            "position": (count, 3),
-            "rotation": (count, 3, 3),
-            "jacobian": (count, 6, n),
-            "condition": (count,),
-            "compliance": (quantity, count, 3, 3),
-            "values": (quantity, count, 3),
-            "directions": (quantity, count, 3, 3),
-            "K_C": (quantity, count, s, s),
-            "stiffness_class": (quantity, count),
-            "complementary_class": (quantity, count),
-            "critical": (quantity, count),
-        }
-        arrays = {
-            name: np.zeros(
-                shape if name in want else (0,) * len(shape),
-                dtype=np.uint8 if name.endswith("_class") else float,
-            )
-            for name, shape in shapes.items()
-        }
-        out = Outputs(**arrays)
-        work(folded, poses, loads, 0, 0, out)  # nothing to do but to be compiled or loaded
+    count, quantity, n, s = len(poses), len(loads), folded.coordinates, len(folded.soft)
+    shapes: dict[str, tuple[int, ...]] = {
+        "position": (count, 3),
+        "rotation": (count, 3, 3),
+        "jacobian": (count, 6, n),
+        "condition": (count,),
+        "compliance": (quantity, count, 3, 3),
+        "values": (quantity, count, 3),
+        "directions": (quantity, count, 3, 3),
+        "K_C": (quantity, count, s, s),
+        "stiffness_class": (quantity, count),
+        "complementary_class": (quantity, count),
+        "critical": (quantity, count),
+    }
+    arrays = {
+        name: np.zeros(
+            shape if name in want else (0,) * len(shape),
+            dtype=np.uint8 if name.endswith("_class") else float,
+        )
+        for name, shape in shapes.items()
+    }
+    work, out = _kernel(folded, poses, loads, arrays)
     pieces = range(0, count, PIECE)
     if threads == 1 or len(pieces) == 1:
         work(folded, poses, loads, 0, count, out)
@@ -244,6 +272,22 @@ def _run(
             for one in done:
                 one.result()
     return {name: arrays[name] for name in shapes if name in want}
+
+
+def _kernel(
+    folded: Fold, poses: Array, loads: Array, arrays: dict[str, Any]
+) -> tuple[Callable[..., None], Any]:
+    """The compiled function and its outputs; the first call in a process loads or compiles it."""
+    if _READY:
+        work, outputs = _READY
+        return work, outputs(**arrays)
+    with announced():
+        from sk120stiff.stiffness.lanes.block import Outputs, work
+
+        out = Outputs(**arrays)
+        work(folded, poses, loads, 0, 0, out)  # nothing to do but to be compiled or loaded
+        _READY[:] = [work, Outputs]
+    return work, out
 
 
 @contextmanager

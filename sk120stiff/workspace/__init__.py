@@ -1,0 +1,29 @@
+"""Stiffness over the workspace: maps, the best posture, deflections compensated, exports."""
+
+from sk120stiff.workspace.arm import ElasticArm, elastic_arm
+from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
+from sk120stiff.workspace.finished import MapCheck, open_map, verify_map
+from sk120stiff.workspace.grid import Axis, Grid, parse_axes
+from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
+from sk120stiff.workspace.mapping import MapReport, write_map
+
+__all__ = [
+    "STATUS",
+    "Axis",
+    "ElasticArm",
+    "Grid",
+    "JointGrid",
+    "MapCheck",
+    "MapJob",
+    "MapReport",
+    "PositionGrid",
+    "Reached",
+    "Task",
+    "elastic_arm",
+    "open_map",
+    "parse_axes",
+    "solve_inverse",
+    "starting_poses",
+    "verify_map",
+    "write_map",
+]

@@ -1,0 +1,181 @@
+"""What the tools of the workspace need of a model: plain arrays that can be sent anywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.effects import situation_of_load
+from sk120stiff.errors import InputError
+from sk120stiff.model import Model
+from sk120stiff.robot import Mechanism
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness.batch import StiffnessBatch, run_folded
+from sk120stiff.stiffness.lanes.folding import Fold, fold
+from sk120stiff.workspace.varying import varying_batch
+
+PROBES = 16  # random poses at which the compliance is compared
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """Placement of the point and Jacobian at N poses.
+
+    Attributes
+    ----------
+    position, rotation
+        (N, 3) of the point and (N, 3, 3) of its frame [m].
+    jacobian
+        (N, 6, n) by the actuated joints, [linear; angular], base axes.
+    """
+
+    position: Array
+    rotation: Array
+    jacobian: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticArm:
+    """An arm with the stiffness that it has under small loads, seen from one point.
+
+    Attributes
+    ----------
+    name
+        Name of the robot.
+    joints
+        (n,) names of the actuated joints.
+    slides
+        (n,) does the joint slide?
+    lower, upper
+        (n,) joint limits [rad or m]; infinite where none are known.
+    mechanism
+        Chain to the frame of the point, with the model's virtual joints.
+    springs
+        (n_z, n_z) stiffness of all coordinates [N·m/rad or N/m], infinite on the diagonal where
+        rigid.
+    shift
+        (n_z,) by which the unloaded coordinates differ from the commanded ones [rad or m].
+    point
+        (3,) in the frame [m].
+    varying
+        The model, where its compliance changes with the pose; `springs` then hold at one pose only.
+    """
+
+    name: str
+    joints: tuple[str, ...]
+    slides: tuple[bool, ...]
+    lower: Array
+    upper: Array
+    mechanism: Mechanism
+    springs: Array
+    shift: Array
+    point: Array
+    varying: Model | None = None
+
+    @property
+    def n(self) -> int:
+        """Number of actuated joints."""
+        return len(self.joints)
+
+    @cached_property
+    def _folded(self) -> Fold:
+        return fold(self.mechanism, self.springs, self.point, self.shift[self.n :])
+
+    def batch(
+        self,
+        a: ArrayLike,
+        wrench: ArrayLike,
+        want: Collection[str],
+        *,
+        threads: int | None = None,
+    ) -> StiffnessBatch:
+        """`stiffness_batch` of this arm at commanded coordinates (N, n)."""
+        poses = np.asarray(a, dtype=float)
+        if self.varying is not None:
+            return varying_batch(self.varying, poses, wrench, want, self.point)
+        return run_folded(self._folded, poses + self.shift[: self.n], wrench, want, threads=threads)
+
+    def kinematics(self, a: Array) -> Kinematics:
+        """Where the point is, and how the actuated joints move it, at coordinates (N, n)."""
+        want = ("position", "rotation", "jacobian")
+        found = run_folded(self._folded, a + self.shift[: self.n], np.zeros(6), want)
+        return Kinematics(
+            found.of("position"), found.of("rotation"), found.of("jacobian")[..., : self.n]
+        )
+
+    def within_limits(self, a: Array) -> Array:
+        """(N,) are all joints (N, n) within their limits?"""
+        return np.asarray(((a >= self.lower) & (a <= self.upper)).all(axis=-1))
+
+
+def elastic_arm(
+    model: Model, *, frame: str | None = None, point: ArrayLike | None = None
+) -> ElasticArm:
+    """The arm that a model describes, with its stiffness under small loads.
+
+    Parameters
+    ----------
+    model
+        Robot and effects; instruments have no say here.
+    frame
+        Frame that carries the point; the tool frame by default.
+    point
+        (3,) in that frame [m]; its origin by default.
+
+    Raises
+    ------
+    InputError
+        Nothing in the model yields, or there is no such frame.
+    """
+    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    if at.shape != (3,) or not np.isfinite(at).all():
+        raise InputError("the point is not three finite numbers", remedy="Give x, y, z in metres.")
+    physical, at = _seen_from(model.physical(), frame or model.robot.tool_frame, at)
+    robot = physical.robot
+    lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
+    upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
+    probes = np.random.default_rng(0).uniform(lower, upper, (PROBES, robot.n))
+    rest = physical.solve(situation_of_load(robot, probes, np.zeros(6))).rest
+    compliance = np.broadcast_to(rest.compliance, (PROBES, *rest.compliance.shape[-2:]))
+    constant = np.allclose(compliance, compliance[0], rtol=1e-12, atol=0.0)
+    return ElasticArm(
+        name=robot.name,
+        joints=robot.actuated,
+        slides=robot.prismatic,
+        lower=robot.lower,
+        upper=robot.upper,
+        mechanism=physical.assembly.mechanism,
+        springs=_springs(compliance[0], robot.name),
+        shift=rest.z[0] - np.concatenate([probes[0], np.zeros(rest.z.shape[-1] - robot.n)]),
+        point=at,
+        varying=None if constant else physical,
+    )
+
+
+def _seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
+    """The model of the arm up to a frame, and a point of the frame in that arm's tool frame."""
+    robot = model.robot
+    rest = np.zeros(robot.n)
+    if robot.mechanism(frame).chain.names == robot.mechanism().chain.names:
+        inward = np.linalg.inv(robot.placement(rest)) @ robot.placement(rest, frame, point)
+        return model, inward[:3, 3]
+    return replace(model, robot=replace(robot, tool_frame=frame)), point
+
+
+def _springs(compliance: Array, name: str) -> Array:
+    """(n, n) stiffness of a compliance, infinite on the diagonal where nothing yields."""
+    soft = np.flatnonzero(compliance.any(axis=0))
+    if not len(soft):
+        raise InputError(
+            "nothing in this model yields under load",
+            where=name,
+            remedy="Give a model with joint_springs or another elastic effect.",
+        )
+    springs = np.diag(np.where(compliance.any(axis=0), 0.0, np.inf))
+    inverse = np.linalg.inv(compliance[np.ix_(soft, soft)])
+    springs[np.ix_(soft, soft)] = 0.5 * (inverse + inverse.T)
+    return springs

@@ -1,0 +1,200 @@
+"""Joint coordinates that put the tool where it is wanted: many targets from many starts at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot.coupling import Array
+from sk120stiff.workspace.arm import ElasticArm
+
+POSITION_TOLERANCE = 1e-9  # m
+ANGLE_TOLERANCE = 1e-9  # rad
+ITERATIONS = 40
+BIAS = 1e-10  # of the damping: keeps the step finite at singular poses
+STUCK, PATIENCE = 0.98, 6  # a start that gains no more than this after some steps is given up
+REACH = 1.0  # m that count as one radian in the damping
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Where N tools should be, in base axes.
+
+    Attributes
+    ----------
+    position
+        (N, 3) of the arm's point [m].
+    axis
+        (N, 3) or (3,) direction in which the tool's z axis should point, rotation about it free;
+        or None.
+    rotation
+        (N, 3, 3) or (3, 3) orientation of the tool frame; or None. Overrules `axis`.
+    """
+
+    position: Array
+    axis: Array | None = None
+    rotation: Array | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of targets N."""
+        return len(self.position)
+
+    def rows(self, pick: NDArray[np.intp]) -> Task:
+        """Some of the targets."""
+
+        def part(x: Array | None, single: int) -> Array | None:
+            return x if x is None or x.ndim == single else x[pick]
+
+        return Task(self.position[pick], part(self.axis, 1), part(self.rotation, 2))
+
+    def error(self, position: Array, rotation: Array) -> Array:
+        """(N, 3) or (N, 6) twist that would bring the tool there, to first order [m, rad]."""
+        away = self.position - position
+        if self.rotation is not None:
+            turn = np.broadcast_to(self.rotation, rotation.shape) @ np.swapaxes(rotation, -1, -2)
+            return np.concatenate([away, rotation_vector(turn)], axis=-1)
+        if self.axis is not None:
+            z = rotation[..., 2]
+            goal = np.broadcast_to(self.axis, z.shape)
+            across = np.cross(z, goal)
+            sine = np.linalg.norm(across, axis=-1, keepdims=True)
+            angle = np.arctan2(sine, (z * goal).sum(-1, keepdims=True))
+            # Opposite directions have no axis between them: any across z will do.
+            helper = np.cross(z, np.where(np.abs(z[..., :1]) < 0.7, [1.0, 0, 0], [0, 1.0, 0]))
+            helper /= np.linalg.norm(helper, axis=-1, keepdims=True)
+            unit = np.where(sine > 1e-12, across / np.maximum(sine, 1e-12), helper)
+            return np.concatenate([away, angle * unit], axis=-1)
+        return away
+
+
+def rotation_vector(rotation: Array) -> Array:
+    """(..., 3) axis times angle of rotations (..., 3, 3) [rad], angle at most π."""
+    skew = np.stack(
+        [
+            rotation[..., 2, 1] - rotation[..., 1, 2],
+            rotation[..., 0, 2] - rotation[..., 2, 0],
+            rotation[..., 1, 0] - rotation[..., 0, 1],
+        ],
+        axis=-1,
+    )
+    sine = 0.5 * np.linalg.norm(skew, axis=-1)
+    cosine = 0.5 * (np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
+    angle = np.arctan2(sine, cosine)
+    # Near half a turn the skew part vanishes; R + I = 2 u uᵀ there, and its longest column is u.
+    symmetric = rotation + np.swapaxes(rotation, -1, -2) + 2.0 * np.eye(3)
+    longest = np.argmax(np.linalg.norm(symmetric, axis=-2), axis=-1)
+    column = np.take_along_axis(symmetric, longest[..., None, None], axis=-1)[..., 0]
+    column = column / np.maximum(np.linalg.norm(column, axis=-1, keepdims=True), 1e-300)
+    usual = skew / np.maximum(2.0 * sine, 1e-300)[..., None]
+    near_half = (sine < 1e-6) & (cosine < 0.0)
+    unit = np.where(near_half[..., None], column, usual)
+    return np.where((angle < 1e-12)[..., None], 0.5 * skew, angle[..., None] * unit)
+
+
+def starting_poses(arm: ElasticArm, count: int, rest: Array) -> Array:
+    """(count, n) starts: `rest` first, then poses spread evenly over the joints' ranges."""
+    from scipy.stats import qmc
+
+    lower = np.where(np.isfinite(arm.lower), arm.lower, -np.pi)
+    upper = np.where(np.isfinite(arm.upper), arm.upper, np.pi)
+    power = max(1, int(np.ceil(np.log2(max(count, 2)))))
+    spread = qmc.Sobol(arm.n, seed=0).random_base2(power)[: count - 1]
+    return np.concatenate([rest[None], lower + spread * (upper - lower)])
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """What the search found for N targets.
+
+    Attributes
+    ----------
+    a
+        (N, n) joint coordinates, the best that were met [rad or m].
+    found
+        (N,) is the target met within the tolerances?
+    """
+
+    a: Array
+    found: NDArray[np.bool_]
+
+
+def solve_inverse(
+    arm: ElasticArm,
+    task: Task,
+    start: Array,
+    *,
+    movable: NDArray[np.bool_] | None = None,
+    limits: bool = True,
+    iterations: int = ITERATIONS,
+) -> Reached:
+    """Damped Newton steps from one start per target, all targets at once.
+
+    The damping is half the squared error plus a little (Sugihara, IEEE T-RO 2011): the step goes
+    over to Newton's near a solution and stays bounded where there is none.
+
+    Parameters
+    ----------
+    arm
+        The arm.
+    task
+        N targets.
+    start
+        (N, n) starting coordinates [rad or m].
+    movable
+        (n,) joints that may move; the others keep their start. All by default.
+    limits
+        Keep joints within their limits.
+    """
+    a = start.copy()
+    moves = np.ones(arm.n, dtype=bool) if movable is None else movable
+    found = np.zeros(task.count, dtype=bool)
+    active = np.arange(task.count)
+    before = np.full(task.count, np.inf)
+    for step_number in range(iterations):
+        if not len(active):
+            break
+        now = arm.kinematics(a[active])
+        error = task.rows(active).error(now.position, now.rotation)
+        good = np.linalg.norm(error[:, :3], axis=-1) < POSITION_TOLERANCE
+        if error.shape[-1] == 6:
+            good &= np.linalg.norm(error[:, 3:], axis=-1) < ANGLE_TOLERANCE
+        found[active[good]] = True
+        size = (error**2).sum(-1)
+        stuck = (size > STUCK * before[active]) & (step_number >= PATIENCE)
+        before[active] = size
+        go_on = ~good & ~stuck
+        active, error, size = active[go_on], error[go_on], size[go_on]
+        if not len(active):
+            break
+        J = now.jacobian[go_on][:, : error.shape[-1]][..., moves]
+        if task.rotation is None and task.axis is not None:
+            J = _without_spin(J, now.rotation[go_on][..., 2])
+        damping = 0.5 * size / REACH**2 + BIAS
+        normal = np.swapaxes(J, -1, -2) @ J + damping[:, None, None] * np.eye(J.shape[-1])
+        step = np.linalg.solve(normal, np.swapaxes(J, -1, -2) @ error[..., None])[..., 0]
+        largest = np.abs(step).max(axis=-1, keepdims=True)
+        step *= np.minimum(1.0, 1.0 / np.maximum(largest, 1e-300))
+        a[np.ix_(active, np.flatnonzero(moves))] += step
+        if limits:
+            a[active] = np.clip(wrapped(arm, a[active]), arm.lower, arm.upper)
+    return Reached(wrapped(arm, a), found)
+
+
+def _without_spin(J: Array, z: Array) -> Array:
+    """The Jacobian with rotation about the tool's own axis z taken out of its angular half."""
+    angular = J[:, 3:] - z[:, :, None] * (z[:, None, :] @ J[:, 3:])
+    return np.concatenate([J[:, :3], angular], axis=1)
+
+
+def wrapped(arm: ElasticArm, a: Array) -> Array:
+    """Turning joints brought within their limits by whole turns where that is possible."""
+    turns = ~np.asarray(arm.slides)
+    middle = np.where(
+        np.isfinite(arm.lower) & np.isfinite(arm.upper), 0.5 * (arm.lower + arm.upper), 0.0
+    )
+    inside = (a >= arm.lower) & (a <= arm.upper) & np.isfinite(arm.lower)
+    near = middle + (a - middle + np.pi) % (2.0 * np.pi) - np.pi
+    return np.where(turns & ~inside, near, a)

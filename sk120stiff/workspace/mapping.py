@@ -1,0 +1,199 @@
+"""Writing a map: here on all cores, or on a Dask cluster."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sk120stiff.errors import InputError, MissingPart, Refusal, ToolkitError
+from sk120stiff.workspace.field import MapJob
+from sk120stiff.workspace.store import MapStore
+
+Progress = Callable[[int, int], None]
+
+CONNECT_SECONDS = 5  # after which a scheduler counts as unreachable
+STARVED_SECONDS = 120  # after which a cluster without workers counts as gone
+IN_FLIGHT = 3  # chunks per worker that are handed out ahead
+ATTEMPTS = 10  # times that a chunk is handed out before its loss counts as its own fault
+
+
+@dataclass(frozen=True)
+class MapReport:
+    """What `write_map` did.
+
+    Attributes
+    ----------
+    path
+        The map.
+    points
+        Points of the grid.
+    computed
+        Those that this run computed; the rest was there already.
+    seconds
+        How long this run took.
+    chunks
+        Number of chunks of the map.
+    """
+
+    path: Path
+    points: int
+    computed: int
+    seconds: float
+    chunks: int
+
+
+def write_map(
+    job: MapJob,
+    path: str | os.PathLike[str],
+    *,
+    scheduler: str | None = None,
+    threads: int | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> MapReport:
+    """Write a map, or what is missing of it.
+
+    Only a few chunks are in memory at a time. A run that was killed is taken up by calling this
+    again with the same job and path.
+
+    Parameters
+    ----------
+    job
+        What to compute.
+    path
+        Folder of the map, by custom ``….zarr``.
+    scheduler
+        Address of a Dask scheduler (``tcp://host:8786``) whose workers see the same folder; without
+        it the map is computed here.
+    threads
+        Threads per process; one per available core by default.
+    overwrite
+        Replace another map of that name.
+    progress
+        Called with (points done, points in all) after every chunk.
+
+    Raises
+    ------
+    InputError
+        The place is taken, the disk has not enough room, or there is no such scheduler.
+    Refusal
+        The disk is full, or the cluster is gone; what is done is kept.
+    """
+    begin = time.perf_counter()
+    client = None if scheduler is None else _connect(scheduler)
+    try:
+        store = MapStore(Path(path).absolute(), job)
+        done = store.prepare(overwrite=overwrite)
+        size, number = job.points.grid.size, store.chunks.number
+        missing = [chunk for chunk in range(number) if chunk not in done]
+        counted = size - sum(_points(store, chunk) for chunk in missing)
+        computed = 0
+        if progress:
+            progress(counted, size)
+        written = (
+            (store.write_chunk(chunk, threads=threads) for chunk in missing)
+            if client is None
+            else _on_cluster(client, store, missing, threads)
+        )
+        for points in written:
+            computed += points
+            if progress:
+                progress(counted + computed, size)
+        if not store.complete:
+            store.finish()
+    finally:
+        if client is not None:
+            client.close()
+    return MapReport(store.path, size, computed, time.perf_counter() - begin, number)
+
+
+def _points(store: MapStore, chunk: int) -> int:
+    begin, end = store.chunks.stretch(chunk)
+    return end - begin
+
+
+def _connect(address: str) -> Any:
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise MissingPart("distributed", "cluster", needed_for="a cluster") from error
+    try:
+        connect: Any = Client
+        return connect(address, timeout=CONNECT_SECONDS, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(
+            f"no Dask scheduler answers at {address!r}",
+            where="--scheduler",
+            remedy="Start one with 'dask scheduler' and give the address it prints, such as "
+            "tcp://192.168.0.10:8786.",
+        ) from error
+
+
+def _on_cluster(
+    client: Any, store: MapStore, missing: list[int], threads: int | None
+) -> Iterator[int]:
+    """Hand chunks out a few at a time, and again those that a lost worker had."""
+    import distributed
+
+    wait: Any = distributed.wait
+    waiting = list(reversed(missing))
+    tries = dict.fromkeys(missing, 0)
+    running: dict[Any, int] = {}
+    while waiting or running:
+        room = IN_FLIGHT * max(1, _workers(client)) - len(running)
+        for _ in range(min(room, len(waiting))):
+            chunk = waiting.pop()
+            tries[chunk] += 1
+            future = client.submit(_write, store, chunk, threads, pure=False)
+            running[future] = chunk
+        try:
+            found = wait(list(running), timeout=STARVED_SECONDS, return_when="FIRST_COMPLETED")
+        except TimeoutError:
+            if _workers(client):
+                continue
+            raise Refusal(
+                f"the cluster has had no worker for {STARVED_SECONDS} s",
+                where="--scheduler",
+                remedy="What is finished is kept: run the same command again.",
+            ) from None
+        for future in found.done:
+            chunk = running.pop(future)
+            if future.status == "finished":
+                yield future.result()
+                continue
+            error = None if future.cancelled() else future.exception()
+            if isinstance(error, ToolkitError) or tries[chunk] >= ATTEMPTS:
+                raise error or Refusal(
+                    f"chunk {chunk} was lost {ATTEMPTS} times with the worker that had it",
+                    where="--scheduler",
+                    remedy="Look at the workers' logs; the same command goes on where it stopped.",
+                )
+            if error is not None and not _is_loss(error):
+                raise error
+            waiting.append(chunk)
+
+
+def _is_loss(error: BaseException) -> bool:
+    """Did the worker or its connection go, rather than the work?"""
+    from distributed import KilledWorker
+
+    return isinstance(error, KilledWorker | OSError)
+
+
+def _write(store: MapStore, chunk: int, threads: int | None) -> int:
+    """Body of a worker's task; a worker computes with one thread unless it is told otherwise."""
+    if not store.path.is_dir():
+        raise Refusal(
+            "a worker of the cluster does not see the folder of the map",
+            where=str(store.path),
+            remedy="Choose a folder that all workers share.",
+        )
+    return store.write_chunk(chunk, threads=threads or 1)
+
+
+def _workers(client: Any) -> int:
+    return len(client.scheduler_info(n_workers=-1)["workers"])
