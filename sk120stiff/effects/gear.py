@@ -41,7 +41,9 @@ class GearEffect(Elastic):
     def weight_torque(self, situation: Situation) -> Array:
         """(N, 1) torque of the arm's weight on the joint, before the load came [N·m]."""
         index = situation.robot.actuated.index(self.where)
-        return situation.gravity_torque[:, index : index + 1]
+        torque = situation.gravity_torque[:, index : index + 1]
+        # About a vertical axis only rounding is left, and its sign must not count.
+        return np.where(np.abs(torque) > 1e-9 * situation.robot.total_mass, torque, 0.0)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, Screws
 from sk120stiff.robot.coupling import Array
 
@@ -135,8 +134,9 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
     InputError
         The file's joints are not the robot's actuated joints.
     """
-    order = _columns_of(robot, measurements.joint_names)
-    a = measurements.joints[:, order]
+    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
+    measurements = measurements.with_joints(robot.actuated, kinds)
+    a = measurements.joints
     rotation = robot.screws(a).rotation
     wrench = measurements.wrench
     if measurements.force_frame == "tool":
@@ -164,20 +164,6 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
         pose=np.array([index[label] for label in measurements.pose], dtype=np.intp),
         poses=labels,
     )
-
-
-def _columns_of(robot: Robot, names: tuple[str, ...]) -> list[int]:
-    missing = [name for name in robot.actuated if name not in names]
-    unknown = [name for name in names if name not in robot.actuated]
-    if missing or unknown:
-        raise InputError(
-            "the measurements' joint columns are not the robot's actuated joints"
-            + (f"; missing: {', '.join(missing)}" if missing else "")
-            + (f"; unknown: {', '.join(unknown)}" if unknown else ""),
-            where=robot.name,
-            remedy=f"Name one column for each of: {', '.join(robot.actuated)}.",
-        )
-    return [names.index(name) for name in robot.actuated]
 
 
 def _branch_signs(measurements: Measurements) -> Array:

@@ -32,9 +32,9 @@ from sk120stiff.effects import (
     Situation,
 )
 from sk120stiff.effects.base import Misreading, Switching
-from sk120stiff.robot import Mechanism, Robot, Screws
+from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.robot.coupling import Array
-from sk120stiff.stiffness import ElasticLaw, Equilibrium, equilibrium
+from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
 
 Index = NDArray[np.intp]
 
@@ -115,20 +115,40 @@ class Assembly:
         loads = _misread(self._of(LoadError), situation, values, _to_sensor(situation))
         wrench = _rotate(situation.rotation, loads.value)
         z_0 = self.start(situation, values)
-        unloaded = self.mechanism.screws(z_0, situation.point)
-        onset = unloaded.at(situation.force_point).torques(wrench)
+        onset = self.mechanism.screws(z_0, situation.force_point).torques(wrench)
+        law, springs = self._law(situation, values, onset)
+        soft = self._soft(values)
+        weight = None
+        if self.mechanism.chain.weighs:
+            weight = Weight(self.robot.gravity_in_base, springs)
+        unloaded = self._sagging(z_0, situation, weight, soft)
         rest = equilibrium(
             self.mechanism,
             z_0,
             wrench,
-            self._law(situation, values, onset),
+            law,
             point=situation.point,
             force_point=situation.force_point,
-            soft=self._soft(values),
+            soft=soft,
+            weight=weight,
         )
-        displacement = rest.screws.position - unloaded.position
+        displacement = rest.screws.position - unloaded.screws.position
         readings = _misread(self._of(ReadingError), situation, values, displacement)
         return Solution(situation, wrench, loads, unloaded, onset, rest, readings)
+
+    def _sagging(
+        self, z_0: Array, situation: Situation, weight: Weight | None, soft: Index
+    ) -> Equilibrium:
+        """The arm before the load comes, bent by its own weight only."""
+        return equilibrium(
+            self.mechanism,
+            z_0,
+            np.zeros((len(z_0), 6)),
+            lambda torques: (np.zeros_like(torques), np.zeros((z_0.shape[1],) * 2)),
+            point=situation.point,
+            soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
+            weight=weight,
+        )
 
     def _of(self, kind: type[LoadError] | type[ReadingError]) -> list[tuple[Misreading, slice]]:
         pairs = zip(self.effects, self.slices, strict=True)
@@ -139,8 +159,13 @@ class Assembly:
         found = [index for _, part, index in self._elastic if values[part].any()]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.intp)
 
-    def _law(self, situation: Situation, values: Array, onset: Array) -> ElasticLaw:
-        """Elongation of all coordinates; what does not change with them is evaluated only once."""
+    def _law(
+        self, situation: Situation, values: Array, onset: Array
+    ) -> tuple[ElasticLaw, Array]:
+        """Elongation of all coordinates under the load, and the compliance of what is linear.
+
+        What does not change with the coordinates is evaluated only once.
+        """
         n = self.mechanism.n
         constant = np.zeros((n, n))
         varying: Array | None = None
@@ -177,22 +202,27 @@ class Assembly:
                 tangent[:, index[:, None], index] += found.by_torque
             return elongation, tangent
 
-        return law
+        return law, linear
 
     def sensitivities(self, solution: Solution, values: Array) -> Array:
         """(N, 3, P) exact derivative of the readings by the internal parameter values."""
-        situation, rest = solution.situation, solution.rest
-        J = rest.screws.linear_jacobian
+        situation, rest, before = solution.situation, solution.rest, solution.unloaded
         soft = self._soft(values)
-        adjoint = _adjoint(J, rest.compliance, rest.K_C, soft)  # (N, 3, n_z) = J N⁻¹
+        adjoint = _adjoint(rest, soft)  # (N, 3, n_z) = J N⁻¹
+        weighs = self.mechanism.chain.weighs
+        adjoint_0 = _adjoint(before, soft) if weighs else before.screws.linear_jacobian
         out = np.zeros((situation.count, 3, int(self.slices[-1].stop) if self.slices else 0))
         for effect, part, index in self._elastic:
             torques = solution.onset if isinstance(effect, Switching) else rest.torques
+            if isinstance(effect, LinearElastic):
+                torques = torques + rest.weights
             found = effect.elongation(torques[:, index], situation, values[part])
             out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
-        J_0 = solution.unloaded.linear_jacobian
+            if isinstance(effect, LinearElastic) and weighs:
+                found = effect.elongation(before.weights[:, index], situation, values[part])
+                out[:, :, part] -= adjoint_0[:, :, index] @ found.by_parameter
         for part, index in self._geometric:
-            out[:, :, part] += adjoint[:, :, index] - J_0[:, :, index]
+            out[:, :, part] += adjoint[:, :, index] - adjoint_0[:, :, index]
         loaded = rest.screws.at(situation.force_point)
         per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, 3, 6)
         for part, columns in solution.loads.columns:
@@ -242,7 +272,7 @@ class Solution:
     loads, readings
         What the instruments made of load and displacement.
     unloaded, rest
-        Kinematics before the load, and equilibrium under it.
+        Equilibrium before the load, under the arm's own weight, and under the load.
     onset
         (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or N].
     """
@@ -250,7 +280,7 @@ class Solution:
     situation: Situation
     wrench: Array
     loads: Misread
-    unloaded: Screws
+    unloaded: Equilibrium
     onset: Array
     rest: Equilibrium
     readings: Misread
@@ -288,17 +318,17 @@ def _rotate(rotation: Array, wrench: Array) -> Array:
     return np.concatenate([force, moment], axis=1)
 
 
-def _adjoint(J: Array, C: Array, K_C: Array, soft: Index) -> Array:
-    """(N, 3, n_z) J (I − C K_C)⁻¹, solved in the soft coordinates only.
+def _adjoint(rest: Equilibrium, soft: Index) -> Array:
+    """(N, 3, n_z) J (I − ∂e/∂z)⁻¹ at an equilibrium, solved in the soft coordinates only.
 
-    With Y = J N⁻¹: Y = J + Y C K_C, and C has entries between soft coordinates only.
+    With Y = J N⁻¹: Y = J + Y ∂e/∂z, and ∂e/∂z has rows of soft coordinates only.
     """
+    J = rest.screws.linear_jacobian
     if not len(soft):
         return J
-    C_soft = C[..., soft[:, None], soft]
-    K_soft = K_C[..., soft[:, None], soft]
-    newton = np.eye(len(soft)) - C_soft @ K_soft
+    rows = rest.feedback[..., soft, :]
+    newton = np.eye(len(soft)) - rows[..., soft]
     Y_soft = np.swapaxes(
         np.linalg.solve(np.swapaxes(newton, -1, -2), np.swapaxes(J[..., soft], -1, -2)), -1, -2
     )
-    return np.asarray(J + Y_soft @ C_soft @ K_C[..., soft, :])
+    return J + Y_soft @ rows

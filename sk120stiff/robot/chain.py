@@ -8,7 +8,8 @@ foundation) is one more joint of the chain, so compliance anywhere needs no othe
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +64,9 @@ class Chain:
         (m,) true for rotation, false for translation.
     coordinates
         (m,) index of each joint's value in the joint vector [q of all robot joints; virtual].
+    masses, centres
+        (m,) mass that each joint carries up to the next one [kg], and (m, 3) its centre in the
+        joint's moving frame [m]. Branches off the chain count at their rest position.
     """
 
     names: tuple[str, ...]
@@ -70,17 +74,27 @@ class Chain:
     axes: Array
     revolute: NDArray[np.bool_]
     coordinates: NDArray[np.intp]
+    masses: Array = field(default_factory=lambda: np.zeros(0))
+    centres: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
     def __post_init__(self) -> None:
         m = len(self.names)
         shapes = (self.placements.shape, self.axes.shape, self.revolute.shape)
         if shapes != ((m + 1, 4, 4), (m, 3), (m,)) or self.coordinates.shape != (m,):
             raise ValueError(f"chain of {m} joints with arrays of shapes {shapes}")
+        if not len(self.masses):
+            object.__setattr__(self, "masses", np.zeros(m))
+            object.__setattr__(self, "centres", np.zeros((m, 3)))
 
     @property
     def m(self) -> int:
         """Number of joints of the chain."""
         return len(self.names)
+
+    @property
+    def weighs(self) -> bool:
+        """Does the chain carry any mass?"""
+        return bool(self.masses.any())
 
     def with_virtual_joints(self, virtual: Sequence[VirtualJoint], first_index: int) -> Chain:
         """The same chain with `virtual` joints inserted, in the given order on each body.
@@ -97,12 +111,16 @@ class Chain:
         axes: list[Array] = []
         revolute: list[bool] = []
         coordinates: list[int] = []
+        masses: list[float] = []
+        centres: list[Array] = []
         for body in range(-1, self.m):
             if body >= 0:
                 names.append(self.names[body])
                 axes.append(self.axes[body])
                 revolute.append(bool(self.revolute[body]))
                 coordinates.append(int(self.coordinates[body]))
+                masses.append(float(self.masses[body]))
+                centres.append(self.centres[body])
             back = np.eye(4)
             for k, joint in enumerate(virtual):
                 if joint.body != body:
@@ -113,6 +131,12 @@ class Chain:
                 axes.append(joint.axis)
                 revolute.append(joint.revolute)
                 coordinates.append(first_index + k)
+                # A joint at the body's own origin carries the body; one further out does not.
+                takes = bool(masses) and not joint.placement[:3, 3].any() and body >= 0
+                masses.append(masses[-1] if takes else 0.0)
+                centres.append(joint.placement[:3, :3].T @ centres[-1] if takes else np.zeros(3))
+                if takes:
+                    masses[-2] = 0.0
             placements.append(back @ self.placements[body + 1])
         return Chain(
             tuple(names),
@@ -120,9 +144,11 @@ class Chain:
             np.array(axes).reshape(-1, 3),
             np.array(revolute, dtype=bool),
             np.array(coordinates, dtype=np.intp),
+            np.array(masses),
+            np.array(centres).reshape(-1, 3),
         )
 
-    def sweep(self, q: Array) -> tuple[Array, Array, Array, Array]:
+    def sweep(self, q: Array) -> Sweep:
         """Forward kinematics that keeps every joint on the way.
 
         Parameters
@@ -132,10 +158,8 @@ class Chain:
 
         Returns
         -------
-        axes, origins
-            (..., m, 3) joint axes and joint origins in base axes [m].
-        rotation, position
-            (..., 3, 3) and (..., 3) of the end frame in the base frame [m].
+        Sweep
+            Joint axes, joint origins, centres of mass and the end frame, in base axes.
         """
         batch = q.shape[:-1]
         count = int(np.prod(batch, dtype=int))
@@ -143,6 +167,7 @@ class Chain:
         sines, cosines = np.sin(flat), np.cos(flat)
         axes = np.empty((count, self.m, 3))
         origins = np.empty((count, self.m, 3))
+        centres = np.empty((count, self.m, 3)) if self.weighs else None
         rotation = np.broadcast_to(np.eye(3), (count, 3, 3))
         position = np.zeros((count, 3))
         for k in range(self.m):
@@ -160,14 +185,37 @@ class Chain:
             else:
                 position = position + flat[:, k, None] * axes[:, k]
             origins[:, k] = position
+            if centres is not None:
+                centres[:, k] = position + rotation @ self.centres[k]
         position = position + rotation @ self.placements[-1, :3, 3]
         rotation = _times(rotation, self.placements[-1, :3, :3])
-        return (
+        return Sweep(
             axes.reshape(*batch, self.m, 3),
             origins.reshape(*batch, self.m, 3),
             rotation.reshape(*batch, 3, 3),
             position.reshape(*batch, 3),
+            None if centres is None else centres.reshape(*batch, self.m, 3),
         )
+
+
+class Sweep(NamedTuple):
+    """What forward kinematics meets on the way, in base axes [m].
+
+    Attributes
+    ----------
+    axes, origins
+        (..., m, 3) joint axes and joint origins.
+    rotation, position
+        (..., 3, 3) and (..., 3) of the end frame.
+    centres
+        (..., m, 3) centres of the carried masses, or None where nothing weighs.
+    """
+
+    axes: Array
+    origins: Array
+    rotation: Array
+    position: Array
+    centres: Array | None
 
 
 def skew(vector: Array) -> Array:

@@ -150,6 +150,18 @@ class Robot:
         q = self.coupling.motion(self.coordinates(a)).q
         return {name: q[..., k] for k, name in enumerate(self.tree.joint_names)}
 
+    @cached_property
+    def gravity_in_base(self) -> Array:
+        """(3,) acceleration of gravity in base axes at the rest position [m/s²]."""
+        body, T_body_base = self.tree.body(self.base_frame)
+        if body < 0:
+            return np.asarray(T_body_base[:3, :3].T @ self.gravity)
+        root = next(name for name in self.frames if self.tree.body(name)[0] < 0)
+        chain = self.tree.chain(root, self.base_frame)
+        swept = chain.sweep(np.zeros(chain.m))
+        T_root = self.tree.body(root)[1]
+        return np.asarray(swept.rotation.T @ T_root[:3, :3].T @ self.gravity)
+
     def gravity_torque(self, a: ArrayLike) -> Array:
         """(..., n) torques by which the robot's own weight drives the actuated joints [N·m or N].
 

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.robot.chain import Chain, VirtualJoint
-from sk120stiff.robot.coupling import Array, Coupling
+from sk120stiff.robot.chain import Chain, Sweep, VirtualJoint
+from sk120stiff.robot.coupling import Array, Coupling, Curvature
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,11 @@ class Screws:
     point
         (3,) or (..., 3) the point, in the end frame [m].
     first, second
-        (..., m, n) and (..., m, n, n) or None: derivatives of the joint values by the coordinates.
+        (..., m, n) derivative of the joint values by the coordinates, and the second one, or None
+        where it vanishes.
+    carried
+        (..., m, 3) change of Σ mass · position with each joint [kg·m per rad], or None where
+        nothing weighs.
     """
 
     axes: Array
@@ -38,7 +42,8 @@ class Screws:
     frame_position: Array
     point: Array
     first: Array
-    second: Array | None = None
+    second: Curvature | None = None
+    carried: Array | None = None
 
     @cached_property
     def position(self) -> Array:
@@ -91,12 +96,14 @@ class Mechanism:
     """A chain whose joints follow generalised coordinates z = [a; v].
 
     ``a`` are the actuated coordinates, ``v`` the displacements of the virtual joints (rigid robots
-    have none).
+    have none). `coupling` is that of the rigid robot, `elastic` the one that knows the virtual
+    joints too.
     """
 
     chain: Chain
     coupling: Coupling
     virtual: tuple[VirtualJoint, ...] = field(default=())
+    elastic: Coupling | None = None
 
     @property
     def n(self) -> int:
@@ -107,40 +114,35 @@ class Mechanism:
         """This mechanism with compliance at the given places."""
         if self.virtual:
             raise ValueError("virtual joints are inserted once, all together")
-        joints = int(self.coupling.motion(np.zeros(self.coupling.n)).q.shape[-1])
-        chain = self.chain.with_virtual_joints(virtual, joints)
-        return Mechanism(chain, self.coupling, tuple(virtual))
+        chain = self.chain.with_virtual_joints(virtual, self.coupling.m)
+        elastic = self.coupling.with_virtual_joints(virtual, self.chain.names)
+        return Mechanism(chain, self.coupling, tuple(virtual), elastic)
 
     def screws(self, z: Array, point: Array | None = None) -> Screws:
         """Kinematics at coordinates `z` (..., n), seen from `point` of the end frame [m]."""
         z = np.asarray(z, dtype=float)
-        n_a, n_v = self.coupling.n, len(self.virtual)
-        motion = self.coupling.motion(z[..., :n_a])
-        q, first, second = motion.q, motion.first, motion.second
-        if n_v:
-            m = q.shape[-1]
-            q = np.concatenate([q, z[..., n_a:]], axis=-1)
-            wide = np.zeros((*first.shape[:-2], m + n_v, n_a + n_v))
-            wide[..., :m, :n_a] = first
-            wide[..., np.arange(m, m + n_v), np.arange(n_a, n_a + n_v)] = 1.0
-            for k, joint in enumerate(self.virtual):
-                for index, multiplier in joint.followers:
-                    wide[..., index, n_a + k] += multiplier
-                    q[..., index] += multiplier * z[..., n_a + k]
-            first = wide
-            if second is not None:
-                tall = np.zeros((*second.shape[:-3], m + n_v, n_a + n_v, n_a + n_v))
-                tall[..., :m, :n_a, :n_a] = second
-                second = tall
+        motion = (self.elastic or self.coupling).motion(z)
         pick = self.chain.coordinates
-        axes, origins, rotation, position = self.chain.sweep(q[..., pick])
+        swept = self.chain.sweep(motion.q[..., pick])
         return Screws(
-            axes=axes,
-            origins=origins,
+            axes=swept.axes,
+            origins=swept.origins,
             revolute=self.chain.revolute,
-            rotation=rotation,
-            frame_position=position,
+            rotation=swept.rotation,
+            frame_position=swept.position,
             point=np.zeros(3) if point is None else np.asarray(point, dtype=float),
-            first=first[..., pick, :],
-            second=None if second is None else second[..., pick, :, :],
+            first=motion.first[..., pick, :],
+            second=None if motion.second is None else motion.second.picked(pick),
+            carried=None if swept.centres is None else _carried(self.chain, swept),
         )
+
+
+def _carried(chain: Chain, swept: Sweep) -> Array:
+    """(..., m, 3) w × Σ m (c − o) over all that a joint carries, or axis · Σ m for a slide."""
+    if swept.centres is None:
+        raise ValueError("nothing weighs")
+    moments = chain.masses[:, None] * swept.centres
+    beyond = np.flip(np.cumsum(np.flip(moments, -2), axis=-2), -2)
+    mass = np.flip(np.cumsum(np.flip(chain.masses)))[:, None]
+    turned = np.cross(swept.axes, beyond - mass * swept.origins)
+    return np.where(chain.revolute[:, None], turned, mass * swept.axes)

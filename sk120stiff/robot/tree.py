@@ -138,7 +138,26 @@ class Tree:
             axes=self.axes[index],
             revolute=self.revolute[index],
             coordinates=index,
+            **dict(zip(("masses", "centres"), self._lumps(joints), strict=True)),
         )
+
+    def _lumps(self, joints: tuple[int, ...]) -> tuple[Array, Array]:
+        """(m,) masses carried by chain joints and (m, 3) their centres, branches at rest."""
+        pin.forwardKinematics(self._model, self._data, self._configuration(np.zeros(self.m)))
+        position = {joint + 1: k for k, joint in enumerate(joints)}
+        masses, moments = np.zeros(len(joints)), np.zeros((len(joints), 3))
+        for body in range(1, self.m + 1):
+            carrier = body
+            while carrier not in position and carrier > 0:
+                carrier = int(self._model.parents[carrier])
+            if carrier == 0:
+                continue
+            inertia = self._model.inertias[body]
+            T = self._data.oMi[carrier].inverse() * self._data.oMi[body]
+            masses[position[carrier]] += inertia.mass
+            moments[position[carrier]] += inertia.mass * T.act(inertia.lever)
+        safe = np.where(masses > 0.0, masses, 1.0)[:, None]
+        return masses, moments / safe
 
     def position_limits(self) -> tuple[Array, Array]:
         """(m,) lower and upper joint limits [rad or m] as Pinocchio read them."""

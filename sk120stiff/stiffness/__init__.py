@@ -6,13 +6,19 @@ from sk120stiff.stiffness.cartesian import (
     cartesian_stiffness,
     spring_matrix,
 )
-from sk120stiff.stiffness.complementary import complementary_stiffness, symmetric_part
+from sk120stiff.stiffness.complementary import (
+    complementary_stiffness,
+    gravity_stiffness,
+    gravity_torques,
+    symmetric_part,
+)
 from sk120stiff.stiffness.critical import critical_load
 from sk120stiff.stiffness.deflection import Deflection, deflection
 from sk120stiff.stiffness.energy import PaperWork, loading_balance, paper_work, quadratic
 from sk120stiff.stiffness.equilibrium import (
     ElasticLaw,
     Equilibrium,
+    Weight,
     equilibrium,
     linear_springs,
 )
@@ -33,6 +39,7 @@ __all__ = [
     "Equilibrium",
     "PaperWork",
     "Principal",
+    "Weight",
     "StiffnessBatch",
     "cartesian_compliance",
     "cartesian_stiffness",
@@ -42,6 +49,8 @@ __all__ = [
     "definiteness_of",
     "deflection",
     "equilibrium",
+    "gravity_stiffness",
+    "gravity_torques",
     "linear_springs",
     "loading_balance",
     "paper_work",

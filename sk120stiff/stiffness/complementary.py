@@ -48,8 +48,40 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
     K_Cz = np.swapaxes(G, -1, -2) @ K_C @ G
     if screws.second is not None:
         torques = screws.joint_torques(load)
-        K_Cz = K_Cz + np.einsum("...k,...kij->...ij", torques, screws.second)
+        K_Cz = K_Cz + screws.second.contracted(torques, G.shape[-1])
     return np.asarray(K_Cz)
+
+
+def gravity_torques(screws: Screws, gravity: Array) -> Array:
+    """(..., n) torques of the arm's own weight on the coordinates [N·m or N].
+
+    Parameters
+    ----------
+    screws
+        Kinematics of a chain that weighs.
+    gravity
+        (3,) acceleration in base axes [m/s²].
+    """
+    if screws.carried is None:
+        return np.zeros((*screws.position.shape[:-1], screws.first.shape[-1]))
+    return np.asarray(((screws.carried @ gravity)[..., None, :] @ screws.first)[..., 0, :])
+
+
+def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
+    """∂τ_g/∂z (..., n, n) [N·m/rad]: K_C of the arm's own weight, spread over its links.
+
+    The formula of `complementary_stiffness` with v_max replaced by what the joint max(i,j) carries.
+    """
+    if screws.carried is None:
+        n = screws.first.shape[-1]
+        return np.zeros((*screws.position.shape[:-1], n, n))
+    upper = np.triu(np.cross(gravity, screws.angular) @ np.swapaxes(screws.carried, -1, -2))
+    K_g = upper + np.swapaxes(np.triu(upper, 1), -1, -2)
+    G = screws.first
+    K_gz = np.swapaxes(G, -1, -2) @ K_g @ G
+    if screws.second is not None:
+        K_gz = K_gz + screws.second.contracted(screws.carried @ gravity, G.shape[-1])
+    return np.asarray(K_gz)
 
 
 def symmetric_part(matrix: Array) -> Array:

@@ -11,7 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Mechanism, Screws
 from sk120stiff.robot.coupling import Array
-from sk120stiff.stiffness.complementary import complementary_stiffness
+from sk120stiff.stiffness.complementary import (
+    complementary_stiffness,
+    gravity_stiffness,
+    gravity_torques,
+)
 
 #: torques (..., n) → elongations (..., n) and their derivative by the torques (..., n, n)
 ElasticLaw = Callable[[Array], tuple[Array, Array]]
@@ -36,6 +40,10 @@ class Equilibrium:
         (..., n, n) tangent compliance of the springs [rad/(N·m)].
     K_C
         (..., n, n) complementary stiffness of the load there [N·m/rad].
+    weights
+        (..., n) torques of the arm's own weight [N·m or N]; zero where it was not asked for.
+    feedback
+        (..., n, n) derivative of all elongations by the coordinates, C K_C and the weight's share.
     iterations
         Newton steps taken.
     """
@@ -45,7 +53,25 @@ class Equilibrium:
     torques: Array
     compliance: Array
     K_C: Array
+    weights: Array
+    feedback: Array
     iterations: int
+
+
+@dataclass(frozen=True, eq=False)
+class Weight:
+    """The arm's own weight on linear springs.
+
+    Attributes
+    ----------
+    gravity
+        (3,) acceleration in base axes [m/s²].
+    compliance
+        (n, n) or (..., n, n) compliance by which the arm sags [rad/(N·m)].
+    """
+
+    gravity: Array
+    compliance: Array
 
 
 def linear_springs(stiffness: ArrayLike) -> ElasticLaw:
@@ -68,6 +94,7 @@ def equilibrium(
     point: Array | None = None,
     force_point: Array | None = None,
     soft: NDArray[np.intp] | None = None,
+    weight: Weight | None = None,
 ) -> Equilibrium:
     """Exact static equilibrium z = z_0 + e(J(z)ᵀ W) by Newton's method on compliances.
 
@@ -90,6 +117,8 @@ def equilibrium(
     soft
         Indices of the coordinates that can yield under `law`; the others are not solved for.
         Default: all.
+    weight
+        Lets the arm sag under its own weight, with and without load.
 
     Raises
     ------
@@ -108,8 +137,14 @@ def equilibrium(
         torques = screws.torques(load)
         elongation, compliance = law(torques)
         K_C = complementary_stiffness(screws, load)
+        feedback = compliance @ K_C
+        weights = np.zeros_like(torques)
+        if weight is not None:
+            weights = gravity_torques(screws, weight.gravity)
+            elongation = elongation + (weight.compliance @ weights[..., None])[..., 0]
+            feedback = feedback + weight.compliance @ gravity_stiffness(screws, weight.gravity)
         error = (z - z_0 - elongation)[..., pick]
-        newton = identity - compliance[..., pick[:, None], pick] @ K_C[..., pick[:, None], pick]
+        newton = identity - feedback[..., pick[:, None], pick]
         try:
             change = np.linalg.solve(newton, error[..., None])[..., 0]
         except np.linalg.LinAlgError:
@@ -119,7 +154,7 @@ def equilibrium(
         if np.max(np.abs(change), initial=0.0) <= TOLERANCE:
             measured = screws if force_point is None else screws.at(_given(point))
             compliance = np.broadcast_to(compliance, K_C.shape)
-            return Equilibrium(z, measured, torques, compliance, K_C, step)
+            return Equilibrium(z, measured, torques, compliance, K_C, weights, feedback, step)
         # A step of more than half a radian would leave the region in which Newton can be trusted.
         largest = np.max(np.abs(change), axis=-1, keepdims=True, initial=0.0)
         z[..., pick] -= change * np.minimum(1.0, 0.5 / np.maximum(largest, 1e-300))

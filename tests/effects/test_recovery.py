@@ -20,6 +20,7 @@ from sk120stiff.robot import Robot, load_robot
 from tests.hidden.generator import causes_elastic, causes_joint, causes_sensor
 from tests.hidden.generator.arm import Arm
 from tests.hidden.generator.design import plan
+from tests.hidden.generator.mechanism import GRAVITY
 from tests.hidden.generator.robots import FOLDER, six_axis, telescope
 from tests.hidden.generator.rows import Rows
 from tests.hidden.generator.sk120 import sk120
@@ -28,14 +29,10 @@ from tests.hidden.generator.world import Cause, World
 C2 = 1.0 / 4.0e5  # compliance of the SK120's joint 2 in the generator's base model
 
 
-def weightless(arm: Arm) -> Arm:
-    return replace(arm, bodies=())
-
-
 ARMS: dict[str, tuple[Arm, str | None]] = {
     "sk120": (sk120(), None),
-    "six_axis": (weightless(six_axis()), "six_axis.urdf"),
-    "telescope": (weightless(telescope()), "telescope.urdf"),
+    "six_axis": (six_axis(), "six_axis.urdf"),
+    "telescope": (telescope(), "telescope.urdf"),
 }
 
 
@@ -118,8 +115,9 @@ def cases() -> list[Case]:
     ):  # fmt: skip
         beam = e.LinkBending(link, {"flexibility": size}, {"taper": TAPER, "pieces": 60})
         out.append(Case(arm, beam, {"EI": 1.0 / size}, rtol=1e-3))  # pieces, not a continuum
+        # An arm's own weight twists the generator's shaft along its length, ours at its root.
         shaft = e.LinkTorsion(link, {"flexibility": size}, {"taper": 0.2})
-        out.append(Case(arm, shaft, {"GJ": 1.0 / size}))
+        out.append(Case(arm, shaft, {"GJ": 1.0 / size}, rtol=3e-4 if arm == "six_axis" else 1e-5))
     for arm, name in (("sk120", "joint_2_l"), ("six_axis", "lift")):
         out.append(Case(arm, s.JointOffset(name, {"offset": 2e-3}), {"offset": 2e-3}))
     for arm, link in (("sk120", "link_2_l"), ("six_axis", "forearm")):
@@ -135,13 +133,8 @@ def load(case_arm: str) -> tuple[Arm, Robot]:
     if file is None:
         return arm, load_robot("motoman_sk120")
     robot = load_robot(FOLDER / file, base=arm.base_frame, tool=arm.tool_frame)
-    # the generator's arm has lost its masses here, so the product's must not know them either
-    document = replace(
-        robot.document, links=tuple(replace(k, inertial=None) for k in robot.document.links)
-    )
-    weightless_robot = replace(robot, document=document)
-    assert weightless_robot.total_mass == 0.0
-    return arm, weightless_robot
+    assert robot.total_mass > 0.0  # both arms sag under their own weight
+    return arm, replace(robot, gravity=GRAVITY)
 
 
 def as_situation(robot: Robot, rows: Rows) -> Situation:
@@ -243,8 +236,12 @@ def test_scale_of_the_reading_is_recovered_when_a_spring_is_known():
 
 
 def test_gains_of_the_force_axes_are_recovered_but_for_their_common_part():
-    """All gains together are one factor on all compliances; their ratios are not."""
+    """All gains together are one factor on all compliances; their ratios are not.
+
+    Where the arm weighs, its sag would tell softer springs from a gain, if barely.
+    """
     arm, robot = load("six_axis")
+    arm, robot = replace(arm, bodies=()), replace(robot, gravity=np.zeros(3))
     rows = plan(arm, np.random.default_rng(14), poses=24, loads=4)
     springs = {name: 1.0 / value for name, value in arm.typical.joint.items()}
     cause = causes_sensor.ForceScale("sensor", {"x": 0.02, "y": -0.01, "z": 0.005})
