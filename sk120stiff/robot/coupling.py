@@ -5,21 +5,67 @@ the first and second derivatives that J, K_C and the equilibrium need:
 
     q = q(a),    G = dq/da,    H = d²q/da²
 
-Mimic joints and parallelograms are linear, ``q = A a + b``: G = A everywhere and H vanishes.
+Mimic joints and parallelograms are linear, ``q = A a + b``: G = A everywhere and H vanishes. Closed
+loops of any kind are in `loops`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError
 
+if TYPE_CHECKING:
+    from sk120stiff.robot.chain import VirtualJoint
+
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Curvature:
+    """Second derivative of joint values by coordinates, kept only where it is not zero.
+
+    Attributes
+    ----------
+    joints
+        (r,) positions of the joints that bend.
+    coordinates
+        (s,) the coordinates that bend them.
+    hessian
+        (..., r, s, s) d²q[joints]/da[coordinates]².
+    """
+
+    joints: NDArray[np.intp]
+    coordinates: NDArray[np.intp]
+    hessian: Array
+
+    def picked(self, order: NDArray[np.intp]) -> Curvature | None:
+        """The same for the joints q[order], or None if none of them bends."""
+        place = {int(joint): k for k, joint in enumerate(self.joints)}
+        found = [(k, place[int(joint)]) for k, joint in enumerate(order) if int(joint) in place]
+        if not found:
+            return None
+        here, there = np.array(found, dtype=np.intp).T
+        return Curvature(here, self.coordinates, self.hessian[..., there, :, :])
+
+    def contracted(self, torques: Array, n: int) -> Array:
+        """(..., n, n) Σ_k τ_k d²q_k/da² for torques (..., m) on all joints."""
+        bent = np.einsum("...k,...kij->...ij", torques[..., self.joints], self.hessian)
+        out = np.zeros((*bent.shape[:-2], n, n))
+        out[..., self.coordinates[:, None], self.coordinates] = bent
+        return out
+
+    def dense(self, m: int, n: int) -> Array:
+        """(..., m, n, n) with all the zeros."""
+        out = np.zeros((*self.hessian.shape[:-3], m, n, n))
+        rows, columns = self.joints[:, None, None], self.coordinates
+        out[..., rows, columns[:, None], columns] = self.hessian
+        return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +79,12 @@ class JointMotion:
     first
         (m, n) or (..., m, n): dq/da.
     second
-        (..., m, n, n): d²q/da², or None where it vanishes identically.
+        d²q/da², or None where it vanishes identically.
     """
 
     q: Array
     first: Array
-    second: Array | None = None
+    second: Curvature | None = None
 
 
 class Coupling(Protocol):
@@ -48,8 +94,20 @@ class Coupling(Protocol):
     def n(self) -> int:
         """Number of actuated coordinates."""
 
+    @property
+    def m(self) -> int:
+        """Number of moving joints."""
+
     def motion(self, a: Array) -> JointMotion:
         """Joint values and derivatives at `a` (..., n)."""
+
+    def with_virtual_joints(
+        self, virtual: Sequence[VirtualJoint], bodies: Sequence[str]
+    ) -> Coupling:
+        """The coupling of coordinates [a; v] to joint values [q; v].
+
+        `bodies` names the joints of the chain that `VirtualJoint.body` counts.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +130,29 @@ class LinearCoupling:
         """Number of actuated coordinates."""
         return int(self.A.shape[1])
 
+    @property
+    def m(self) -> int:
+        """Number of moving joints."""
+        return int(self.A.shape[0])
+
     def motion(self, a: Array) -> JointMotion:
         """Joint values and derivatives at `a` (..., n)."""
         return JointMotion(q=a @ self.A.T + self.b, first=self.A)
+
+    def with_virtual_joints(
+        self,
+        virtual: Sequence[VirtualJoint],
+        bodies: Sequence[str],  # noqa: ARG002
+    ) -> LinearCoupling:
+        """The coupling of coordinates [a; v] to joint values [q; v], still linear."""
+        m, n = self.A.shape
+        A = np.zeros((m + len(virtual), n + len(virtual)))
+        A[:m, :n] = self.A
+        A[m:, n:] = np.eye(len(virtual))
+        for k, joint in enumerate(virtual):
+            for index, multiplier in joint.followers:
+                A[index, n + k] += multiplier
+        return LinearCoupling(A, np.append(self.b, np.zeros(len(virtual))))
 
 
 @dataclass(frozen=True)

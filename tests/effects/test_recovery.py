@@ -242,7 +242,8 @@ def test_gains_of_the_force_axes_are_recovered_but_for_their_common_part():
     """
     arm, robot = load("six_axis")
     arm, robot = replace(arm, bodies=()), replace(robot, gravity=np.zeros(3))
-    rows = plan(arm, np.random.default_rng(14), poses=24, loads=4)
+    point = np.array([0.06, -0.1, 0.15])
+    rows = plan(arm, np.random.default_rng(14), poses=24, loads=4, point=point)
     springs = {name: 1.0 / value for name, value in arm.typical.joint.items()}
     cause = causes_sensor.ForceScale("sensor", {"x": 0.02, "y": -0.01, "z": 0.005})
     measured = World(arm, springs, (cause,)).displacement(rows)

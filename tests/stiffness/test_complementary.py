@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sk120stiff.robot import LinearCoupling, Mechanism, load_robot
-from sk120stiff.robot.coupling import JointMotion
+from sk120stiff.robot.coupling import Curvature, JointMotion
 from sk120stiff.stiffness import complementary_stiffness, critical_load, symmetric_part
 from tests.stiffness.arms import POINT, mixed_arm, mixed_urdf, sk120, sk120_poses, uncoupled
 
@@ -128,7 +128,8 @@ class Cam:
         first[..., 2, 1], first[..., 2, 2] = a[..., 2], a[..., 1]
         second[..., 1, 0, 0] = -np.sin(a[..., 0])
         second[..., 2, 1, 2] = second[..., 2, 2, 1] = 1.0
-        return JointMotion(q, first, second)
+        everything = np.arange(3)
+        return JointMotion(q, first, Curvature(everything, everything, second))
 
 
 def test_a_curved_closure_adds_torque_times_curvature():
