@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.errors import ToolkitWarning
-from sk120stiff.robot.loading import find_robot, load_robot
+from sk120stiff.robot.loading import assemble, find_robot
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import (
     Finding,
@@ -93,7 +93,7 @@ def check_robot(
     if document.moving_joints:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore", ToolkitWarning)  # they stand in the report
-            robot = load_robot(source, base=base, tool=tool)
+            robot = assemble(found, document, named=os.fspath(source), base=base, tool=tool)
             findings.extend(_kinematics(robot))
     else:
         findings.append(Finding("nothing_moves", document.place, "no joint of this robot moves"))

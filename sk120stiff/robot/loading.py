@@ -23,6 +23,7 @@ from sk120stiff.robot.urdf import (
     default_frames,
     locked_on_way,
     read_urdf,
+    with_arm_only,
 )
 
 _MOST_WARNINGS = 20
@@ -66,13 +67,13 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
     bundled = bundled_robots()
     candidates = [relative_to / text] if relative_to else []
     candidates.append(Path(text))
-    path = next((p for p in candidates if _exists(p)), None)
+    path = next((p for p in candidates if text.strip() and _exists(p)), None)
     if path is None and text in bundled:
         path = bundled[text]
     if path is None:
         raise InputError(
             "there is no such robot",
-            where=text[:200],
+            where=text[:200] or "(no name)",
             remedy="Give a .urdf, a .xacro, a folder with robot.yaml, or a bundled name: "
             + ", ".join(sorted(bundled))
             + ".",
@@ -124,16 +125,39 @@ def load_robot(
     """
     found = find_robot(source, relative_to=relative_to)
     document = read_urdf(found.urdf)
+    named = os.fspath(source)
+    return assemble(
+        found, document, named=named, base=base, tool=tool, actuated=actuated, lock=lock
+    )
+
+
+def assemble(
+    found: RobotSource,
+    document: UrdfDocument,
+    *,
+    named: str,
+    base: str | None = None,
+    tool: str | None = None,
+    actuated: Sequence[str] | None = None,
+    lock: Mapping[str, float] | None = None,
+) -> Robot:
+    """The second half of `load_robot`, for a document that was read already.
+
+    `named` is what the user called the robot; a model file will call it the same.
+    """
     description = found.description
-    tree = Tree(document.xml)
     guessed_base, guessed_tool, _ = default_frames(document)
     base_frame = base or description.base_frame or guessed_base
     tool_frame = tool or description.tool_frame or guessed_tool
+    rest = {**description.lock, **(lock or {})}
+    couplings = [*description.couplings, *(rule.driver for rule in description.couplings.values())]
+    wanted = [*(actuated or description.actuated or ()), *couplings]
+    document = with_arm_only(document, base_frame, tool_frame, wanted, rest)
+    tree = Tree(document.xml)
     followers = _followers(document, description)
     chosen = tuple(
         actuated or description.actuated or _drivers(tree, base_frame, tool_frame, followers)
     )
-    rest = {**description.lock, **(lock or {})}
     _refuse_balls(document, base_frame, tool_frame, rest)
     _check_actuated(chosen, tree, followers, document)
     for name in rest:
@@ -152,7 +176,7 @@ def load_robot(
         tree=tree,
         coupling=coupling,
         document=document,
-        source=os.fspath(source),
+        source=named,
         followers=followers,
         locked={
             name: rest.get(name, 0.0)

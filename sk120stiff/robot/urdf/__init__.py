@@ -1,5 +1,6 @@
 """URDF files of any origin become a `UrdfDocument`: forms, repairs with warnings, refusals."""
 
+from sk120stiff.robot.urdf.aside import with_arm_only
 from sk120stiff.robot.urdf.document import (
     BALLS,
     HARMLESS,
@@ -36,4 +37,5 @@ __all__ = [
     "read_urdf",
     "resolve",
     "suspicions",
+    "with_arm_only",
 ]

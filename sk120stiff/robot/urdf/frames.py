@@ -56,7 +56,7 @@ def default_frames(document: UrdfDocument) -> tuple[str, str, tuple[str, ...]]:
         leaves = [link for link in leaves if not _SENSOR.search(link)] or branch
         tool = max(leaves, key=lambda link: level[link])
         why = "the outermost link" if longest else "the root, because no joint moves"
-        others = [link for link in carried if link not in branch]
+        others = sorted(set(carried) - set(branch))
         if others:
             why += f", first of several branches with {longest} joints (another: {others[0]!r})"
     reasons.append(f"tool frame {tool!r}: {why}, behind {longest} moving joints")

@@ -7,7 +7,7 @@ import numpy as np
 from sk120stiff.robot.urdf.document import MOVING, Array, JointSpec, Mimic
 from sk120stiff.robot.urdf.fields import Fields
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
-from sk120stiff.robot.urdf.links import read_name
+from sk120stiff.robot.urdf.links import LONGEST_NAME, read_name
 from sk120stiff.robot.urdf.xml_tree import Element
 
 # Joints with several degrees of freedom: present, but held still.
@@ -79,6 +79,12 @@ def _end(element: Element, tag: str, fields: Fields) -> str:
             f"the joint names no {tag} link",
             where=fields.place(element),
             remedy=f'Add <{tag} link="..."/>.',
+        )
+    if len(name) > LONGEST_NAME:
+        fields.notes.refuse(
+            f"the name of its {tag} link has {len(name)} characters",
+            where=fields.place(element),
+            remedy=f"Use at most {LONGEST_NAME} characters.",
         )
     if len(ends) > 1:
         fields.notes.refuse(

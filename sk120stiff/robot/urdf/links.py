@@ -11,6 +11,7 @@ from sk120stiff.robot.urdf.findings import Notebook, at, shown
 from sk120stiff.robot.urdf.xml_tree import Element
 
 Colour = tuple[float, float, float, float]
+LONGEST_NAME = 500
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -29,6 +30,12 @@ def read_name(element: Element, notes: Notebook) -> str:
             f"this {element.tag} has no name",
             where=at(element.line),
             remedy=f'Give it one: <{element.tag} name="...">.',
+        )
+    if len(name) > LONGEST_NAME:
+        notes.refuse(
+            f"this name has {len(name)} characters; at most {LONGEST_NAME} can be handled",
+            where=at(element.line, element.tag, name),
+            remedy="Shorten it.",
         )
     if name != raw:
         where = at(element.line, element.tag, name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -37,7 +38,7 @@ def checked_mimics(
     for joint in joints:
         if joint.mimic is not None:
             followers.setdefault(joint.mimic.joint, []).append(joint.name)
-    for name in _drivers_first(joints, by_name, notes):
+    for name in drivers_first(joints, by_name, notes):
         joint = by_name[name]
         if joint.mimic is None or by_name[joint.mimic.joint].moves:
             continue
@@ -60,8 +61,8 @@ def checked_mimics(
     return tuple(by_name[joint.name] for joint in joints)
 
 
-def _drivers_first(
-    joints: tuple[JointSpec, ...], by_name: dict[str, JointSpec], notes: Notebook
+def drivers_first(
+    joints: tuple[JointSpec, ...], by_name: Mapping[str, JointSpec], notes: Notebook
 ) -> list[str]:
     """Names of all joints, every driver before its followers."""
     done: dict[str, None] = {}

@@ -15,21 +15,21 @@ from pathlib import Path
 from sk120stiff.errors import MissingPart
 from sk120stiff.robot.urdf.findings import Notebook
 from sk120stiff.robot.urdf.source import MAX_BYTES, RawSource
+from sk120stiff.robot.urdf.xml_text import without_comments
 
 TIME_LIMIT = 60.0  # s
 _ELEMENT = re.compile(r"<xacro:\w")
 _SUBSTITUTION = re.compile(r"\$\((?:optenv|env|arg|find|eval|dirname) |\$\{[^}]{1,200}\}")
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
 def uses_xacro(text: str) -> bool:
     """Are there xacro elements, outside comments?"""
-    return bool(_ELEMENT.search(text)) and bool(_ELEMENT.search(_COMMENT.sub("", text)))
+    return bool(_ELEMENT.search(text)) and bool(_ELEMENT.search(without_comments(text)))
 
 
 def has_substitutions(text: str) -> bool:
     """Does an attribute hold an expression that only xacro can evaluate?"""
-    return bool(_SUBSTITUTION.search(_COMMENT.sub("", text)))
+    return bool(_SUBSTITUTION.search(without_comments(text)))
 
 
 def expand(

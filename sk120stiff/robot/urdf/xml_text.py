@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 from sk120stiff.robot.urdf.findings import Notebook, at
 
 _DECLARATION = re.compile(r"<\?xml\b[^>]{0,200}\?>")
 _ENCODING = re.compile(rb"<\?xml\b[^>]{0,200}?encoding\s*=\s*[\"']([A-Za-z0-9._-]{1,40})[\"']")
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _PLAIN_DOCTYPE = re.compile(r"<!DOCTYPE\b[^>\[]*>")
 _STRAY_AMPERSAND = re.compile(r"&(?!(?:#\d{1,7}|#x[0-9A-Fa-f]{1,6}|amp|lt|gt|quot|apos);)")
 _CONTROL = re.compile("[\x01-\x08\x0b\x0c\x0e-\x1f]")
 _ENTITY_NAME = re.compile(r"&\w{1,40};")
+
+_MOST_AMPERSANDS = 100_000
 
 # Only codecs that map bytes to text and cannot be made to inflate.
 _ENCODINGS = frozenset(
@@ -70,12 +72,15 @@ def mended(text: str, notes: Notebook) -> str:
     Double hyphens inside comments, bare ampersands, control characters, text behind the end. Text
     with other entity references is left as it is: what an entity stands for is not ours to guess.
     """
-    comments = _COMMENT.findall(text)
-    if any("--" in comment[4:-3] or comment.endswith("--->") for comment in comments):
+    comments = list(_comments(text))
+    if any("-" in text[end - 4] or "--" in text[start + 4 : end - 3] for start, end in comments):
         notes.warn("xml_syntax", "", "a comment contains '--', which XML forbids; it was skipped")
-        text = _COMMENT.sub(lambda match: _blank(match.group()), text)
-    if _STRAY_AMPERSAND.search(text) and not _ENTITY_NAME.search(
-        re.sub(r"&(?:amp|lt|gt|quot|apos);", "", text)
+        text = without_comments(text)
+    few = text.count("&") < _MOST_AMPERSANDS
+    if (
+        few
+        and _STRAY_AMPERSAND.search(text)
+        and not _ENTITY_NAME.search(re.sub(r"&(?:amp|lt|gt|quot|apos);", "", text))
     ):
         notes.warn("xml_syntax", "", "a bare '&' was read as '&amp;'")
         text = _STRAY_AMPERSAND.sub("&amp;", text)
@@ -89,6 +94,26 @@ def mended(text: str, notes: Notebook) -> str:
         notes.warn("xml_syntax", "", "control characters were skipped")
         text = _CONTROL.sub(" ", text)
     return text
+
+
+def without_comments(text: str) -> str:
+    """The text with every comment blanked out, lines in place."""
+    parts, done = [], 0
+    for start, end in _comments(text):
+        parts += [text[done:start], _blank(text[start:end])]
+        done = end
+    return "".join([*parts, text[done:]])
+
+
+def _comments(text: str) -> Iterator[tuple[int, int]]:
+    """Start and end of each closed comment; linear in the text, whatever stands in it."""
+    start = text.find("<!--")
+    while start >= 0:
+        end = text.find("-->", start + 4)
+        if end < 0:
+            return
+        yield start, end + 3
+        start = text.find("<!--", end + 3)
 
 
 def _blank(text: str) -> str:

@@ -93,9 +93,10 @@ def test_folder_with_several_or_none(tmp_path: Path) -> None:
 
 @pytest.mark.timeout(20)
 @pytest.mark.parametrize("name", ["absent.urdf", "pipe.urdf", "\0.urdf", "x" * 5000, "", "null"])
-def test_what_is_no_file(tmp_path: Path, name: str) -> None:
+def test_what_is_no_file(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo(tmp_path / "pipe.urdf")
     given = "/dev/zero" if name == "null" else name and f"{tmp_path}/{name}"
+    monkeypatch.chdir(tmp_path)
     for read in (read_urdf, load_robot):
         with pytest.raises(InputError) as refusal:
             read(given)
