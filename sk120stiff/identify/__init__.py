@@ -1,7 +1,30 @@
 """Measurements + model become a `Fit`: least squares, uncertainty, what cannot be known."""
 
-from sk120stiff.identify.fit import Fit, fit, solve
+from sk120stiff.identify.comparison import Compared, compare
+from sk120stiff.identify.estimate import fit
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.held_out import HeldOut, held_out
+from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
 from sk120stiff.identify.problem import Problem
+from sk120stiff.identify.profile import profile_intervals
+from sk120stiff.identify.report import fit_report
+from sk120stiff.identify.saturated import choose_noise
+from sk120stiff.identify.solving import solve
 from sk120stiff.identify.weak import weak_directions
 
-__all__ = ["Fit", "Problem", "fit", "solve", "weak_directions"]
+__all__ = [
+    "Compared",
+    "Fit",
+    "HeldOut",
+    "LackOfFit",
+    "Problem",
+    "choose_noise",
+    "compare",
+    "fit",
+    "fit_report",
+    "held_out",
+    "lack_of_fit",
+    "profile_intervals",
+    "solve",
+    "weak_directions",
+]

@@ -9,10 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from sk120stiff.errors import InputError
+from sk120stiff.identify.covariance import (
+    condition_of,
+    correlation_of,
+    covariance_of,
+    internal_interval,
+    public_interval,
+)
+from sk120stiff.identify.polish import seen_directions
 from sk120stiff.identify.problem import Problem
-from sk120stiff.identify.solvers import Method, minimise
-from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import Model, Parameter
 from sk120stiff.robot.coupling import Array
 
@@ -32,9 +37,15 @@ class Fit:
     residual, jacobian
         (3N,) whitened gap and (3N, P_free) its derivative by `x`.
     at_bound
-        (P_free,) estimates that lie on a physical bound.
+        (P_free,) estimates that a physical bound holds.
     iterations
         Evaluations of the model.
+    reasons
+        What was decided about the noise beyond the data's description, in sentences.
+    spread
+        Noise seen over noise assumed, where a robust fit found it without its outliers.
+    inflation
+        Variance of the estimates over that of least squares with the same weights (robust fits).
     """
 
     problem: Problem
@@ -44,6 +55,9 @@ class Fit:
     jacobian: Array
     at_bound: NDArray[np.bool_]
     iterations: int
+    reasons: tuple[str, ...] = ()
+    spread: float | None = None
+    inflation: float = 1.0
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -70,14 +84,22 @@ class Fit:
         """Sum of squares of the whitened gap."""
         return float(self.residual @ self.residual)
 
+    @cached_property
+    def estimated(self) -> int:
+        """Number of combinations of parameters that the readings determine."""
+        moving = ~self.at_bound
+        return len(seen_directions(self.jacobian[:, moving], self.problem.span[moving])[1])
+
     @property
     def degrees_of_freedom(self) -> int:
-        """Readings of single axes minus estimates that are free to move."""
-        return len(self.residual) - int((~self.at_bound).sum())
+        """Readings of single axes minus combinations of parameters that were estimated."""
+        return len(self.residual) - self.estimated
 
     @property
     def noise_factor(self) -> float:
         """Noise that the residual shows over the noise assumed; 1 if all is well."""
+        if self.spread is not None:
+            return self.spread
         return float(np.sqrt(self.chi_square / max(self.degrees_of_freedom, 1)))
 
     @property
@@ -87,134 +109,118 @@ class Fit:
 
     @property
     def lack_of_fit(self) -> float | None:
-        """Probability of a larger χ² if the model were true; None where σ was not stated."""
-        if not self.sigma_stated:
+        """Probability of a larger χ² if the model were true; None where that says nothing.
+
+        So it is where σ was not stated, and where readings were trusted less than it says.
+        """
+        weighted = self.problem.weights is not None
+        if not self.sigma_stated or weighted or self.degrees_of_freedom < 1:
             return None
         return float(stats.chi2.sf(self.chi_square, self.degrees_of_freedom))
 
-    @cached_property
-    def covariance(self) -> Array:
-        """(P_free, P_free) covariance of `x`; zero for estimates on a bound, infinite if unknown."""
-        return covariance_of(self.jacobian, self.at_bound) * self._variance_factor
+    @property
+    def log_likelihood(self) -> float:
+        """Natural logarithm of the likelihood of the readings, σ at its best where not stated."""
+        count = len(self.residual)
+        constant = self.problem.whitener.logdet + count * float(np.log(2.0 * np.pi))
+        if self.sigma_stated:
+            return -0.5 * (self.chi_square + constant)
+        variance = float(np.log(max(self.chi_square, 1e-300) / count))
+        return -0.5 * (count * variance + count + constant)
 
     @property
-    def _variance_factor(self) -> float:
-        return 1.0 if self.sigma_stated else self.noise_factor**2
+    def aic(self) -> float:
+        """Akaike's criterion; smaller is better."""
+        return 2.0 * self._counted - 2.0 * self.log_likelihood
+
+    @property
+    def bic(self) -> float:
+        """Schwarz's criterion; smaller is better."""
+        count = float(np.log(len(self.residual)))
+        return self._counted * count - 2.0 * self.log_likelihood
+
+    @property
+    def _counted(self) -> int:
+        return self.estimated + (0 if self.sigma_stated else 1)
+
+    @cached_property
+    def covariance(self) -> Array:
+        """(P_free, P_free) covariance of `x`; zero for estimates on a bound, infinite: unknown."""
+        covariance = covariance_of(self.jacobian, self.at_bound, self.problem.span)
+        if np.isfinite(self.unit):
+            return covariance * self.unit**2
+        return np.where(covariance != 0.0, np.inf, 0.0)
+
+    @property
+    def unit(self) -> float:
+        """Noise that counts over noise assumed; infinite where nothing is left to estimate it."""
+        if self.sigma_stated:
+            return float(np.sqrt(self.inflation))
+        if self.degrees_of_freedom < 1:
+            return float(np.inf)
+        return self.noise_factor * float(np.sqrt(self.inflation))
 
     @cached_property
     def correlation(self) -> Array:
         """(P_free, P_free) correlations of the estimates."""
-        std = np.sqrt(np.diag(self.covariance))
-        usable = np.isfinite(std) & (std > 0.0)
-        safe = np.where(usable, std, 1.0)
-        found = np.where(np.isfinite(self.covariance), self.covariance, 0.0)
-        correlation = found / np.outer(safe, safe)
-        return np.where(np.outer(usable, usable), correlation, np.eye(len(std)))
+        return correlation_of(self.covariance)
 
     @cached_property
     def condition(self) -> float:
         """Condition number of the whitened derivative with columns of unit length."""
-        norms = np.linalg.norm(self.jacobian, axis=0)
-        if not len(norms):
-            return 1.0
-        if (norms == 0.0).any():
-            return float(np.inf)
-        singular = np.linalg.svd(self.jacobian / norms, compute_uv=False)
-        return float(singular[0] / singular[-1]) if singular[-1] > 0.0 else float(np.inf)
+        return condition_of(self.jacobian)
 
-
-def covariance_of(jacobian: Array, held: NDArray[np.bool_]) -> Array:
-    """(JᵀJ)⁻¹ over the columns that are not held; infinite along directions without information."""
-    P = jacobian.shape[1]
-    covariance = np.zeros((P, P))
-    moving = np.flatnonzero(~held)
-    if not len(moving):
-        return covariance
-    part = jacobian[:, moving]
-    norms = np.linalg.norm(part, axis=0)
-    safe = np.where(norms > 0.0, norms, 1.0)
-    _, singular, Vt = np.linalg.svd(part / safe, full_matrices=False)
-    blind = singular <= max(part.shape) * np.finfo(float).eps * max(singular[0], 1e-300)
-    inverse = np.where(blind, 0.0, 1.0 / np.where(blind, 1.0, singular) ** 2)
-    block = (Vt.T * inverse) @ Vt
-    lost = (np.abs(Vt[blind]) > 1e-8).any(axis=0) | (norms == 0.0)
-    block = block / np.outer(safe, safe)
-    block[lost, lost] = np.inf
-    covariance[np.ix_(moving, moving)] = block
-    return covariance
-
-
-def fit(
-    model: Model,
-    measurements: Measurements,
-    *,
-    noise: NoiseModel | None = None,
-    method: Method = "trf",
-) -> Fit:
-    """Estimate a model's free parameters from readings, at exact equilibrium.
-
-    Parameters
-    ----------
-    model
-        Starting values, and which parameters are free (`Parameter.free`).
-    measurements
-        Readings with displacements; masked rows are left out.
-    noise
-        Covariance of the readings. Default: what the data say of themselves; a σ that they do not
-        state is estimated with the fit.
-    method
-        ``"trf"`` (trust region, bounds) or ``"lm"`` (Levenberg–Marquardt); both reach the same.
-
-    Raises
-    ------
-    InputError
-        No displacements, or more parameters than readings.
-    Refusal
-        The solver failed, or no equilibrium exists.
-    """
-    used = measurements.masked()
-    problem = Problem(model, used, noise or candidates(used)[0])
-    if 3 * used.n_readings < len(problem.free):
-        raise InputError(
-            f"{len(problem.free)} parameters cannot be estimated from {used.n_readings} readings "
-            f"of three axes",
-            where=str(used.path or "measurements"),
-            remedy="Measure more poses, or fix parameters in the model (free: false).",
+    @cached_property
+    def identifiable(self) -> NDArray[np.bool_]:
+        """(P_free,) parameters that the readings determine at all, those on a bound included."""
+        return np.asarray(
+            np.isfinite(np.diag(covariance_of(self.jacobian, self.at_bound, self.problem.span)))
         )
-    return solve(problem, method=method)
+
+    def reach(self, level: float = 0.95) -> float:
+        """Half width of an interval in standard errors: normal, or Student where σ is estimated."""
+        upper = 0.5 * (1.0 + level)
+        if self.sigma_stated or self.degrees_of_freedom < 1:
+            return float(stats.norm.ppf(upper))
+        return float(stats.t.ppf(upper, self.degrees_of_freedom))
+
+    def intervals(self, level: float = 0.95) -> tuple[tuple[float, float], ...]:
+        """Confidence intervals of the public values, one (low, high) per estimated parameter.
+
+        They are made where the readings are nearly linear, in compliances, and then turned over: so
+        an interval of a stiffness is not symmetric, and it is open upwards where the readings do
+        not exclude a rigid part. A physical bound cuts them.
+        """
+        ends = internal_interval(
+            self.x,
+            self.jacobian,
+            self.residual,
+            self.at_bound,
+            self.problem.bounds,
+            self.problem.span,
+            self.reach(level),
+            self.unit,
+        )
+        scaled = ends * self.problem.scale[:, None]
+        return tuple(
+            public_interval(parameter.spec, float(low), float(high))
+            for parameter, (low, high) in zip(self.parameters, scaled, strict=True)
+        )
+
+    @cached_property
+    def down_weighted(self) -> NDArray[np.intp]:
+        """Indices of the readings that a robust fit trusted less than the others."""
+        weights = self.problem.weights
+        return np.flatnonzero(weights < 1.0) if weights is not None else np.zeros(0, dtype=np.intp)
 
 
-def solve(problem: Problem, *, method: Method = "trf") -> Fit:
-    """Solve a least-squares problem: first to first order in load, then at exact equilibrium."""
-    residual_0, jacobian_0 = problem.first_order
-
-    def linear(x: Array) -> tuple[Array, Array]:
-        return residual_0 + jacobian_0 @ x, jacobian_0
-
-    rough = minimise(linear, problem.start, problem.bounds, method)
-    best = minimise(problem.evaluate, rough.x, problem.bounds, method)
-    found = Fit(
-        problem=problem,
-        model=problem.model,
-        x=best.x,
-        residual=best.residual,
-        jacobian=best.jacobian,
-        at_bound=best.at_bound,
-        iterations=rough.iterations + best.iterations,
-    )
-    return _with_model(found)
-
-
-def _with_model(found: Fit) -> Fit:
-    std: list[float | None] = [p.std for p in found.problem.model.parameters]
-    errors = np.sqrt(np.diag(found.covariance)) * found.problem.scale
-    for index, error, held in zip(found.problem.free, errors, found.at_bound, strict=True):
+def with_values(found: Fit) -> Fit:
+    """The fit with the estimates and standard errors written into its model."""
+    problem = found.problem
+    std: list[float | None] = [p.std for p in problem.model.parameters]
+    errors = np.sqrt(np.diag(found.covariance)) * problem.scale
+    for index, error, held in zip(problem.free, errors, found.at_bound, strict=True):
         std[index] = None if held else float(error)
-    values = found.problem.values(found.x)
-    on_bound = found.problem.free[found.at_bound]
-    values[on_bound] = np.where(np.abs(values[on_bound]) < 1e-6 * _typical(found)[on_bound], 0.0, values[on_bound])
-    return replace(found, model=found.problem.model.with_values(values, std, origin="identified"))
-
-
-def _typical(found: Fit) -> Array:
-    return np.array([p.spec.typical for p in found.problem.model.parameters])
+    x = np.where(found.at_bound & (np.abs(found.x) < 1e-6), 0.0, found.x)
+    values = problem.values(x)
+    return replace(found, model=problem.model.with_values(values, std, origin="identified"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,18 +27,28 @@ class Problem:
         N readings in use, with displacements.
     noise
         Covariance of the readings.
+    weights
+        (N,) share of its information that each reading keeps, in (0, 1]; None: all of it.
     """
 
     model: Model
     measurements: Measurements
     noise: NoiseModel
+    weights: Array | None = None
 
     def __post_init__(self) -> None:
+        where = str(self.measurements.path or "measurements")
         if self.measurements.displacement is None:
             raise InputError(
                 "there are no measured displacements",
-                where=str(self.measurements.path or "measurements"),
+                where=where,
                 remedy="Add the columns dx, dy, dz (or x, y, z) with their unit.",
+            )
+        if not self.measurements.wrench.any():
+            raise InputError(
+                "no reading has a load, so nothing about stiffness was measured",
+                where=f"{where}, columns fx, fy, fz",
+                remedy="Add readings under load; rows with fx = fy = fz = 0 are zero readings.",
             )
 
     @cached_property
@@ -53,9 +63,20 @@ class Problem:
         return np.zeros((0, 3)) if found is None else found
 
     @cached_property
+    def sizes(self) -> Array:
+        """(N,) lengths of the displacements, to which growing noise applies [m]."""
+        return np.asarray(np.linalg.norm(self.measured, axis=1))
+
+    @cached_property
     def whitener(self) -> Whitener:
-        """V^(-1/2), with V from the noise and the measured sizes."""
-        return self.noise.whitener(self.measurements, np.linalg.norm(self.measured, axis=1))
+        """V^(-1/2), with V from the noise, the measured sizes and the weights."""
+        if self.weights is None:
+            return self.noise.whitener(self.measurements, self.sizes)
+        own, zero = self.noise.variances(self.measurements, self.sizes)
+        keep = self.weights[:, None]
+        if self.noise.zero == "separate":
+            return Whitener((own + zero) / keep, np.zeros_like(own), np.arange(len(own)))
+        return Whitener(own / keep, zero, self.measurements.zero_group)
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
@@ -68,6 +89,11 @@ class Problem:
         return np.array([self.model.parameters[k].spec.typical for k in self.free])
 
     @cached_property
+    def span(self) -> Array:
+        """(P_free,) sizes in scaled units beyond which a value is implausible."""
+        return np.array([self.model.parameters[k].spec.plausible for k in self.free]) / self.scale
+
+    @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """(P_free,) physical bounds in scaled units."""
         specs = [self.model.parameters[k].spec for k in self.free]
@@ -77,8 +103,11 @@ class Problem:
 
     @cached_property
     def start(self) -> Array:
-        """(P_free,) starting values in scaled units."""
-        return self.model.values[self.free] / self.scale
+        """(P_free,) starting values in scaled units, none beyond what is plausible.
+
+        Only parameters that the readings do not show keep them.
+        """
+        return np.clip(self.model.values[self.free] / self.scale, -self.span, self.span)
 
     def values(self, x: Array) -> Array:
         """(P,) internal values for scaled free parameters `x`."""
@@ -107,3 +136,7 @@ class Problem:
         """
         nothing = np.zeros(len(self.free))
         return self.evaluate(nothing)
+
+    def with_weights(self, weights: Array) -> Problem:
+        """The same readings, each keeping a share (N,) of its information."""
+        return replace(self, weights=weights)

@@ -54,7 +54,7 @@ def load_basis(situation: Situation, *, jump: bool = False, cubic: bool = False)
 def pose_columns(basis: Array) -> Array:
     """(N, 3, 3k) the basis for each reading axis on its own."""
     N, k = basis.shape
-    return np.einsum("nk,ij->nikj", basis, np.eye(3)).reshape(N, 3, 3 * k)
+    return np.asarray(np.einsum("nk,ij->nikj", basis, np.eye(3)).reshape(N, 3, 3 * k))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,44 +2,173 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.identify.covariance import covariance_of
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.polish import seen_directions
+from sk120stiff.model import Parameter
+from sk120stiff.robot.coupling import Array
 
 VAGUE = 0.5  # relative standard error beyond which a value is no knowledge
+TOGETHER = 0.95  # correlation beyond which two estimates are said to move together
+LINKED = 0.1  # cosine of their parts in blind directions that ties two parameters
 
 
 def weak_directions(fit: Fit) -> tuple[str, ...]:
-    """Sentences on what cannot be told apart or is hardly known.
+    """Sentences on what a fit cannot tell apart, hardly knows, or found on a physical bound.
 
-    A singular value of the scaled derivative that nearly vanishes names parameters that move
-    together; a relative error above one half names single ones.
+    Parameters that no reading shows come first, then those of which only combinations are known,
+    those that are strongly correlated, those on a bound, and single values that are vague.
     """
-    names = [parameter.name for parameter in fit.parameters]
-    moving = np.flatnonzero(~fit.at_bound)
-    sentences = [
-        f"{names[k]} lies on its physical bound." for k in np.flatnonzero(fit.at_bound)
-    ]
-    J = fit.jacobian[:, moving]
-    norms = np.linalg.norm(J, axis=0)
-    for k in np.flatnonzero(norms == 0.0):
-        sentences.append(f"{names[moving[k]]} does not show in these readings at all.")
-    seen = np.flatnonzero(norms > 0.0)
-    if len(seen):
-        _, singular, Vt = np.linalg.svd(J[:, seen] / norms[seen], full_matrices=False)
-        for value, direction in zip(singular, Vt, strict=True):
-            together = np.flatnonzero(np.abs(direction) > 0.3)
-            if value < 0.05 and len(together) > 1:
-                listed = " and ".join(names[moving[seen[k]]] for k in together)
-                signs = {bool(direction[k] * direction[together[0]] > 0) for k in together}
-                known = "difference" if len(signs) == 1 else "sum"
-                sentences.append(
-                    f"{listed} move together: only the {known} of their compliances is well known."
-                )
+    said: list[str] = []
+    told: set[int] = set()
+    for group, size in _blind_groups(fit):
+        said.append(_unseen(fit, group, size))
+        told.update(group)
+    for first, second in _correlated(fit):
+        said.append(_correlation(fit, first, second))
+    said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound)]
+    if fit.degrees_of_freedom < 1 and not fit.sigma_stated:
+        said.append(
+            "As many values were estimated as were read, and no uncertainty is stated: "
+            "nothing is left to tell how well they are known."
+        )
+        return tuple(said)
     for k, parameter in enumerate(fit.parameters):
         std = parameter.std
-        if std is not None and parameter.value and np.isfinite(std):
-            if std > VAGUE * abs(parameter.value):
-                share = 100.0 * std / abs(parameter.value)
-                sentences.append(f"{names[k]} is known to ±{share:.0f} % only.")
-    return tuple(sentences)
+        if std and k not in told and std > VAGUE * abs(parameter.value):
+            share = 100.0 * std / max(abs(parameter.value), 1e-300)
+            low, high = (f"{end:.3g}" for end in fit.intervals()[k])
+            said.append(
+                f"{parameter.name} is hardly known: its 95 % interval reaches from {low} to {high} "
+                f"{parameter.spec.unit} (standard error {share:.0f} %)."
+            )
+    return tuple(said)
+
+
+def words_for(parameter: Parameter) -> str:
+    """A parameter in plain words, e.g. ``base rocking z (base_link)``."""
+    what = parameter.effect.name.replace("_", " ")
+    detail = parameter.spec.name.removeprefix("stiffness").strip("_").replace("_", " ")
+    return f"{what} {detail} ({parameter.effect.where})".replace("  ", " ")
+
+
+def _blind_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
+    """Sets of lost parameters that blind directions tie, and how many of these each has."""
+    moving = np.flatnonzero(~fit.at_bound)
+    span = fit.problem.span
+    blind = seen_directions(fit.jacobian[:, moving], span[moving])[3]
+    covariance = covariance_of(fit.jacobian, fit.at_bound, span)
+    left = [int(k) for k in np.flatnonzero(np.isinf(np.diag(covariance)[moving]))]
+    part = blind / np.maximum(np.linalg.norm(blind, axis=1, keepdims=True), 1e-300)
+    tied = np.abs(part @ part.T) > LINKED
+    while left:
+        group = [left.pop(0)]
+        for member in group:
+            joined = [k for k in left if tied[member, k]]
+            group += joined
+            left = [k for k in left if k not in joined]
+        size = int(np.linalg.matrix_rank(part[group], tol=LINKED)) if blind.size else 0
+        yield [int(moving[k]) for k in sorted(group)], max(size, 1)
+
+
+def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
+    parameters = [fit.parameters[k] for k in group]
+    if len(group) == 1:
+        return (
+            f"{parameters[0].name} does not show in these readings: no plausible value would "
+            "change them by a tenth of their noise."
+        )
+    if size >= len(group):
+        return f"{_listed([p.name for p in parameters])} cannot be told from the others."
+    if len(group) == 2:
+        return _pair(fit, group)
+    known = len(group) - size
+    some = "one combination" if known == 1 else f"{known} of {len(group)} combinations"
+    return (
+        f"{_listed([words_for(p) for p in parameters])} move together: only {some} of their values "
+        f"{'is' if known == 1 else 'are'} known."
+    )
+
+
+def _pair(fit: Fit, group: Sequence[int]) -> str:
+    moving = np.flatnonzero(~fit.at_bound)
+    blind = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[3]
+    place = [int(np.flatnonzero(moving == k)[0]) for k in group]
+    part = blind[place] * (fit.problem.span * fit.problem.scale)[list(group)][:, None]
+    strongest = part[:, int(np.argmax(np.linalg.norm(part, axis=0)))]
+    known, value, std = _combination(fit, group, strongest)
+    first, second = (fit.parameters[k] for k in group)
+    return (
+        f"{words_for(first)} and {words_for(second)} move together: only {known} is known, "
+        f"{value:.4g} ± {std:.2g} {first.spec.internal_unit}."
+    )
+
+
+def _combination(fit: Fit, group: Sequence[int], blind: Array) -> tuple[str, float, float]:
+    """What stays the same along a blind direction (2,) of two internal values, in words."""
+    first, second = (fit.parameters[k] for k in group)
+    ratio = float(-blind[0] / blind[1])  # first + ratio · second is invariant
+    kind = "compliances" if first.spec.reciprocal and second.spec.reciprocal else "values"
+    if abs(ratio - 1.0) < 0.05:
+        known, ratio = f"the sum of their {kind}", 1.0
+    elif abs(ratio + 1.0) < 0.05:
+        known, ratio = f"the difference of their {kind}", -1.0
+    else:
+        known = f"the first of their {kind} {'+' if ratio > 0 else '-'} {abs(ratio):.3g} times"
+        known += " the second"
+    weights = np.zeros(len(fit.parameters))
+    weights[list(group)] = (1.0, ratio)
+    values = np.array([p.value for p in fit.parameters])
+    return known, float(weights @ values), _std_of(fit, weights * fit.problem.scale)
+
+
+def _std_of(fit: Fit, weights: Array) -> float:
+    """Standard error of a combination (P,) of scaled parameters, along what is seen."""
+    moving = np.flatnonzero(~fit.at_bound)
+    span = fit.problem.span[moving]
+    _, singular, V, _ = seen_directions(fit.jacobian[:, moving], span)
+    return float(np.linalg.norm((V.T @ (weights[moving] * span)) / singular)) * fit.unit
+
+
+def _correlated(fit: Fit) -> list[tuple[int, int]]:
+    known = np.isfinite(np.diag(fit.covariance)) & ~fit.at_bound
+    upper: NDArray[np.bool_] = np.triu(np.abs(fit.correlation) > TOGETHER, k=1)
+    return [(int(i), int(j)) for i, j in np.argwhere(upper & np.outer(known, known))]
+
+
+def _correlation(fit: Fit, first: int, second: int) -> str:
+    covariance = fit.covariance[np.ix_([first, second], [first, second])]
+    scale = fit.problem.scale[[first, second]]
+    weakest = np.linalg.eigh(fit.correlation[np.ix_([first, second], [first, second])])[1][:, 1]
+    direction = weakest * np.sqrt(np.diag(covariance)) * scale
+    known, value, std = _combination(fit, (first, second), direction)
+    share = 100.0 * std / max(abs(value), 1e-300)
+    return (
+        f"{words_for(fit.parameters[first])} and {words_for(fit.parameters[second])} move together "
+        f"(correlation {fit.correlation[first, second]:.3f}): {known} is known to {share:.2g} %, "
+        "each alone much less."
+    )
+
+
+def _bound(fit: Fit, k: int) -> str:
+    parameter = fit.parameters[k]
+    low, high = fit.intervals()[k]
+    unit = parameter.spec.unit
+    if parameter.spec.reciprocal:
+        return (
+            f"{parameter.name} lies on its physical bound: rigid fits best; with 95 % it is "
+            f"stiffer than {low:.3g} {unit}."
+        )
+    return (
+        f"{parameter.name} lies on its physical bound; its 95 % interval reaches from {low:.3g} to "
+        f"{high:.3g} {unit}."
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

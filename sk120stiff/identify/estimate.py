@@ -1,0 +1,106 @@
+"""From readings and a model to a `Fit`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sk120stiff.effects import situation_of
+from sk120stiff.errors import InputError, Refusal
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.problem import Problem
+from sk120stiff.identify.robust import robust_noise, solve_robustly
+from sk120stiff.identify.saturated import choose_noise
+from sk120stiff.identify.solvers import Method
+from sk120stiff.identify.solving import solve
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model
+
+FEWEST = 2  # readings; one alone leaves nothing to judge a fit by
+
+
+def fit(
+    model: Model,
+    measurements: Measurements,
+    *,
+    noise: NoiseModel | None = None,
+    method: Method = "trf",
+    robust: bool = False,
+) -> Fit:
+    """Estimate a model's free parameters from readings, at exact equilibrium.
+
+    Parameters
+    ----------
+    model
+        Starting values, and which parameters are free (`Parameter.free`).
+    measurements
+        Readings with displacements; masked rows are left out.
+    noise
+        Covariance of the readings. Default: what the data say of themselves (`choose_noise`); a σ
+        that they do not state is estimated with the fit.
+    method
+        ``"trf"`` (trust region, bounds) or ``"lm"`` (Levenberg–Marquardt); both reach the same.
+    robust
+        Trust readings less that lie far from all others (Huber's loss on whole readings).
+
+    Raises
+    ------
+    InputError
+        No displacements, no loads, nothing free, or too few readings for the parameters.
+    Refusal
+        The fit did not converge, no equilibrium exists, or the readings show none of the
+        parameters.
+    """
+    _refuse_unusable(model, measurements)
+    used = measurements.masked()
+    reasons: tuple[str, ...] = ()
+    if noise is None:
+        noise, said = choose_noise(used, situation_of(model.robot, used))
+        reasons = tuple(said)
+        if robust:
+            noise, reasons = robust_noise(used, noise, reasons)
+    problem = Problem(model, used, noise)
+    found = solve_robustly(problem, method=method) if robust else solve(problem, method=method)
+    if not found.estimated and not found.at_bound.any():
+        raise Refusal(
+            "these readings show none of the free parameters",
+            where=_place(measurements),
+            remedy=f"Free are: {', '.join(p.name for p in found.parameters)}. Measure poses and "
+            "loads that put torque on them.",
+        )
+    return replace(found, reasons=reasons)
+
+
+def _refuse_unusable(model: Model, measurements: Measurements) -> None:
+    where = _place(measurements)
+    if not len(model.free):
+        raise InputError(
+            "no parameter of the model is free, so there is nothing to identify",
+            where=model.robot.name,
+            remedy="Write 'free: true' at a parameter of the model, or use 'sk120stiff predict'.",
+        )
+    count = int(measurements.use.sum())
+    if not count:
+        raise InputError(
+            "every reading is masked",
+            where=f"{where}, column use",
+            remedy="Write 1 in the rows to be used.",
+        )
+    Problem(model, measurements, NoiseModel(1.0))  # refuses plans and readings without loads
+    if count < FEWEST:
+        line = int(measurements.line[measurements.use][0])
+        raise InputError(
+            "one reading alone leaves nothing to judge a fit by",
+            where=f"{where}, line {line}" if line else where,
+            remedy="Measure other loads, and other poses.",
+        )
+    if 3 * count < len(model.free):
+        line = int(measurements.line[measurements.use][-1])
+        raise InputError(
+            f"{len(model.free)} parameters cannot be estimated from {count} readings of three axes",
+            where=f"{where}, line {line}" if line else where,
+            remedy="Measure more poses, or fix parameters in the model (free: false).",
+        )
+
+
+def _place(measurements: Measurements) -> str:
+    return str(measurements.path or "measurements")

@@ -1,0 +1,141 @@
+"""A fit in plain text, in the spirit of lmfit's report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.lack_of_fit import lack_of_fit
+from sk120stiff.identify.weak import weak_directions
+from sk120stiff.measurements import Measurements
+
+LEAST_CORRELATION = 0.3
+MOST_LINES = 12
+
+
+def fit_report(fit: Fit, *, profile: Sequence[tuple[float, float]] | None = None) -> str:
+    """Estimates with errors and intervals, statistics, noise, correlations, and what is unknown.
+
+    Parameters
+    ----------
+    fit
+        A converged fit.
+    profile
+        Profile-likelihood intervals to print in the place of the linear ones, from
+        `profile_intervals`.
+    """
+    parts = [
+        _section("Parameters", _parameters(fit, profile)),
+        _section("Statistics", _statistics(fit)),
+        _section("Noise", _noise(fit)),
+        _section("Trusted less than the others", _down_weighted(fit)),
+        _section("What these readings do not tell", weak_directions(fit)),
+        _section(f"Correlations beyond {LEAST_CORRELATION}", _correlations(fit)),
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+def _section(title: str, lines: Sequence[str]) -> str:
+    return "\n".join([f"[[{title}]]", *(f"    {line}" for line in lines)]) if lines else ""
+
+
+def _parameters(fit: Fit, profile: Sequence[tuple[float, float]] | None) -> list[str]:
+    kind = "linear" if profile is None else "profile"
+    rows = [("", "value", "", "std. error", "", f"95 % ({kind})", "unit", "start")]
+    starts = fit.problem.model.values[fit.problem.free]
+    intervals = fit.intervals() if profile is None else profile
+    for k, parameter in enumerate(fit.parameters):
+        low, high = intervals[k]
+        start = _number(parameter.spec.public(float(starts[k])))
+        if not fit.identifiable[k]:
+            cells = (parameter.name, "not identifiable", "", "", "", "")
+        else:
+            std, value = parameter.public_std, parameter.public_value
+            error, share = ("±", _number(std)) if std is not None else ("", "on its bound"), ""
+            if std is not None and np.isfinite(std) and value:
+                share = f"({100.0 * std / abs(value):.2g} %)"
+            cells = (parameter.name, _number(value), *error, share, _range(low, high))
+        rows.append((*cells, parameter.spec.unit, start))
+    return _aligned(rows)
+
+
+def _statistics(fit: Fit) -> list[str]:
+    readings = len(fit.gap)
+    poses = len(fit.problem.measurements.poses)
+    lines = [
+        f"{readings} readings of three axes at {poses} poses, {fit.estimated} values estimated, "
+        f"{fit.degrees_of_freedom} degrees of freedom, {fit.iterations} evaluations.",
+        f"Gap {fit.rms * 1e6:.3g} µm rms per axis; condition {fit.condition:.3g}.",
+    ]
+    if fit.problem.weights is None:
+        lines.append(
+            f"χ² = {fit.chi_square:.4g}, AIC = {fit.aic:.6g}, BIC = {fit.bic:.6g}, "
+            f"log likelihood = {fit.log_likelihood:.6g}."
+        )
+    return lines + [test.sentence() for test in lack_of_fit(fit)]
+
+
+def _noise(fit: Fit) -> list[str]:
+    return [noise_sentence(fit), *fit.reasons]
+
+
+def noise_sentence(fit: Fit) -> str:
+    """What one reading is worth, and where that is known from."""
+    noise = replace(fit.problem.noise, sigma=fit.sigma, stated=True)
+    known = "The size is stated." if fit.sigma_stated else "The size is estimated with the fit."
+    return f"{noise.describe()} {known}"
+
+
+def _down_weighted(fit: Fit) -> list[str]:
+    weights = fit.problem.weights
+    if weights is None:
+        return []
+    rows = fit.down_weighted
+    lines = [f"{len(rows)} of {len(weights)} readings."]
+    for row in sorted(rows, key=lambda k: float(weights[k]))[:MOST_LINES]:
+        where = place_of(fit.problem.measurements, int(row))
+        lines.append(f"{where}: weight {weights[row]:.2g}")
+    if len(rows) > MOST_LINES:
+        lines.append(f"... and {len(rows) - MOST_LINES} more.")
+    return lines
+
+
+def _correlations(fit: Fit) -> list[str]:
+    names = [parameter.name for parameter in fit.parameters]
+    upper = np.triu(np.abs(fit.correlation), k=1)
+    pairs = [(int(i), int(j)) for i, j in np.argwhere(upper > LEAST_CORRELATION)]
+    pairs.sort(key=lambda pair: -float(upper[pair]))
+    shown = [f"{names[i]}, {names[j]}: {fit.correlation[i, j]:+.3f}" for i, j in pairs]
+    if len(shown) > MOST_LINES:
+        shown[MOST_LINES:] = [f"... and {len(shown) - MOST_LINES} more."]
+    return shown
+
+
+def place_of(measurements: Measurements, row: int) -> str:
+    """A reading by its line in the file, else its number, and its pose."""
+    line = int(measurements.line[row])
+    where = f"line {line}" if line else f"reading {row + 1}"
+    return f"{where} (pose {measurements.pose[row]})"
+
+
+def _range(low: float, high: float) -> str:
+    return f"{_number(low)} .. {_number(high)}"
+
+
+def _number(value: float) -> str:
+    return "inf" if value == np.inf else f"{value:.5g}"
+
+
+def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return list(_padded(rows, widths))
+
+
+def _padded(rows: Sequence[tuple[str, ...]], widths: Sequence[int]) -> Iterator[str]:
+    for row in rows:
+        cells = [row[0].ljust(widths[0])]
+        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        yield "  ".join(cells).rstrip()

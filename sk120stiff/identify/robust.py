@@ -1,0 +1,115 @@
+"""Fits that trust readings less that lie far from all others: Huber's loss on whole readings.
+
+A tracker that was bumped misreads all three axes, so a reading is judged as a whole: by the length
+s of its whitened gap, given all other readings of its zero group. Up to a limit k its loss is s²/2,
+beyond it k s − k²/2 (Huber 1964), which is least squares with the weight min(1, k/s): its own
+variance grows, that of the zero reading which it shares does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import stats
+
+from sk120stiff.errors import Refusal
+from sk120stiff.identify.fit import Fit, with_values
+from sk120stiff.identify.problem import Problem
+from sk120stiff.identify.solvers import Method
+from sk120stiff.identify.solving import solve, solve_near
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
+from sk120stiff.robot.coupling import Array
+
+LIMIT = float(np.sqrt(stats.chi2.ppf(0.99, 3)))  # one clean reading in a hundred lies beyond
+MIDDLE = float(stats.chi2.ppf(0.5, 3))
+ROUNDS = 60
+SETTLED = 1e-6
+
+
+def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
+    """Solve a problem with Huber's loss on whole readings.
+
+    Where σ is not stated it is taken from the median of the readings' lengths, which outliers do
+    not move.
+
+    Raises
+    ------
+    Refusal
+        As `solve`, or the weights do not settle.
+    """
+    found = solve(problem, method=method)
+    iterations = found.iterations
+    weights = np.ones(problem.measurements.n_readings)
+    for _ in range(ROUNDS):
+        lengths = reading_lengths(found.problem, found.gap)
+        spread = 1.0 if problem.noise.stated else _spread(lengths, found.estimated)
+        new = np.minimum(1.0, LIMIT * spread / np.maximum(lengths, 1e-300))
+        settled = float(np.abs(new - weights).max()) < SETTLED
+        if settled:
+            return with_values(
+                replace(
+                    found,
+                    iterations=iterations,
+                    spread=spread,
+                    inflation=_inflation(lengths / spread, new, found.estimated),
+                )
+            )
+        weights = new
+        found = solve_near(problem.with_weights(weights), found.x)
+        iterations += found.iterations
+    raise Refusal(
+        "the weights of the robust fit did not settle",
+        remedy="Leave out --robust, or mask the readings that are wrong.",
+    )
+
+
+def reading_lengths(problem: Problem, gap: Array) -> Array:
+    """(N,) whitened length of each reading's gap, given the other readings of its zero group.
+
+    The square of a clean one has a χ² distribution with three degrees of freedom. The reading
+    itself is taken at full trust, the others at their weights.
+    """
+    measurements = problem.measurements
+    own, zero = problem.noise.variances(measurements, problem.sizes)
+    if problem.noise.zero == "separate":
+        return np.asarray(np.sqrt((gap**2 / (own + zero)).sum(axis=1)))
+    weights = problem.weights if problem.weights is not None else np.ones(len(gap))
+    trust = weights[:, None] / own
+    group = np.unique(measurements.zero_group, return_inverse=True)[1]
+    sums = np.zeros((2, int(group.max()) + 1, 3))
+    np.add.at(sums[0], group, trust)
+    np.add.at(sums[1], group, trust * gap)
+    information = sums[0][group] - trust
+    guess_gain = zero / (1.0 + zero * information)
+    guess = guess_gain * (sums[1][group] - trust * gap)
+    return np.asarray(np.sqrt(((gap - guess) ** 2 / (own + guess_gain)).sum(axis=1)))
+
+
+def robust_noise(
+    measurements: Measurements, noise: NoiseModel, reasons: tuple[str, ...]
+) -> tuple[NoiseModel, tuple[str, ...]]:
+    """The noise as described, without what outliers would make of its size and growth."""
+    plain = next((n for n in candidates(measurements) if n.zero == noise.zero), noise)
+    kept = tuple(reason for reason in reasons if "zero readings" in reason)
+    return plain, kept
+
+
+def _spread(lengths: Array, estimated: int) -> float:
+    return float(np.sqrt(np.median(lengths**2) / MIDDLE / _freedom(lengths, estimated)))
+
+
+def _freedom(lengths: Array, estimated: int) -> float:
+    """Share of the readings of single axes that the parameters leave free."""
+    return max(3 * len(lengths) - estimated, 1) / (3 * len(lengths))
+
+
+def _inflation(lengths: Array, weights: Array, estimated: int) -> float:
+    """Variance of Huber's estimates over that of the weighted least squares that gives them.
+
+    Huber (1973): cov = E ψ² / (E ψ')² (JᵀJ)⁻¹, here with the three axes of a reading together,
+    against (JᵀJ)⁻¹ / E w.
+    """
+    squares = float(np.mean(np.minimum(lengths, LIMIT) ** 2)) / 3.0 / _freedom(lengths, estimated)
+    slope = float(np.mean((lengths <= LIMIT) + 2.0 * weights)) / 3.0
+    return squares / slope**2 * float(np.mean(weights))

@@ -1,0 +1,70 @@
+"""A `Problem` becomes a `Fit`: first to first order in load, then at exact equilibrium."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.errors import Refusal
+from sk120stiff.identify.fit import Fit, with_values
+from sk120stiff.identify.polish import Minimum, polish
+from sk120stiff.identify.problem import Problem
+from sk120stiff.identify.solvers import Method, minimise
+from sk120stiff.robot.coupling import Array
+
+HALVINGS = 12
+
+
+def solve(problem: Problem, *, method: Method = "trf") -> Fit:
+    """Solve a least-squares problem at exact equilibrium.
+
+    To first order in load the readings are linear in the parameters, so the first answer does not
+    depend on the starting values. From there one of the two algorithms goes on at exact
+    equilibrium. Only what the readings do not show at all stays at its start.
+
+    Raises
+    ------
+    Refusal
+        The fit did not converge, or no equilibrium exists.
+    """
+    residual_0, jacobian_0 = problem.first_order
+
+    def linear(x: Array) -> tuple[Array, Array]:
+        return residual_0 + jacobian_0 @ x, jacobian_0
+
+    rough = polish(linear, problem.start, problem.bounds, problem.span)
+    start = _with_equilibrium(problem, rough.x)
+    found = minimise(problem.evaluate, start, problem.bounds, problem.span, method)
+    return as_fit(problem, found)
+
+
+def solve_near(problem: Problem, x: Array) -> Fit:
+    """Solve a problem whose answer lies near scaled values `x` that are known."""
+    return as_fit(problem, polish(problem.evaluate, x, problem.bounds, problem.span))
+
+
+def as_fit(problem: Problem, found: Minimum) -> Fit:
+    """What a solver found, as a `Fit` of the problem."""
+    return with_values(
+        Fit(
+            problem=problem,
+            model=problem.model,
+            x=found.x,
+            residual=found.residual,
+            jacobian=found.jacobian,
+            at_bound=found.at_bound,
+            iterations=found.iterations,
+        )
+    )
+
+
+def _with_equilibrium(problem: Problem, x: Array) -> Array:
+    """`x`, or as large a part of it as leaves the loads an equilibrium."""
+    for _ in range(HALVINGS):
+        try:
+            problem.evaluate(x)
+        except Refusal:
+            x = 0.5 * x
+        else:
+            return x
+    problem.evaluate(np.zeros_like(x))  # refuses in its own words where even this fails
+    return x
