@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE, COMPONENT
-from sk120stiff.paper.verdict import Claim, Verdict, reproduced_if
+from sk120stiff.paper.verdict import Claim, Verdict, reproduced_if, small
 
 if TYPE_CHECKING:
     from sk120stiff.paper.reproduction import Reproduction
@@ -37,7 +37,7 @@ def _kinematics(found: Reproduction) -> list[Claim]:
             "parallel to the upper arm.",
             reproduced_if(found.formulation.loop_error < ROUNDING),
             "The loop of crank, rod and forearm stays closed to "
-            f"{found.formulation.loop_error:.1e} m over the whole motion range.",
+            f"{small(found.formulation.loop_error)} m over the whole motion range.",
             {"loop_error_m": found.formulation.loop_error},
         ),
         Claim(
@@ -47,7 +47,7 @@ def _kinematics(found: Reproduction) -> list[Claim]:
             f"The sign of D4 in {' and '.join(s.element for s in slips)} is misprinted: it "
             "contradicts J11, J13 and J23, and puts the element off by up to "
             f"{printed:.2f} m/rad. With it mended all nine elements agree with ours to "
-            f"{mended:.0e} m/rad at random poses of all six joints. J11 and J21 also name "
+            f"{small(mended)} m/rad at random poses of all six joints. J11 and J21 also name "
             f"different lengths, {' and '.join(harmless)}; both are zero in Table I.",
             {"printed_error_m_per_rad": printed, "mended_error_m_per_rad": mended},
         ),
@@ -70,7 +70,7 @@ def _stiffness(found: Reproduction) -> list[Claim]:
             "The stiffness of a loaded arm is J⁻ᵀ (K_θ − K_C) J⁻¹.",
             reproduced_if(form.enhanced_error < 1e-6),
             f"The slope of the exact deflection under {form.load / 1e3:.0f} kN agrees with it to "
-            f"{form.enhanced_error:.1e}, taken at the loaded pose.",
+            f"{small(form.enhanced_error)}, taken at the loaded pose.",
             {"relative_error": form.enhanced_error, "load_N": form.load},
         ),
         Claim(
@@ -87,9 +87,9 @@ def _stiffness(found: Reproduction) -> list[Claim]:
             "V",
             "K_C is symmetric and an exact differential: a conservative matrix.",
             reproduced_if(form.force_asymmetry < ROUNDING and form.third_derivatives < 1e-6),
-            f"For forces: asymmetry {form.force_asymmetry:.0e}, exact differential to "
-            f"{form.third_derivatives:.0e}. A moment about fixed axes, which the paper leaves out, "
-            "has no potential: its K_C is not symmetric "
+            f"For forces: asymmetry {small(form.force_asymmetry)}, exact differential to "
+            f"{small(form.third_derivatives)}. A moment about fixed axes, which the paper leaves "
+            "out, has no potential: its K_C is not symmetric "
             f"(‖K_C − K_Cᵀ‖ up to {form.moment_asymmetry:.2f} ‖K_C‖).",
             {"force_asymmetry": form.force_asymmetry, "moment_asymmetry": form.moment_asymmetry},
         ),

@@ -6,6 +6,7 @@ import csv
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,17 +36,43 @@ class Column:
         Empty for words and counts.
     decimals
         Places after the point; None writes counts and words as they are.
+    brief
+        Shown where room is short.
     """
 
     name: str
     values: Sequence[str] | Array | NDArray[np.intp]
     unit: str = ""
     decimals: int | None = None
+    brief: bool = True
 
     @property
     def width(self) -> int:
         """How many numbers stand in a row."""
         return int(np.shape(self.values)[1]) if np.ndim(self.values) == 2 else 1
+
+    @property
+    def is_number(self) -> bool:
+        """Numbers rather than words?"""
+        return isinstance(self.values, np.ndarray)
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit as people write it."""
+        return self.unit.replace("*", "·").replace("um", "µm").replace("uJ", "µJ")
+
+    def text(self, row: int) -> str:
+        """The numbers of a row side by side, each as wide as the widest of its kind."""
+        return " ".join(
+            cell.rjust(width) for cell, width in zip(self.cells(row), self._widths, strict=True)
+        )
+
+    @cached_property
+    def _widths(self) -> list[int]:
+        if self.width == 1:
+            return [0]
+        cells = [self.cells(row) for row in range(len(self.values))]
+        return [max(len(row[k]) for row in cells) for k in range(self.width)]
 
     def names(self) -> list[str]:
         """One name per number, with the axis where there are three."""
@@ -129,6 +156,8 @@ def _table2_gaps(found: Reproduction) -> SideBySide:
     table = found.table2
     poses = table.poses
     identified = table.per_pose(found.identified.fit.gap)
+    signs = [" ".join(table.negated[p]) for p in poses]
+    told = "; ".join(f"pose {p} {names}" for p, names in zip(poses, signs, strict=True))
 
     def column(name: str, values: dict[str, float], decimals: int = 2) -> Column:
         return Column(name, 1e6 * np.array([values[p] for p in poses]), "um", decimals)
@@ -138,16 +167,17 @@ def _table2_gaps(found: Reproduction) -> SideBySide:
         "Table II, root-mean-square gaps per pose",
         (
             Column("pose", poses),
-            Column("negated in print", [" ".join(table.negated[p]) for p in poses]),
-            column("calculated: eq. (8)", table.calculated_rms("conventional")),
-            column("calculated: eq. (11)", table.calculated_rms("enhanced")),
-            column("calculated: exact", table.calculated_rms("equilibrium")),
+            Column("negated in print", signs, brief=False),
+            column("calc., eq. (8)", table.calculated_rms("conventional")),
+            column("calc., eq. (11)", table.calculated_rms("enhanced")),
+            column("calc., exact", table.calculated_rms("equilibrium")),
             column("K_C on/off", table.effect_of_K_C),
-            column("measured: paper's springs", table.measured_rms(), 1),
-            column("measured: identified", identified, 1),
+            column("meas., paper's springs", table.measured_rms(), 1),
+            column("meas., identified", identified, 1),
         ),
         "Ours against the printed calculated column by three formulas, and the measured column "
-        "against the paper's springs and against springs identified from these rows.",
+        "against the paper's springs and against springs identified from these rows. Printed with "
+        f"the opposite sign: {told}.",
     )
 
 
@@ -159,13 +189,13 @@ def _table2(found: Reproduction) -> SideBySide:
         "Table II, deflections in base_link",
         (
             Column("pose", table.printed.pose),
-            Column("force", table.measured.wrench[:, :3], "N", 1),
+            Column("force", table.measured.wrench[:, :3], "N", 1, brief=False),
             Column("calculated, theirs", 1e6 * table.calculated, "um", 1),
-            Column("ours, eq. (11)", 1e6 * table.ours.enhanced, "um", 1),
+            Column("ours, eq. (11)", 1e6 * table.ours.enhanced, "um", 1, brief=False),
             Column("ours, exact", 1e6 * table.ours.equilibrium, "um", 1),
             Column("measured", 1e6 * table.displacement, "um", 1),
-            Column("gap", 1e6 * gap, "um", 1),
-            Column("gap, identified", 1e6 * found.identified.fit.gap, "um", 1),
+            Column("gap", 1e6 * gap, "um", 1, brief=False),
+            Column("gap, identified", 1e6 * found.identified.fit.gap, "um", 1, brief=False),
         ),
         "Printed signs converted to one frame; load at the flange, wrist straight. A gap is "
         "measured minus predicted at exact equilibrium.",
@@ -187,7 +217,7 @@ def _springs(found: Reproduction) -> SideBySide:
         ),
     ]
     columns += [
-        Column(f"pose {pose} alone", 1e-6 * springs, "MN*m/rad", 4)
+        Column(f"pose {pose} alone", 1e-6 * springs, "MN*m/rad", 4, brief=False)
         for pose, (springs, _) in fitted.by_pose.items()
     ]
     return SideBySide(
@@ -209,14 +239,14 @@ def _table3(found: Reproduction) -> SideBySide:
         "Table III, works",
         (
             Column("pose", table.printed.pose),
-            Column("force", table.printed.force, "N", 1),
+            Column("force", table.printed.force, "N", 1, brief=False),
             Column("Cartesian, theirs", mJ * table.printed_cartesian, "mJ", 3),
             Column("eq. (14), ours", mJ * table.works.cartesian, "mJ", 3),
             Column("eq. (15) with K_C, ours", mJ * table.works.joint_enhanced, "mJ", 3),
             Column("without - with, theirs", 1e6 * theirs, "uJ", 1),
             Column("without - with, ours", 1e6 * ours, "uJ", 1),
             Column("work along the path", mJ * table.work, "mJ", 3),
-            Column("energy in the springs", mJ * table.energy, "mJ", 3),
+            Column("energy in the springs", mJ * table.energy, "mJ", 3, brief=False),
         ),
         "Theirs printed as joule, read as N·mm; the deflections behind them are not printed, ours "
         "are those predicted. Eq. (14) counts three times the work along the path.",
@@ -234,15 +264,20 @@ def _table4(found: Reproduction) -> SideBySide:
         (
             Column("case", [str(k + 1) for k in range(len(signs))]),
             Column("force", signs),
-            *(Column(f"theirs {name}", table.printed[:, k]) for name, k in theirs.items()),
+            *(Column(f"paper {name}", table.printed[:, k]) for name, k in theirs.items()),
             Column("det > 0", counted[:, 0]),
-            Column("ND", counted[:, 1]),
+            Column("ND", counted[:, 1], brief=False),
             Column("rest", counted[:, 2]),
-            *(Column(f"true {c.short}", table.counts[:, k]) for k, c in enumerate(CLASSES)),
-            Column("K_theta - K_C PD", table.difference_positive),
+            *(
+                Column(f"true {c.short}", table.counts[:, k], brief=bool(table.counts[:, k].any()))
+                for k, c in enumerate(CLASSES)
+            ),
+            Column("K_theta - K_C PD", table.difference_positive, brief=False),
         ),
         "Theirs beside signs of the determinant, beside the classes by definition. PD(F) = ND(−F) "
-        "must hold for cases 1/2, 3/6, 4/7 and 5/8.",
+        "must hold for cases 1/2, 3/6, 4/7 and 5/8. K_θ − K_C is positive definite at "
+        f"{table.difference_positive.min()} of {table.configurations} configurations in every "
+        "case.",
     )
 
 

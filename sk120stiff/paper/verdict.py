@@ -40,6 +40,11 @@ class Claim:
     numbers: Mapping[str, float] = field(default_factory=dict)
 
 
+def small(value: float) -> str:
+    """A tiny number by its size alone."""
+    return "0" if value == 0.0 else f"{value:.0e}"
+
+
 def reproduced_if(holds: bool, otherwise: Verdict = Verdict.WRONG) -> Verdict:
     """Reproduced where the numbers say so, `otherwise` else."""
     return Verdict.REPRODUCED if holds else otherwise

@@ -1,0 +1,96 @@
+"""`sk120stiff paper`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from rich import box
+from rich.padding import Padding
+from rich.table import Table
+
+from sk120stiff.cli.frame import Answer, note
+from sk120stiff.cli.options import OutFolderOption
+from sk120stiff.cli.tables import progress_bar
+from sk120stiff.files import write_atomically
+from sk120stiff.paper import Reproduction, Verdict, reproduce
+from sk120stiff.paper.document import as_document
+from sk120stiff.paper.tables import SideBySide, side_by_side
+
+_COLOURS = {
+    Verdict.REPRODUCED: "green",
+    Verdict.NOT_REPRODUCIBLE: "yellow",
+    Verdict.WRONG: "red",
+}
+
+
+def command(out: OutFolderOption = None) -> Answer:
+    """The 2005 paper's tables, figures and claims, ours beside theirs.
+
+    With --out DIR: report.html, every figure as SVG and PNG, every table as CSV.
+    """
+    if out is not None:
+        write_atomically(out / ".writable", "")  # complain before the work, not after it
+        (out / ".writable").unlink()
+    with progress_bar("recomputing the paper") as report:
+        found = reproduce(report)
+    tables = side_by_side(found)
+    files = [] if out is None else _write(found, tables, out)
+    document = {**as_document(found), "files": files}
+    parts: list[object] = []
+    for table in tables:
+        if table.name == "claims":
+            parts.append(_claims(found))
+            continue
+        parts += [_printable(table), Padding(table.note, (0, 0, 1, 0))]
+    parts.append(_summary(found))
+    if out is not None:
+        parts.append(f"Report: {out / 'report.html'}")
+    return Answer(document, parts)
+
+
+def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> list[Path]:
+    from sk120stiff.show import save_figure
+    from sk120stiff.show.paper_report import figures_of, report_of
+
+    with progress_bar("writing the report") as report:
+        figures = figures_of(found)
+        total, files = 2 * len(figures) + 1, []
+        for figure in figures:
+            for ending in ("svg", "png"):
+                files.append(save_figure(figure.figure, out / f"{figure.name}.{ending}"))
+                report(len(files), total)
+        files += [write_atomically(out / f"{table.name}.csv", table.csv()) for table in tables]
+        files.append(report_of(found, tables, figures).write(out / "report.html"))
+        report(total, total)
+    note(f"{len(files)} files written to {out}.")
+    return files
+
+
+def _printable(table: SideBySide) -> Table:
+    """Numbers that belong together share a column, and some columns are left to the CSV file."""
+    made = Table(title=table.title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False)
+    shown = [column for column in table.columns if column.brief]
+    for k, column in enumerate(shown):
+        head = column.name + (f"\n{column.shown_unit}" if column.unit else "")
+        made.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
+    for row in range(table.count):
+        made.add_row(*(column.text(row) for column in shown))
+    return made
+
+
+def _claims(found: Reproduction) -> Table:
+    made = Table(title="Every claim", title_justify="left", box=box.SIMPLE_HEAD, show_edge=False)
+    made.add_column("verdict", no_wrap=True)
+    made.add_column("where", overflow="fold", max_width=12)
+    made.add_column("claim, and what was found", overflow="fold")
+    for claim in found.claims:
+        made.add_row(claim.verdict.value, claim.where, claim.claim, style=_COLOURS[claim.verdict])
+        made.add_row("", "", claim.evidence)
+    return made
+
+
+def _summary(found: Reproduction) -> str:
+    counts = Counter(claim.verdict for claim in found.claims)
+    told = ", ".join(f"{counts[verdict]} {verdict.value}" for verdict in Verdict)
+    return f"{len(found.claims)} claims: {told}."
