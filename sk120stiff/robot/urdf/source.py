@@ -46,8 +46,8 @@ def read_source(source: str | os.PathLike[str] | bytes) -> RawSource:
     if isinstance(source, bytes):
         return _text(source)
     if isinstance(source, str):
-        start = source[:4000].lstrip("\ufeff \t\r\n")
-        if start.startswith("<") or "\n" in source or not source.strip():
+        start = source.lstrip("\ufeff \t\r\n")[:1]
+        if start == "<" or "\n" in source or not source.strip():
             return _text(source.encode("utf-8", "replace"))
     try:
         named = os.fspath(source)

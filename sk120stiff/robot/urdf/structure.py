@@ -14,7 +14,7 @@ MAX_DEPTH = 300
 _CLOSURE = """cut it there: make {joint} fixed, give it a new empty child link \
 {child}_closure, and declare in robot.yaml that both links meet:
 closures:
-  - {{frames: [{child}_closure, {child}], kind: point}}"""
+  - {{frames: [{child}_closure, {child}], {pin}}}"""
 
 
 def declared_links(
@@ -142,9 +142,12 @@ def _ancestry(joint: JointSpec, parent_joint: dict[str, JointSpec]) -> list[Join
 
 def _refuse_loop(loop: list[JointSpec], closing: JointSpec, notes: Notebook) -> None:
     names = [joint.name for joint in loop]
+    pin = "type: point"
+    if closing.type in ("revolute", "continuous"):
+        pin = "type: axis, axis: [" + ", ".join(f"{x:g}" for x in closing.axis) + "]"
     notes.refuse(
         f"the joints {listed(names, 12)} form a closed loop; a URDF holds trees only",
         where=at(closing.line, "joint", closing.name),
         remedy="Delete that joint, or, if the mechanism is really closed, "
-        + _CLOSURE.format(joint=closing.name, child=closing.child),
+        + _CLOSURE.format(joint=closing.name, child=closing.child, pin=pin),
     )
