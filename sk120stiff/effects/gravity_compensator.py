@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.effects.base import LinearElastic, ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.anatomy import arm_joint, arm_joints
+from sk120stiff.robot.anatomy import arm_joint, arm_joints, sample_poses
 from sk120stiff.robot.coupling import Array
 
 
@@ -67,6 +67,5 @@ class GravityCompensator(LinearElastic):
 
 
 def _stays_horizontal(robot: Robot, index: int) -> bool:
-    poses = np.random.default_rng(0).uniform(-1.0, 1.0, (8, robot.n))
-    axes = robot.screws(poses).axes[:, index]
+    axes = robot.screws(sample_poses(robot, 8)).axes[:, index]
     return bool(np.abs(axes @ robot.gravity).max() < 1e-9 * np.linalg.norm(robot.gravity))

@@ -42,8 +42,12 @@ class JointTilt(LinearElastic):
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every actuated joint on the way to the tool."""
-        return tuple(joint.name for joint in arm_joints(robot) if joint.actuated is not None)
+        """Every joint on the way to the tool that a motor drives or a closed loop determines."""
+        return tuple(
+            joint.name
+            for joint in arm_joints(robot)
+            if joint.actuated is not None or joint.name in robot.dependent
+        )
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """One joint for each tilt axis, at the joint's origin."""

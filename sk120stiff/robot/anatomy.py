@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.errors import Refusal
 from sk120stiff.robot.coupling import Array
+from sk120stiff.robot.loops import LoopCoupling
 from sk120stiff.robot.robot import Robot
 
 SHORTEST_LINK = 1e-3  # m; what is shorter has no length to bend along
@@ -89,12 +91,40 @@ def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
 
 
 def arm_length(robot: Robot) -> float:
-    """Stretched length of the arm from its first joint to the tool [m]; slides count at full travel."""
+    """Stretched length of the arm from its first joint to the tool [m], slides at full travel."""
     total = sum(joint.length for joint in arm_joints(robot))
     for slides, low, high in zip(robot.prismatic, robot.lower, robot.upper, strict=True):
         if slides and np.isfinite([low, high]).all():
             total += float(max(abs(low), abs(high)))
     return total
+
+
+def sample_poses(robot: Robot, count: int, seed: int = 0) -> Array:
+    """(count, n) random coordinates within limits and two rad or metres of a natural pose.
+
+    That is the start of a robot with closed loops, else zero or the middle of limits without it.
+
+    Raises
+    ------
+    Refusal
+        The loops can hardly be closed anywhere near their start.
+    """
+    rng = np.random.default_rng(seed)
+    low, high = np.maximum(robot.lower, -1e6), np.minimum(robot.upper, 1e6)
+    middle = np.clip(0.0, low, high)
+    if isinstance(robot.coupling, LoopCoupling):
+        middle = robot.coupling.start[: robot.n]
+    for reach in (2.0, 1.0, 0.5, 0.2, 0.05, 0.01):
+        least, most = np.maximum(low, middle - reach), np.minimum(high, middle + reach)
+        drawn = rng.uniform(np.minimum(least, most), most, (4 * count, robot.n))
+        drawn = drawn[robot.closes(drawn)]
+        if len(drawn) >= count:
+            return np.asarray(drawn[:count])
+    raise Refusal(
+        "the closed loops can hardly be closed anywhere near their start",
+        where=robot.name,
+        remedy="Give another pose under 'start:' of the closures in robot.yaml.",
+    )
 
 
 def arm_links(robot: Robot) -> tuple[ArmJoint, ...]:

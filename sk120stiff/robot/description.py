@@ -45,6 +45,24 @@ class LinkageRule(_Strict):
     corners: tuple[str, str, str]
 
 
+class ClosureRule(_Strict):
+    """A closed loop, which the tree of a URDF holds open: two frames that must coincide.
+
+    `type` is ``point`` where their origins meet (a ball joint, or any pin of a planar linkage), or
+    ``axis`` for a revolute pin, whose direction `axis`, stated in the axes of either frame, they
+    share too. `dependent` names the joints that the loop determines; left out, these are all joints
+    of the loop that are neither actuated nor locked. `start` gives values [rad or m] of joints near
+    which the loop is closed the right way round; zero where it does not say.
+    """
+
+    frames: tuple[str, str]
+    name: str | None = None
+    type: Literal["point", "axis"] = "point"
+    axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    dependent: tuple[str, ...] = ()
+    start: dict[str, float] = Field(default_factory=dict)
+
+
 class RobotDescription(_Strict):
     """The keys of `robot.yaml`; every one has a default."""
 
@@ -55,6 +73,7 @@ class RobotDescription(_Strict):
     actuated: tuple[str, ...] | None = None
     couplings: dict[str, CouplingRule] = Field(default_factory=dict)
     lock: dict[str, float] = Field(default_factory=dict)
+    closures: tuple[ClosureRule, ...] = ()
     linkages: tuple[LinkageRule, ...] = ()
     foundation: Foundation | None = None
     notes: str = ""

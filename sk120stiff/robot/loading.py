@@ -12,8 +12,9 @@ import numpy as np
 
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.bundled import bundled_robots
-from sk120stiff.robot.coupling import Array, Follower, linear_coupling
+from sk120stiff.robot.coupling import Array, Coupling, Follower, linear_coupling
 from sk120stiff.robot.description import RobotDescription, read_description
+from sk120stiff.robot.loop_building import closures_of, loop_coupling, loop_drivers
 from sk120stiff.robot.robot import Linkage, Robot
 from sk120stiff.robot.tree import Tree
 from sk120stiff.robot.urdf import (
@@ -151,20 +152,27 @@ def assemble(
     tool_frame = tool or description.tool_frame or guessed_tool
     rest = {**description.lock, **(lock or {})}
     couplings = [*description.couplings, *(rule.driver for rule in description.couplings.values())]
-    wanted = [*(actuated or description.actuated or ()), *couplings]
+    closures = closures_of(description)
+    looped = [j.name for c in closures for frame in c.frames for j in document.way("", frame)]
+    wanted = [*(actuated or description.actuated or ()), *couplings, *looped]
     document = with_arm_only(document, base_frame, tool_frame, wanted, rest)
     tree = Tree(document.xml)
     followers = _followers(document, description)
-    chosen = tuple(
-        actuated or description.actuated or _drivers(tree, base_frame, tool_frame, followers)
-    )
+    drivers = _drivers(tree, base_frame, tool_frame, followers)
+    if closures and not (actuated or description.actuated):
+        drivers = loop_drivers(tree, closures, drivers, followers, rest)
+    chosen = tuple(actuated or description.actuated or drivers)
     _refuse_balls(document, base_frame, tool_frame, rest)
     _check_actuated(chosen, tree, followers, document)
     for name in rest:
         if name not in document.locked:
             tree.joint_index(name)
     _tell(document, base_frame, tool_frame)
-    coupling = linear_coupling(tree.joint_names, chosen, followers, rest)
+    coupling: Coupling = linear_coupling(tree.joint_names, chosen, followers, rest)
+    dependent: tuple[str, ...] = ()
+    if closures:
+        loops = loop_coupling(tree, closures, chosen, followers, rest, _start(description))
+        coupling, dependent = loops, loops.dependent
     lower, upper = _limits(document, chosen)
     return Robot(
         name=description.name or document.name,
@@ -181,7 +189,7 @@ def assemble(
         locked={
             name: rest.get(name, 0.0)
             for name in tree.joint_names
-            if name not in chosen and name not in followers
+            if name not in chosen and name not in followers and name not in dependent
         },
         linkages=tuple(
             Linkage(rule.rod, rule.drivers, rule.corners) for rule in description.linkages
@@ -189,6 +197,11 @@ def assemble(
         foundation=_foundation(description, tree, base_frame),
         notes=description.notes.strip(),
     )
+
+
+def _start(description: RobotDescription) -> dict[str, float]:
+    """Values of joints near which the loops are closed [rad or m]."""
+    return {name: value for rule in description.closures for name, value in rule.start.items()}
 
 
 def _followers(document: UrdfDocument, description: RobotDescription) -> dict[str, Follower]:

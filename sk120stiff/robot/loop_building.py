@@ -12,6 +12,7 @@ from sk120stiff.robot.chain import Chain
 from sk120stiff.robot.closing import Closer
 from sk120stiff.robot.constraint import Closure, Constraint
 from sk120stiff.robot.coupling import Array, Follower, LinearCoupling, linear_coupling
+from sk120stiff.robot.description import RobotDescription
 from sk120stiff.robot.loops import CLOSED, LoopCoupling
 from sk120stiff.robot.tree import Tree
 
@@ -71,15 +72,72 @@ def loop_coupling(
     return LoopCoupling(closer, names, turns, _started(closer, wanted, names, turns, bool(start)))
 
 
-def loop_joints(
-    tree: Tree, closures: Sequence[Closure], followers: Mapping[str, Follower]
+def closures_of(description: RobotDescription) -> tuple[Closure, ...]:
+    """The closures that `robot.yaml` declares.
+
+    Raises
+    ------
+    InputError
+        Two of one name, or an axis without a direction.
+    """
+    found: list[Closure] = []
+    for rule in description.closures:
+        name = rule.name or " = ".join(rule.frames)
+        length = float(np.linalg.norm(rule.axis))
+        if not np.isfinite(length) or length < 1e-12:
+            raise InputError(
+                "the axis has no direction",
+                where=f"closure {name!r}",
+                remedy="Write the pin's direction in the axes of either frame: axis: [0, 1, 0].",
+            )
+        if name in [closure.name for closure in found]:
+            raise InputError(
+                "two closures have this name", where=f"closure {name!r}", remedy="Rename one."
+            )
+        x, y, z = (float(part) / length for part in rule.axis)
+        found.append(Closure(name, rule.frames, rule.type, (x, y, z), rule.dependent))
+    return tuple(found)
+
+
+def loop_drivers(
+    tree: Tree,
+    closures: Sequence[Closure],
+    on_way: Sequence[str],
+    followers: Mapping[str, Follower],
+    rest: Mapping[str, float],
 ) -> tuple[str, ...]:
-    """Joints of all loops that follow no other by a rule, drivers of those that do included."""
-    return _independent(tree, [_constraint(tree, closure) for closure in closures], followers)
+    """Actuated joints of a robot with loops whose `robot.yaml` does not name them.
+
+    They are the joints on the way to the tool and those of the loops, without the dependent ones.
+
+    Raises
+    ------
+    InputError
+        A closure does not say which of its joints depend on it: no guess is made which joints of a
+        loop have a motor.
+    """
+    joints: list[str] = list(on_way)
+    dependent: list[str] = []
+    for closure in closures:
+        own = _independent(tree, [_constraint(tree, closure)], followers)
+        if not closure.dependent:
+            raise InputError(
+                f"which joints of the loop have a motor? Its joints are: {', '.join(own)}",
+                where=f"closure {closure.name!r}",
+                remedy="Name the driven joints of the robot under 'actuated:', or the others of "
+                "this loop under 'dependent:' of the closure.",
+            )
+        dependent.extend(closure.dependent)
+        joints.extend(name for name in own if name not in joints)
+    return tuple(name for name in joints if name not in dependent and name not in rest)
 
 
 def _constraint(tree: Tree, closure: Closure) -> Constraint:
-    near, far = (tree.chain(_root(tree), frame) for frame in closure.frames)
+    try:
+        near, far = (tree.chain(_root(tree), frame) for frame in closure.frames)
+    except InputError as error:
+        where = f"closure {closure.name!r}"
+        raise InputError(error.what, where=where, remedy=error.remedy) from error
     shared = 0
     while shared < min(near.m, far.m) and near.names[shared] == far.names[shared]:
         shared += 1

@@ -24,6 +24,7 @@ from sk120stiff.robot.constraint import Closure, Gap
 from sk120stiff.robot.coupling import Array, Curvature, JointMotion, LinearCoupling
 
 CLOSED = 1e-9  # parts of a loop's length: a larger gap is open
+NEARLY = 1e-4  # parts of a loop's length: a gap that Newton closes no further at a dead point
 DEAD = 1e-6  # parts of a loop's length: a smaller singular value of C_d leaves joints undetermined
 NEAR = 0.1  # rad, or parts of a loop's length: poses this close need no walk from the start
 
@@ -275,8 +276,18 @@ class LoopCoupling:
         rng = np.random.default_rng(0)
         scale = self.closer.scale[self.n :]
         guesses = self.start[self.n :] + scale * rng.uniform(-np.pi, np.pi, (60, len(scale)))
-        _, closed = self.closer.newton(np.tile(bad, (60, 1)), guesses)
-        if closed.any():
+        tried = np.tile(bad, (60, 1))
+        found, closed = self.closer.newton(tried, guesses)
+        gaps = self.closer.gaps(tried, found)
+        sizes = [constraint.size for constraint in self.closer.constraints]
+        apart = np.max(
+            [np.linalg.norm(g.value, axis=1) / s for g, s in zip(gaps, sizes, strict=True)], axis=0
+        )
+        almost = apart.min() < NEARLY and not closed.any()
+        if almost:  # Newton converges slowly to a double root
+            what = f"{self._loops} stands at a dead point, where its joints are not determined"
+            remedy = "Move the driven joints away from this pose."
+        elif closed.any():
             what = f"{self._loops} reaches this pose only through a dead point"
             remedy = (
                 "Where the robot does work there, write values of its joints at such a pose as "

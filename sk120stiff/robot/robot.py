@@ -7,10 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import InputError
+from sk120stiff.robot.constraint import Closure
 from sk120stiff.robot.coupling import Array, Coupling, Follower
+from sk120stiff.robot.loops import LoopCoupling
 from sk120stiff.robot.screws import Mechanism, Screws
 from sk120stiff.robot.tree import Tree
 
@@ -94,6 +96,16 @@ class Robot:
         """Names of all frames (URDF links)."""
         return self.tree.frame_names
 
+    @property
+    def closures(self) -> tuple[Closure, ...]:
+        """Closed loops that `robot.yaml` declares."""
+        return self.coupling.closures if isinstance(self.coupling, LoopCoupling) else ()
+
+    @property
+    def dependent(self) -> tuple[str, ...]:
+        """Joints that closed loops determine."""
+        return self.coupling.dependent if isinstance(self.coupling, LoopCoupling) else ()
+
     @cached_property
     def prismatic(self) -> tuple[bool, ...]:
         """For each actuated joint: does it slide (metres) rather than turn (radians)?"""
@@ -161,6 +173,13 @@ class Robot:
         swept = chain.sweep(np.zeros(chain.m))
         T_root = self.tree.body(root)[1]
         return np.asarray(swept.rotation.T @ T_root[:3, :3].T @ self.gravity)
+
+    def closes(self, a: ArrayLike) -> NDArray[np.bool_]:
+        """(...,) where the closed loops can be closed; everywhere if there are none."""
+        coordinates = self.coordinates(a)
+        if isinstance(self.coupling, LoopCoupling):
+            return self.coupling.closes(coordinates)
+        return np.ones(coordinates.shape[:-1], dtype=bool)
 
     def gravity_torque(self, a: ArrayLike) -> Array:
         """(..., n) torques by which the robot's own weight drives the actuated joints [N·m or N].
