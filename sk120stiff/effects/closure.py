@@ -13,7 +13,7 @@ from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.robot import Linkage
 
-PAIR = "+"  # joint_2_l+joint_3_u: a pair of joints as one place
+PAIR = ","  # joint_2_l,joint_3_u: a pair of joints as one place
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,7 @@ def gauss_points(taper: float) -> tuple[Array, Array]:
     root = np.sqrt(half**2 + spread)
     near, far = half - root, half + root
     return mean + np.array([near, far]), np.array([far, -near]) / (far - near)
+SHAFT = np.deg2rad(15.0)  # largest angle between a link and the axis of the shaft that it is
 
 
 @dataclass(frozen=True)
@@ -119,13 +120,32 @@ class LinkTorsion(LinearElastic):
         )
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
-        """One joint about the link's direction: where along the link makes no difference."""
+        """One joint about the shaft's axis; where along it makes no difference.
+
+        A forearm is a tube around the joint that rolls the wrist: where the next joint turns about
+        an axis that all but follows the link, the shaft is that joint's, and its twist is that
+        joint's spring by another name. Any other link twists about its own line.
+        """
         link = arm_joint(robot, self.where)
-        return (VirtualJoint(f"{self.id}.twist", link.index, np.eye(4), link.directions()[0]),)
+        axis, placement = link.directions()[0], np.eye(4)
+        roll = _rolling_axis(robot, link)
+        if roll is not None:
+            axis, placement[:3, 3] = roll, link.along
+        return (VirtualJoint(f"{self.id}.twist", link.index, placement, axis),)
 
     def patterns(self, situation: Situation) -> Array:
         """Twist of the whole length."""
         return np.full((1, 1, 1), arm_joint(situation.robot, self.where).length)
+
+
+def _rolling_axis(robot: Robot, link: ArmJoint) -> Array | None:
+    """(3,) axis of the next joint in the link's frame where it nearly follows the link."""
+    chain = robot.mechanism().chain
+    if link.index + 1 >= chain.m or not chain.revolute[link.index + 1]:
+        return None
+    axis = chain.placements[link.index + 1][:3, :3] @ chain.axes[link.index + 1]
+    cosine = float(axis @ link.along) / link.length
+    return axis * np.sign(cosine) if abs(cosine) > np.cos(SHAFT) else None
 
 
 def _split(link: ArmJoint) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sk120stiff.effects import Effect
+from sk120stiff.effects import Effect, Situation
 from sk120stiff.model import Model
 from sk120stiff.plan import random_pool
 from sk120stiff.robot.coupling import Array
@@ -54,6 +54,21 @@ def exact_aliases(
         if np.linalg.norm(_without(both, signature)) <= SAME * max(reference, 1e-300):
             found.append(other.id)
     return tuple(found)
+
+
+def aliases_by_design(
+    effect: Effect, candidates: Sequence[Effect], situation: Situation
+) -> tuple[str, ...]:
+    """Names that this kind of experiment, not the arm, makes one.
+
+    Where loads only grow, friction is lost motion with the other sign. Where all loads of the
+    experiment point one way and only grow, what goes with the load goes with the order too.
+    """
+    twins = {"lost_motion": "friction_hysteresis", "friction_hysteresis": "lost_motion"}
+    if effect.name not in twins or (situation.branch < 0.0).any():
+        return ()
+    twin = f"{twins[effect.name]}:{effect.where}"
+    return tuple(other.id for other in candidates if other.id == twin)
 
 
 def _without(columns: Array, y: Array) -> Array:

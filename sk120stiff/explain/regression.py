@@ -21,6 +21,8 @@ from sk120stiff.robot.coupling import Array
 
 Index = NDArray[np.intp]
 
+HIDDEN = 0.5  # standard errors by which all that is plausible of a parameter would show
+
 
 @dataclass(frozen=True, eq=False)
 class Regression:
@@ -123,11 +125,11 @@ class Solved:
     rss: float
 
 
-def solve_columns(sums: Sums, columns: Index, lower: Array) -> Solved:
+def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) -> Solved:
     """Least squares over `columns` with non-negative values where `lower` is zero.
 
-    Columns that would be negative are dropped, the worst first; those without any information of
-    their own are dropped too.
+    Columns that would be negative are dropped, the worst first. So are columns whose part that the
+    ones before them cannot imitate would not show at any plausible value.
     """
     active = columns
     while len(active):
@@ -140,11 +142,12 @@ def solve_columns(sums: Sums, columns: Index, lower: Array) -> Solved:
         right = sums.moment[active] / scale
         try:
             factor = np.linalg.cholesky(scaled)
-            weakest = int(np.argmin(np.diag(factor)))
-            if factor[weakest, weakest] < 1e-5:
-                raise np.linalg.LinAlgError
         except np.linalg.LinAlgError:
             active = np.delete(active, _dependent(scaled))
+            continue
+        own = np.diag(factor) * scale * plausible[active]
+        if own.min() < HIDDEN or np.diag(factor).min() < 1e-6:
+            active = np.delete(active, int(np.argmin(own)))
             continue
         half = np.linalg.solve(factor, right)
         values = np.linalg.solve(factor.T, half) / scale

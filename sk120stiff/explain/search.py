@@ -51,7 +51,7 @@ def score_set(regression: Regression, sums: Sums, effects: Iterable[int]) -> Sco
     for variants in product(*(range(len(regression.variants[e])) for e in chosen)):
         parts = [regression.variants[e][k] for e, k in zip(chosen, variants, strict=True)]
         columns = np.concatenate([regression.base, *parts]).astype(np.intp)
-        solved = solve_columns(sums, columns, regression.lower)
+        solved = solve_columns(sums, columns, regression.lower, regression.plausible)
         plausible = bool((np.abs(solved.values) <= regression.plausible[solved.columns]).all())
         score = _score(regression, sums, solved, len(chosen))
         if best is None or (plausible, -score) > (best.plausible, -best.score):

@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.effects import BY_NAME, Effect, all_effects, situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain.adequacy import Adequacy, adequacy
-from sk120stiff.explain.aliases import exact_aliases
+from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm, pose_folds
 from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.explanation import Evidence, Explanation, Finding, Step, Verdict
@@ -226,25 +226,36 @@ def _findings(
         with_it = score_set(regression, sums, model)
         without = score_set(regression, sums, rest)
         swaps = _swaps(regression, rest, effect)
-        same = [e for e, score in swaps if score - with_it.score < MARGIN]
-        others = [(e, score) for e, score in swaps if e not in same]
-        checked = confirm(regression, model, effect, same, seed=wish.seed)
         chosen = regression.candidates[effect]
+        contenders = [
+            regression.candidates[e]
+            for e, other in swaps
+            if other.solved.rss - with_it.solved.rss < 2.0 * MARGIN
+        ]
+        exact = exact_aliases(
+            final.model,
+            chosen,
+            contenders,
+            point=final.problem.situation.point,
+            tied=with_it.variants[with_it.effects.index(effect)] > 0,
+        ) + aliases_by_design(chosen, regression.candidates, final.problem.situation)
+        same = [
+            e
+            for e, other in swaps
+            if other.score - with_it.score < MARGIN or regression.candidates[e].id in exact
+        ]
+        others = [(e, other.score) for e, other in swaps if e not in same]
+        checked = confirm(regression, model, effect, same, seed=wish.seed)
         if not checked.holds:
             doubted.append(chosen.id)
             continue
         runner_up = min(others, key=lambda pair: pair[1], default=None)
-        exact = exact_aliases(
-            final.model,
-            chosen,
-            [regression.candidates[e] for e in same],
-            point=final.problem.situation.point,
-            tied=with_it.variants[with_it.effects.index(effect)] > 0,
-        )
         findings.append(
             Finding(
                 effect=chosen,
-                alternatives=tuple(regression.candidates[e].id for e in same),
+                alternatives=tuple(
+                    dict.fromkeys([*(regression.candidates[e].id for e in same), *exact])
+                ),
                 exact=exact,
                 evidence=Evidence(
                     score_gain=without.score - with_it.score,
@@ -268,13 +279,13 @@ def _by_weight(regression: Regression, model: tuple[int, ...]) -> list[int]:
     return order
 
 
-def _swaps(regression: Regression, rest: tuple[int, ...], effect: int) -> list[tuple[int, float]]:
-    """Every other candidate in the place of one effect, with the score of that model."""
+def _swaps(regression: Regression, rest: tuple[int, ...], effect: int) -> list[tuple[int, Scored]]:
+    """The other candidates that promise most in the place of one effect, with their models."""
     sums = regression.sums()
     promise = gains(regression, sums, score_set(regression, sums, rest).solved)
     order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:24]
     found = [(e, score_set(regression, sums, (*rest, e))) for e in order]
-    return [(e, model.score) for e, model in found if model.plausible]
+    return [(e, model) for e, model in found if model.plausible]
 
 
 def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:

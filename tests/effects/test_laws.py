@@ -15,7 +15,7 @@ from sk120stiff.effects import effect, situation_of_load
 from sk120stiff.effects.gear import breaks_of
 from sk120stiff.effects.link_beam import TAPER, gauss_points
 from sk120stiff.errors import InputError
-from sk120stiff.model import Model, joint_spring_model
+from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.robot import load_robot
 
 BOOM = """<robot name="boom">
@@ -323,3 +323,24 @@ def test_the_tool_point_and_the_link_are_longer():
     close(with_wrong_geometry("tool_offset", None, up, offset_x=0.01)[2], 1.01**2 * 1e-4)
     close(with_wrong_geometry("link_length", "boom", up, offset=0.01)[2], 1e-4)
     close(with_wrong_geometry("link_length", "arm", up, offset=0.01)[2], 1.01**2 * 1e-4)
+
+
+def test_a_forearm_is_the_shaft_of_the_joint_that_rolls_the_wrist():
+    """On the SK120 the twist of the forearm is joint 4's spring, K = GJ / L, at any pose."""
+    robot = load_robot("motoman_sk120")
+    length = float(np.hypot(1.3, 0.25))
+    rng = np.random.default_rng(5)
+    a = rng.uniform(-1.0, 1.0, (20, 6))
+    load = np.hstack([rng.normal(size=(20, 3)) * 200.0, np.zeros((20, 3))])
+    predicted = []
+    for name, where, value in (
+        ("link_torsion", "link_3_u", 3e5 * length),
+        ("joint_springs", "joint_4_r", 3e5),
+    ):
+        found = effect(robot, name, where)
+        spec = found.parameters[0]
+        model = Model(robot) + [Parameter(found, spec, spec.internal(value))]
+        situation = situation_of_load(robot, a, load, point=[-0.06, 0.04, 0.15])
+        predicted.append(model.predict(situation))
+    assert np.abs(predicted[1]).max() > 1e-5
+    assert np.allclose(predicted[0], predicted[1], rtol=0, atol=1e-12)

@@ -63,7 +63,7 @@ def cases() -> list[Case]:
         Case("telescope", e.BaseRocking("floor", {"x": 1e-7, "y": 3e-7}),
              {"stiffness_x": 1e7, "stiffness_y": 1e7 / 3}),
         Case("sk120", e.ClosureCoupling("joint_2_l,joint_3_u", {"compliance": -1e-7}),
-             {"cross_stiffness": -1e7}, "joint_2_l+joint_3_u"),
+             {"cross_stiffness": -1e7}, "joint_2_l,joint_3_u"),
         # the rod's lever changes a little as the linkage moves under load: a second-order matter
         Case("sk120", e.ClosureRod("linkage", {"compliance": 1e-8}), {"stiffness": 1e8}, "rod",
              rtol=1e-2),
@@ -115,6 +115,8 @@ def cases() -> list[Case]:
     ):  # fmt: skip
         beam = e.LinkBending(link, {"flexibility": size}, {"taper": TAPER, "pieces": 60})
         out.append(Case(arm, beam, {"EI": 1.0 / size}, rtol=1e-3))  # pieces, not a continuum
+        if link == "link_3_u":
+            continue  # the generator twists the oblique line to the wrist; see test_laws
         # An arm's own weight twists the generator's shaft along its length, ours at its root.
         shaft = e.LinkTorsion(link, {"flexibility": size}, {"taper": 0.2})
         out.append(Case(arm, shaft, {"GJ": 1.0 / size}, rtol=3e-4 if arm == "six_axis" else 1e-5))

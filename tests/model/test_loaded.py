@@ -69,7 +69,7 @@ def test_a_rigid_wrist_leaves_three_directions(six_springs: Model) -> None:
 
 def test_a_negative_spring_is_unstable_without_load(six_springs: Model) -> None:
     """A cross compliance larger than the springs themselves makes one combination negative."""
-    coupling = effect(six_springs.robot, "closure_coupling", "joint_2_l+joint_3_u")
+    coupling = effect(six_springs.robot, "closure_coupling", "joint_2_l,joint_3_u")
     model = (six_springs + coupling).with_public(
         **{f"{coupling.id}.{coupling.parameters[0].name}": 1e5}
     )
