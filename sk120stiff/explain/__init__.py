@@ -9,6 +9,9 @@ from sk120stiff.explain.explanation import (
     Step,
     Verdict,
 )
+from sk120stiff.explain.localisation import Localisation
+from sk120stiff.explain.localise import localise
+from sk120stiff.explain.where_words import where_sentences
 from sk120stiff.explain.workflow import Options, explain
 
 __all__ = [
@@ -16,10 +19,13 @@ __all__ = [
     "Evidence",
     "Explanation",
     "Finding",
+    "Localisation",
     "Options",
     "Step",
     "Verdict",
     "explain",
+    "localise",
     "noise_floor",
     "verdict_document",
+    "where_sentences",
 ]

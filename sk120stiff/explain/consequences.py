@@ -9,8 +9,10 @@ import numpy as np
 
 from sk120stiff.effects import Effect, effect
 from sk120stiff.explain.explanation import Detectable, Explanation
+from sk120stiff.explain.localise import localise
 from sk120stiff.explain.regression import Regression
 from sk120stiff.explain.search import score_set
+from sk120stiff.explain.where_words import where_sentences
 from sk120stiff.plan import discriminating_readings, random_pool
 
 SEEN = 4.6  # √λ at which a one-parameter effect is named in four of five cases
@@ -20,10 +22,13 @@ READINGS_TO_MEASURE = 10
 def completed(
     answer: Explanation, regression: Regression, candidates: Sequence[Effect], *, seed: int
 ) -> Explanation:
-    """The answer with detectable sizes, what is not observable, and the next poses."""
+    """The answer with where the gap lives, detectable sizes, what is hidden, the next poses."""
     smallest, invisible = detectable(answer, regression)
+    found = localise(answer.base)
     return replace(
         answer,
+        where=where_sentences(found),
+        details={**answer.details, "localisation": found},
         smallest_detectable=smallest,
         not_observable=invisible,
         next_poses=next_poses(answer, seed=seed),

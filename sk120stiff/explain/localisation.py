@@ -1,0 +1,187 @@
+"""Where a gap lives, as frozen data: what `localise` finds, words and figures show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from sk120stiff.robot.coupling import Array
+
+LEVEL = 0.01  # family-wise probability below which something counts as seen
+
+
+@dataclass(frozen=True)
+class PoseShare:
+    """The gap of one pose.
+
+    Attributes
+    ----------
+    label
+        The pose.
+    rms, noise
+        Rms gap per axis, and what the noise would leave [m].
+    share
+        Its part of all that exceeds the noise; below zero where the gap is less than the noise.
+    probability
+        That chance makes such a gap at any of the poses.
+    """
+
+    label: str
+    rms: float
+    noise: float
+    share: float
+    probability: float
+
+
+@dataclass(frozen=True)
+class LoadLevel:
+    """The gap over loads from `low` to `high` [N]: rms per axis and what noise would leave [m]."""
+
+    low: float
+    high: float
+    count: int
+    rms: float
+    noise: float
+
+
+@dataclass(frozen=True)
+class DirectionShare:
+    """Share of what exceeds the noise that points along one axis."""
+
+    axes: str
+    word: str
+    share: float
+
+
+@dataclass(frozen=True)
+class OrderShare:
+    """One order of the gap in the load.
+
+    Attributes
+    ----------
+    name
+        ``linear``, ``constant`` or ``curved``.
+    share
+        Its part of what exceeds the noise.
+    probability
+        That chance makes it, corrected for three looks; None where the readings do not allow it.
+    """
+
+    name: Literal["linear", "constant", "curved"]
+    share: float
+    probability: float | None
+
+
+@dataclass(frozen=True)
+class PostureTrend:
+    """How the gap of poses goes with their posture.
+
+    Attributes
+    ----------
+    name
+        ``the reach``, ``the height``, ``the position of joint_2_l``.
+    correlation, probability
+        Rank correlation, and that of chance, corrected for the number of postures.
+    low, high
+        Rms gaps of the lower and of the upper half of the poses [m].
+    """
+
+    name: str
+    correlation: float
+    probability: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class Suspicion:
+    """How closely the gap goes with one suspect.
+
+    Attributes
+    ----------
+    family, name, label
+        See `Suspect`.
+    statistic, freedom
+        T and its degrees of freedom.
+    probability
+        That chance makes a T as large in any of the looks.
+    explained
+        Share of what exceeds the noise that it takes away.
+    evidence
+        Decides the order: what is left of T when every degree of freedom has been paid for.
+    abscissa, partial
+        (N,) the variable, and the gap along the suspect's direction [m], freed of what the model's
+        own parameters had covered up; empty far down the list.
+    """
+
+    family: str
+    name: str
+    label: str
+    statistic: float
+    freedom: int
+    probability: float
+    explained: float
+    evidence: float
+    abscissa: Array = field(default_factory=lambda: np.zeros(0))
+    partial: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def seen(self) -> bool:
+        """It is more than chance."""
+        return self.probability < LEVEL
+
+
+@dataclass(frozen=True, eq=False)
+class Localisation:
+    """Where a gap lives.
+
+    Attributes
+    ----------
+    rms, noise
+        Rms gap per axis, and what the noise alone would leave [m].
+    noise_from
+        Where the size of the noise comes from: it was ``stated``, or it is the ``scatter`` within
+        poses; with ``gap`` nothing tells it, and it was taken from the gap itself.
+    probability
+        That noise alone makes such a gap; None where nothing tells.
+    poses, levels, directions, orders, postures
+        By pose, by size of the load, by direction in several axes, by order in the load, by
+        posture.
+    suspects
+        All that it may go with, the strongest first.
+    beside
+        The same for what remains once the strongest has been allowed for; empty without one.
+    clocked, branched
+        Whether the readings tell their order or time, and have both branches.
+    """
+
+    rms: float
+    noise: float
+    noise_from: Literal["stated", "scatter", "gap"]
+    probability: float | None
+    poses: tuple[PoseShare, ...]
+    levels: tuple[LoadLevel, ...]
+    directions: tuple[DirectionShare, ...]
+    orders: tuple[OrderShare, ...]
+    postures: tuple[PostureTrend, ...]
+    suspects: tuple[Suspicion, ...]
+    beside: tuple[Suspicion, ...]
+    clocked: bool
+    branched: bool
+
+    @property
+    def real(self) -> bool:
+        """The gap is more than noise, or goes with something more closely than chance would."""
+        beyond = self.probability is not None and self.probability < LEVEL
+        return beyond or self.strongest is not None
+
+    @property
+    def strongest(self) -> Suspicion | None:
+        """The suspect that the gap goes with most closely, if that is more than chance."""
+        return self.suspects[0] if self.suspects and self.suspects[0].seen else None
+
+    def best_of(self, *families: str) -> Suspicion | None:
+        """The strongest suspect of some families, more than chance or not."""
+        return next((s for s in self.suspects if s.family in families), None)

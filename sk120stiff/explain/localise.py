@@ -1,0 +1,302 @@
+"""Where do model and readings disagree: poses, loads, directions, joints, order; and how surely.
+
+Everything is judged against the noise, after the model's own parameters have had their say: the
+statistic of a suspect is T = ‖orth(M_B V^(-1/2) S)ᵀ r‖², with B the columns of the model's
+parameters, S those of the suspect, r the whitened gap and M_B projecting out B. If the gap is noise
+alone, T is χ² with rank(S) degrees of freedom (F where the size of the noise was found from the
+scatter within poses). Probabilities are corrected for the number of looks by Holm's rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy import stats
+
+from sk120stiff.explain.localisation import (
+    DirectionShare,
+    LoadLevel,
+    Localisation,
+    PoseShare,
+    PostureTrend,
+    Suspicion,
+)
+from sk120stiff.explain.suspects import Suspect, axes_of, reach_of, suspects_of
+from sk120stiff.explain.within_poses import WithinPoses, orthonormal, within_poses
+from sk120stiff.identify import Fit
+from sk120stiff.robot.coupling import Array
+
+SHOWN = 8  # suspects that are worked out for figures
+FEWEST_POSES = 8  # for a trend over poses
+SEEN_AT_ALL = 1e-6  # share of a column that must remain, else the model's own parameters do it
+
+
+def localise(fit: Fit) -> Localisation:
+    """Find where the gap of a fitted model lives.
+
+    Parameters
+    ----------
+    fit
+        The fitted model, usually the base model.
+    """
+    look = _look(fit)
+    situation = fit.problem.situation
+    poses = _poses(look)
+    suspects, beside = _suspicions(look)
+    return Localisation(
+        rms=fit.rms,
+        noise=float(np.sqrt(look.variance.mean())),
+        noise_from=look.within.noise_from,
+        probability=look.within.misfit,
+        poses=poses,
+        levels=_levels(look),
+        directions=_directions(look),
+        orders=look.within.orders,
+        postures=_postures(look, poses),
+        suspects=suspects,
+        beside=beside,
+        clocked=situation.order is not None or situation.time is not None,
+        branched=len(np.unique(situation.branch)) > 1,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What every question needs: the gap raw and white, the model's columns, the noise."""
+
+    fit: Fit
+    gap: Array  # (N, 3) base axes [m]
+    predicted: Array  # (N, 3) base axes [m]
+    derivative: Array  # (3N, p) of the model's moving parameters, reading axes [m]
+    inside: Array  # (3N, rank) orthonormal basis of what the model's parameters can do, whitened
+    white: Array  # (3N,) whitened gap, `inside` projected out
+    variance: Array  # (N,) noise variance of a displacement per axis [m²]
+    within: WithinPoses
+
+
+def _look(fit: Fit) -> _Look:
+    problem = fit.problem
+    axes = problem.situation.reading_axes
+    predicted, full = fit.model.predict_with_sensitivities(problem.situation)
+    moving = ~fit.at_bound
+    derivative = full[:, :, problem.free[moving]] * problem.scale[moving]
+    inside = orthonormal(problem.whitener.apply(derivative))
+    raw = problem.measured - predicted
+    white = problem.whitener.apply(raw)
+    white = white - inside @ (inside.T @ white)
+    within = within_poses(fit, white, inside)
+    own, zero = problem.noise.variances(problem.measurements, problem.sizes)
+    return _Look(
+        fit=fit,
+        gap=np.einsum("nij,nj->ni", axes, raw),
+        predicted=np.einsum("nij,nj->ni", axes, predicted),
+        derivative=derivative.reshape(len(white), -1),
+        inside=inside,
+        white=white,
+        variance=(own + zero).mean(axis=1) * within.scale,
+        within=within,
+    )
+
+
+def _poses(look: _Look) -> tuple[PoseShare, ...]:
+    situation = look.fit.problem.situation
+    square = (look.gap**2).sum(1)
+    total = max(float(square.sum() - 3.0 * look.variance.sum()), 0.0)
+    rows = [np.flatnonzero(situation.pose == k) for k in range(len(situation.poses))]
+    white = (look.white.reshape(-1, 3) ** 2).sum(1)
+    chance = [look.within.tail(float(white[r].sum()), 3 * len(r)) for r in rows]
+    found = []
+    for label, r, p in zip(situation.poses, rows, holm(chance), strict=True):
+        if not len(r):
+            continue
+        excess = float(square[r].sum() - 3.0 * look.variance[r].sum())
+        rms, noise = np.sqrt(square[r].mean() / 3.0), np.sqrt(look.variance[r].mean())
+        share = excess / total if total else 0.0
+        found.append(PoseShare(label, float(rms), float(noise), share, p))
+    return tuple(found)
+
+
+def _levels(look: _Look) -> tuple[LoadLevel, ...]:
+    """The gap at the lower, the middle and the upper third of the loads."""
+    size = np.linalg.norm(look.fit.problem.situation.wrench[:, :3], axis=1)
+    edges = np.quantile(size, [1 / 3, 2 / 3])
+    third = np.searchsorted(edges, size, side="left")
+    square = (look.gap**2).mean(1)
+    return tuple(
+        LoadLevel(
+            low=float(size[part].min()),
+            high=float(size[part].max()),
+            count=int(part.sum()),
+            rms=float(np.sqrt(square[part].mean())),
+            noise=float(np.sqrt(look.variance[part].mean())),
+        )
+        for part in (third == k for k in range(3))
+        if part.any()
+    )
+
+
+def _directions(look: _Look) -> tuple[DirectionShare, ...]:
+    out = []
+    for axes in axes_of(look.fit.problem.situation):
+        along = np.einsum("nij,ni->nj", axes.directions, look.gap)
+        excess = np.maximum((along**2).sum(0) - look.variance.sum(), 0.0)
+        total = float(excess.sum())
+        for word, part in zip(axes.words, excess, strict=True):
+            out.append(DirectionShare(axes.name, word, float(part) / total if total else 0.0))
+    return tuple(out)
+
+
+def _postures(look: _Look, poses: Sequence[PoseShare]) -> tuple[PostureTrend, ...]:
+    """Does the gap grow with reach, height, or the position of a joint?"""
+    situation = look.fit.problem.situation
+    if len(poses) < FEWEST_POSES:
+        return ()
+    _, first = np.unique(situation.pose, return_index=True)
+    variables = {
+        "the reach": reach_of(situation)[first],
+        "the height of the point": situation.nominal.position[first, 2],
+    }
+    for k, joint in enumerate(situation.robot.actuated):
+        variables[f"the position of {joint}"] = situation.a[first, k]
+    variables = {name: v for name, v in variables.items() if np.ptp(v) > 1e-6}
+    rms = np.array([pose.rms for pose in poses])
+    if not np.ptp(rms):
+        return ()
+    tests = [stats.spearmanr(values, rms) for values in variables.values()]
+    corrected = holm([float(test.pvalue) for test in tests])
+    found = []
+    for (name, values), test, p in zip(variables.items(), tests, corrected, strict=True):
+        upper = values > np.median(values)
+        low, high = (float(np.sqrt(np.mean(rms[part] ** 2))) for part in (~upper, upper))
+        found.append(PostureTrend(name, float(test.statistic), p, low, high))
+    return tuple(sorted(found, key=lambda trend: trend.probability))
+
+
+@dataclass(frozen=True, eq=False)
+class _Lineup:
+    """All suspects, with their columns in reading axes and whitened."""
+
+    suspects: tuple[Suspect, ...]
+    reading: list[Array]  # (N, 3, k) each [m]
+    white: Array  # (3N, sum of k)
+    parts: tuple[slice, ...]
+
+
+def _lineup(look: _Look) -> _Lineup:
+    situation = look.fit.problem.situation
+    suspects = suspects_of(look.fit.model, situation, look.predicted)
+    reading = [np.swapaxes(situation.reading_axes, 1, 2) @ s.columns for s in suspects]
+    ends = np.cumsum([0, *(s.columns.shape[2] for s in suspects)])
+    return _Lineup(
+        suspects=suspects,
+        reading=reading,
+        white=look.fit.problem.whitener.apply(np.concatenate(reading, axis=2)),
+        parts=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
+    )
+
+
+def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion, int]]:
+    """Suspects with their places in the line-up, the strongest first.
+
+    `known` (3N, k) is an orthonormal basis of what is in the model already.
+    """
+    beyond = lineup.white - known @ (known.T @ lineup.white)
+    length, left = np.linalg.norm(lineup.white, axis=0), np.linalg.norm(beyond, axis=0)
+    visible = left > SEEN_AT_ALL * np.maximum(length, 1e-300)
+    white = look.white - known @ (known.T @ look.white)
+    total = float(white @ white) / look.within.scale
+    freedom = len(white) - known.shape[1]
+    found: list[tuple[Suspicion, int]] = []
+    for k, (suspect, own) in enumerate(zip(lineup.suspects, lineup.parts, strict=True)):
+        basis = orthonormal(beyond[:, own][:, visible[own]])
+        rank = basis.shape[1]
+        if 0 < rank < freedom:
+            T = float(((basis.T @ white) ** 2).sum()) / look.within.scale
+            found.append((_suspicion(suspect, T, rank, total, freedom, look.within), k))
+    corrected = holm([suspicion.probability for suspicion, _ in found])
+    return sorted(
+        ((replace(s, probability=p), k) for (s, k), p in zip(found, corrected, strict=True)),
+        key=lambda pair: -pair[0].evidence,
+    )
+
+
+def _suspicions(look: _Look) -> tuple[tuple[Suspicion, ...], tuple[Suspicion, ...]]:
+    """All suspects, the strongest first; and the others once the strongest is in the model."""
+    lineup = _lineup(look)
+    ranked = _ranked(look, lineup, look.inside)
+    shown = _to_show([suspicion for suspicion, _ in ranked])
+    alone = tuple(
+        _with_picture(s, lineup.suspects[k], lineup.reading[k], look) if number in shown else s
+        for number, (s, k) in enumerate(ranked)
+    )
+    if not alone or not alone[0].seen:
+        return alone, ()
+    first = orthonormal(lineup.white[:, lineup.parts[ranked[0][1]]])
+    known = orthonormal(np.hstack([look.inside, first]))
+    return alone, tuple(suspicion for suspicion, _ in _ranked(look, lineup, known))
+
+
+def _suspicion(
+    suspect: Suspect, T: float, rank: int, total: float, freedom: int, within: WithinPoses
+) -> Suspicion:
+    """The statistic with its probability, not yet corrected for the number of looks."""
+    if within.freedom:
+        p = within.tail(T * within.scale, rank)
+    else:  # nothing tells the noise but what the suspect itself leaves
+        rest = max(total - T, 1e-300) / (freedom - rank)
+        p = float(stats.f.sf(T / rank / rest, rank, freedom - rank))
+    excess = max(total - freedom, T - rank, 1e-300)
+    return Suspicion(
+        family=suspect.family,
+        name=suspect.name,
+        label=suspect.label,
+        statistic=T,
+        freedom=rank,
+        probability=p,
+        explained=float(np.clip((T - rank) / excess, 0.0, 1.0)),
+        evidence=T - rank * float(np.log(max(freedom, 2))),
+    )
+
+
+def _to_show(ranked: Sequence[Suspicion]) -> set[int]:
+    """The three strongest, and the strongest of every family."""
+    shown = set(range(min(3, len(ranked))))
+    for family in dict.fromkeys(s.family for s in ranked):
+        shown.add(next(k for k, s in enumerate(ranked) if s.family == family))
+    return set(sorted(shown)[:SHOWN])
+
+
+def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: _Look) -> Suspicion:
+    """The gap along the suspect's direction, with the model's parameters refitted beside it."""
+    problem = look.fit.problem
+    S = reading.reshape(len(look.white), -1)
+    both = np.hstack([look.derivative, S])
+    white = problem.whitener.apply(both.reshape(problem.situation.count, 3, -1))
+    norms = np.maximum(np.linalg.norm(white, axis=0), 1e-300)
+    values = np.linalg.lstsq(white / norms, look.white, rcond=1e-8)[0] / norms
+    own = values[look.derivative.shape[1] :]
+    signature = (S @ own).reshape(-1, 3)
+    covered = (look.derivative @ values[: look.derivative.shape[1]]).reshape(-1, 3)
+    raw = np.einsum("nji,nj->ni", problem.situation.reading_axes, look.gap)
+    freed = raw - covered
+    if suspect.direction is None:
+        size = np.linalg.norm(signature, axis=1, keepdims=True)
+        along = signature / np.where(size > 0.0, size, 1.0)
+    else:
+        along = np.einsum("nji,nj->ni", problem.situation.reading_axes, suspect.direction)
+    return replace(
+        suspicion, abscissa=suspect.abscissa, partial=np.einsum("ni,ni->n", along, freed)
+    )
+
+
+def holm(probabilities: Sequence[float]) -> list[float]:
+    """Probabilities corrected for the number of looks (Holm 1979)."""
+    p = np.asarray(probabilities, dtype=float)
+    order = np.argsort(p)
+    stepped = np.maximum.accumulate(p[order] * (len(p) - np.arange(len(p))))
+    out = np.empty_like(p)
+    out[order] = np.minimum(stepped, 1.0)
+    return [float(x) for x in out]

@@ -1,0 +1,313 @@
+"""What a gap may go with: places of the arm, torques, angles, axes, instruments, the series.
+
+A suspect is no cause. It is a handful of columns that say how the readings would change if the arm
+yielded at some place, if a joint's law were bent, if an instrument misread. The catalogue decides
+what a cause is called; suspects tell where a gap lives, also where the catalogue has no name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from sk120stiff.effects import Situation
+from sk120stiff.model import Model
+from sk120stiff.robot.anatomy import ArmJoint, arm_joints
+from sk120stiff.robot.coupling import Array
+
+SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
+
+
+@dataclass(frozen=True, eq=False)
+class Suspect:
+    """One thing that the gap may go with.
+
+    Attributes
+    ----------
+    family
+        ``place``, ``law``, ``linkage``, ``angle``, ``axes``, ``instrument`` or ``series``.
+    name
+        Completes the sentence "The gap goes with ...".
+    columns
+        (N, 3, k) change of the readings per unit of each of k free factors, base axes [m].
+    abscissa
+        (N,) the variable that a figure draws the gap against.
+    label
+        Name and unit of the abscissa.
+    direction
+        (N, 3) direction in which it moves the point, base axes; None where the fit decides it.
+    """
+
+    family: str
+    name: str
+    columns: Array
+    abscissa: Array
+    label: str
+    direction: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Axes:
+    """Three directions that go with the pose.
+
+    Attributes
+    ----------
+    name
+        ``world``, ``arm plane``, ``forearm`` or ``tool``.
+    words
+        What each of the three directions is called.
+    directions
+        (N, 3, 3) unit directions as columns, base axes.
+    """
+
+    name: str
+    words: tuple[str, str, str]
+    directions: Array
+
+
+def axes_of(situation: Situation) -> tuple[Axes, ...]:
+    """The axes in which a cause may live: world, arm plane, forearm, tool."""
+    count = situation.count
+    world = np.broadcast_to(np.eye(3), (count, 3, 3))
+    out = [Axes("world", ("x of the base", "y of the base", "z of the base"), world)]
+    plane = _arm_plane(situation)
+    if plane is not None:
+        out.append(Axes("arm plane", ("outwards", "sideways", "along the first axis"), plane))
+    joints = arm_joints(situation.robot)
+    longest = max((joint.length for joint in joints), default=0.0)
+    long = [joint for joint in joints if joint.length > SHARE_OF_LONGEST * longest]
+    if len(long) > 1:
+        out.append(Axes("forearm", _words(long[-1]), _frames(situation, long[-1])))
+    tool = situation.robot.tool_frame
+    words = (f"x of {tool}", f"y of {tool}", f"z of {tool}")
+    out.append(Axes("tool", words, situation.rotation))
+    return tuple(out)
+
+
+def _words(joint: ArmJoint) -> tuple[str, str, str]:
+    link = joint.link
+    return (
+        f"along {link}",
+        f"across {link} in the plane in which {joint.name} turns",
+        f"across {link} along the axis of {joint.name}",
+    )
+
+
+def suspects_of(model: Model, situation: Situation, predicted: Array) -> tuple[Suspect, ...]:
+    """Everything that the gap of a model may go with.
+
+    Parameters
+    ----------
+    model
+        The model whose gap is looked at.
+    situation
+        Its N readings.
+    predicted
+        (N, 3) what it predicts, base axes [m].
+    """
+    return (
+        *_places(situation),
+        *_laws(situation),
+        *_angles(model, situation),
+        *_loads_in_axes(situation),
+        *_instruments(model, situation, predicted),
+        *_series(situation),
+    )
+
+
+def _places(situation: Situation) -> Iterator[Suspect]:
+    """The arm yields somewhere from base to tool, under the moment or force it carries there."""
+    robot, count = situation.robot, situation.count
+    base = np.broadcast_to(robot.foundation, (count, 3))
+    world = np.broadcast_to(np.eye(3), (count, 3, 3))
+    yield _turning("place", "the moment that tips the base", situation, base, world[..., :2])
+    name = "the moment that turns the base about z"
+    yield _turning("place", name, situation, base, world[..., 2:])
+    yield _pushing("place", "the force that pushes the base", situation, world)
+    screws = situation.nominal
+    for joint in arm_joints(robot):
+        axis = screws.axes[:, joint.index]
+        at = screws.origins[:, joint.index]
+        frames = _frames(situation, joint)
+        if joint.actuated is not None and joint.revolute:
+            name = f"the torque about the axis of {joint.name}"
+            yield _turning("place", name, situation, at, axis[..., None])
+        elif joint.actuated is not None:
+            name = f"the force along the slide {joint.name}"
+            yield _pushing("place", name, situation, axis[..., None])
+        tilts = np.stack(joint.tilt_axes(), axis=-1)
+        across = _rotation(situation, joint) @ tilts
+        name = f"the moment that {joint.name} carries across its axis"
+        yield _turning("place", name, situation, at, across)
+        if joint.length > 0.1 * max(j.length for j in arm_joints(robot)):
+            middle = at + 0.5 * joint.length * frames[..., 0]
+            name = f"the moment that bends {joint.link} halfway"
+            yield _turning("place", name, situation, middle, frames[..., 1:])
+            name = f"the moment that twists {joint.link}"
+            yield _turning("place", name, situation, at, frames[..., :1])
+    tip = screws.frame_position
+    yield _turning("place", "the moment that the tool carries", situation, tip, situation.rotation)
+    yield _pushing("place", "the force that the tool carries", situation, situation.rotation)
+
+
+def _laws(situation: Situation) -> Iterator[Suspect]:
+    """A drive whose law is not a straight line, or two drives that a linkage ties together."""
+    J = situation.nominal.linear_jacobian  # (N, 3, n)
+    at_force = situation.nominal.at(situation.force_point)
+    torque = at_force.torques(situation.wrench) + situation.gravity_torque
+    load = at_force.torques(situation.wrench)
+    both = len(np.unique(situation.branch)) > 1
+    names = situation.robot.actuated
+    for i, joint in enumerate(names):
+        tau, push = torque[:, i], J[:, :, i]
+        what = "force" if situation.robot.prismatic[i] else "torque"
+        label = f"{what} of {joint} [{'N' if what == 'force' else 'N·m'}]"
+        largest = max(float(np.abs(tau).max(initial=0.0)), 1e-300)
+        size = np.linalg.norm(push, axis=1, keepdims=True)
+        along = push / np.where(size > 0.0, size, 1.0)
+        sign = np.sign(tau) - np.sign(situation.gravity_torque[:, i])
+        jump = f"the sign of the {what} of {joint}"
+        yield Suspect("law", jump, (push * sign[:, None])[..., None], tau, label, along)
+        curved = np.stack([tau * np.abs(tau) / largest, tau**3 / largest**2], axis=-1)
+        name = f"the {what} of {joint}, not in proportion to it"
+        yield Suspect("law", name, push[:, :, None] * curved[:, None, :], tau, label, along)
+        if both:
+            turn = -situation.branch * np.sign(load[:, i])
+            name = f"loading or unloading of {joint}"
+            yield Suspect("law", name, (push * turn[:, None])[..., None], load[:, i], label, along)
+    for i, k in combinations(range(len(names)), 2):
+        column = J[:, :, i] * load[:, k, None] + J[:, :, k] * load[:, i, None]
+        name = f"the torques of {names[i]} and {names[k]}, each moving the other joint"
+        label = f"torque of {names[i]} [N·m]"
+        yield Suspect("linkage", name, column[..., None], load[:, i], label)
+
+
+def _angles(model: Model, situation: Situation) -> Iterator[Suspect]:
+    """Drives whose stiffness changes with the angle of a joint."""
+    J = situation.nominal.linear_jacobian
+    load = situation.nominal.at(situation.force_point).torques(situation.wrench)
+    soft = np.flatnonzero(np.isfinite(model.joint_stiffness()))
+    yielding = J[:, :, soft] * load[:, None, soft]  # (N, 3, s)
+    for i, joint in enumerate(situation.robot.actuated):
+        q = situation.a[:, i]
+        if np.ptp(q) < 1e-6:
+            continue
+        if situation.robot.prismatic[i]:
+            factors, shown, unit = [q / np.ptp(q)], 1e3 * q, "mm"
+        else:
+            factors, shown, unit = [np.cos(q), np.sin(q)], np.degrees(q), "deg"
+        columns = np.concatenate([yielding * f[:, None, None] for f in factors], axis=-1)
+        name = f"the position of {joint}, on which a drive's stiffness may depend"
+        yield Suspect("angle", name, columns, shown, f"position of {joint} [{unit}]")
+
+
+def _loads_in_axes(situation: Situation) -> Iterator[Suspect]:
+    """The gap in proportion to the load, by a matrix that is constant in some axes."""
+    force = situation.wrench[:, :3]
+    size = np.linalg.norm(force, axis=1)
+    for axes in axes_of(situation):
+        load = np.einsum("nij,ni->nj", axes.directions, force)
+        columns = np.einsum("nij,nk->nijk", axes.directions, load).reshape(len(force), 3, 9)
+        where = {"world": "the base", "arm plane": "the arm's plane", "tool": "the tool"}.get(
+            axes.name, axes.words[0].removeprefix("along ")
+        )
+        yield Suspect("axes", f"the load in axes of {where}", columns, size, "load [N]")
+
+
+def _instruments(model: Model, situation: Situation, predicted: Array) -> Iterator[Suspect]:
+    """A load or a displacement that was misread, in the axes of the instrument."""
+    J = situation.nominal.jacobian
+    soft = model.joint_stiffness()
+    C = (J[:, :3] / soft) @ np.swapaxes(J[:, :3], 1, 2)  # infinite where rigid: no part
+    R = situation.rotation
+    force = np.einsum("nij,ni->nj", R, situation.wrench[:, :3])
+    size = np.linalg.norm(force, axis=1)
+    wrong = np.einsum("nij,nk->nijk", R, force).reshape(len(force), 3, 9)
+    yield Suspect("instrument", "a misread load in tool axes", C @ wrong, size, "load [N]")
+    bias = C @ R
+    yield Suspect("instrument", "a constant error of the load in tool axes", bias, size, "load [N]")
+    axes = situation.reading_axes
+    d = np.einsum("nij,ni->nj", axes, predicted)
+    columns = np.einsum("nij,nk->nijk", axes, d).reshape(len(d), 3, 9)
+    moved = 1e6 * np.linalg.norm(d, axis=1)
+    label = "displacement [µm]"
+    yield Suspect("instrument", "a misread displacement in reading axes", columns, moved, label)
+
+
+def _series(situation: Situation) -> Iterator[Suspect]:
+    """What goes on whatever the load is: a constant, the order, the time, the branch."""
+    axes = situation.reading_axes
+    size = np.linalg.norm(situation.wrench[:, :3], axis=1)
+    yield Suspect("series", "a constant that no load changes", axes, size, "load [N]")
+    clocks = (
+        (situation.order, "the order of the readings", "readings since the zero"),
+        (situation.time, "the time since the zero reading", "time since the zero [s]"),
+    )
+    for clock, name, label in clocks:
+        if clock is not None and np.ptp(clock) > 0.0:
+            yield Suspect("series", name, axes * clock[:, None, None], clock, label)
+    if len(np.unique(situation.branch)) > 1:
+        columns = axes * situation.branch[:, None, None]
+        name, label = "the branch, loading or unloading", "branch (+1 loading, −1 unloading)"
+        yield Suspect("series", name, columns, situation.branch, label)
+
+
+def _turning(family: str, name: str, at: Situation, origin: Array, about: Array) -> Suspect:
+    """A turn about the directions `about` (N, 3, k) through `origin`, under the moment there."""
+    screws = at.nominal
+    pull = screws.at(at.force_point).position
+    moment = np.cross(pull - origin, at.wrench[:, :3]) + at.wrench[:, 3:]
+    lever = screws.position - origin
+    carried = np.einsum("nik,ni->nk", about, moment)
+    columns = np.cross(about, lever[:, :, None], axis=1) * carried[:, None, :]
+    return Suspect(family, name, columns, np.linalg.norm(carried, axis=1), "moment there [N·m]")
+
+
+def _pushing(family: str, name: str, at: Situation, along: Array) -> Suspect:
+    """A shift along the directions `along` (N, 3, k) under the force."""
+    carried = np.einsum("nik,ni->nk", along, at.wrench[:, :3])
+    columns = along * carried[:, None, :]
+    return Suspect(family, name, columns, np.linalg.norm(carried, axis=1), "force there [N]")
+
+
+def _rotation(situation: Situation, joint: ArmJoint) -> Array:
+    """(N, 3, 3) frame of the link that a joint moves, in base axes."""
+    _, first, back = np.unique(situation.pose, return_index=True, return_inverse=True)
+    placed = situation.robot.placement(situation.a[first], joint.link)
+    return np.asarray(placed[back, :3, :3])
+
+
+def _frames(situation: Situation, joint: ArmJoint) -> Array:
+    """(N, 3, 3) along the link and two directions across it, as columns, base axes."""
+    along, across, other = joint.directions()
+    return _rotation(situation, joint) @ np.stack([along, across, other], axis=-1)
+
+
+def reach_of(situation: Situation) -> Array:
+    """(N,) distance of the point from the first turning axis, else from the base [m]."""
+    out, _ = _from_first_axis(situation)
+    return np.asarray(np.linalg.norm(out, axis=1))
+
+
+def _from_first_axis(situation: Situation) -> tuple[Array, Array | None]:
+    """(N, 3) from the first turning axis to the point, square to it; and the axis (N, 3)."""
+    screws = situation.nominal
+    turning = np.flatnonzero(screws.revolute)
+    if not len(turning):
+        return screws.position, None
+    up = screws.axes[:, turning[0]]
+    out = screws.position - screws.origins[:, turning[0]]
+    return out - up * np.einsum("ni,ni->n", up, out)[:, None], up
+
+
+def _arm_plane(situation: Situation) -> Array | None:
+    """(N, 3, 3) outwards, sideways and along the first axis; None where there is no such plane."""
+    out, up = _from_first_axis(situation)
+    length = np.linalg.norm(out, axis=1, keepdims=True)
+    if up is None or (length < 1e-3).any():
+        return None
+    out = out / length
+    return np.stack([out, np.cross(up, out), up], axis=-1)

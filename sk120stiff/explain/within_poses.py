@@ -1,0 +1,138 @@
+"""How the gap goes with the load at single poses: in proportion to it, constant, curved, or not.
+
+At one pose all that yields displaces the point in proportion to the load, whatever it is. So the
+gap is laid out, pose by pose, over the load (linear), a constant, and the cube of the load
+(curved). What all three leave is noise, and tells its size where nobody stated it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from sk120stiff.explain.localisation import OrderShare
+from sk120stiff.identify import Fit
+from sk120stiff.identify.saturated import load_basis, pose_columns
+from sk120stiff.robot.coupling import Array
+
+Index = NDArray[np.intp]
+
+FEWEST = 10  # degrees of freedom below which a scatter tells no size of the noise
+_LOOKS = 3
+
+
+@dataclass(frozen=True)
+class WithinPoses:
+    """What single poses tell of a whitened gap.
+
+    Attributes
+    ----------
+    scale
+        Noise variance seen over noise variance assumed; 1 where it was stated.
+    freedom
+        Degrees of freedom behind `scale`; infinite where it was stated, 0 where nothing tells.
+    misfit
+        Probability that noise alone makes such a gap; None where nothing tells.
+    orders
+        Linear, constant and curved parts.
+    """
+
+    scale: float
+    freedom: float
+    misfit: float | None
+    orders: tuple[OrderShare, ...]
+
+    @property
+    def noise_from(self) -> Literal["stated", "scatter", "gap"]:
+        """Where the size of the noise comes from."""
+        if np.isinf(self.freedom):
+            return "stated"
+        return "scatter" if self.freedom else "gap"
+
+    def tail(self, statistic: float, freedom: int) -> float:
+        """Probability that chance makes a sum of squares as large, for that many freedoms."""
+        if freedom < 1:
+            return 1.0
+        if np.isinf(self.freedom):
+            return float(stats.chi2.sf(statistic, freedom))
+        ratio = statistic / freedom / self.scale
+        return float(stats.f.sf(ratio, freedom, self.freedom or np.inf))
+
+
+def within_poses(fit: Fit, white: Array, inside: Array) -> WithinPoses:
+    """Lay out a whitened gap over the loads of every pose.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    white
+        (3N,) its whitened gap, the model's columns projected out.
+    inside
+        (3N, k) orthonormal basis of those columns.
+    """
+    situation = fit.problem.situation
+    group = np.repeat(situation.pose, 3)
+    left = [float(white @ white)]
+    rank = [inside.shape[1]]
+    for options in ({}, {"jump": True}, {"jump": True, "cubic": True}):
+        basis = fit.problem.whitener.apply(pose_columns(load_basis(situation, **options)))
+        square, used = _beyond(white, inside, basis, group)
+        left.append(square)
+        rank.append(used)
+    freedom = len(white) - rank[-1]
+    stated = fit.sigma_stated
+    if stated:
+        scale, known = 1.0, float(np.inf)
+    elif freedom >= FEWEST:
+        scale, known = left[-1] / freedom, float(freedom)
+    else:
+        scale, known = left[0] / max(len(white) - rank[0], 1), 0.0
+    bare = WithinPoses(scale, known, None, ())
+    steps = [(left[k] - left[k + 1], rank[k + 1] - rank[k]) for k in range(3)]
+    excess = [max(square / scale - used, 0.0) for square, used in steps]
+    total = max(left[0] / scale - (len(white) - rank[0]), sum(excess), 1e-300)
+    names: tuple[Literal["linear", "constant", "curved"], ...] = ("linear", "constant", "curved")
+    orders = tuple(
+        OrderShare(name, part / total, min(1.0, _LOOKS * bare.tail(square, used)) if used else None)
+        for name, part, (square, used) in zip(names, excess, steps, strict=True)
+    )
+    misfit = None
+    if stated:
+        whole = bare.tail(left[0], len(white) - rank[0])
+        misfit = min(1.0, 2.0 * min(whole, bare.tail(*steps[0])))
+    elif known and steps[0][1]:
+        misfit = bare.tail(*steps[0])
+    return WithinPoses(scale, known, misfit, orders)
+
+
+def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
+    """(R, rank) orthonormal basis of the column space; columns are scaled to one length first.
+
+    Columns shorter than `keep` times the longest are dropped.
+    """
+    norms = np.linalg.norm(matrix, axis=0)
+    kept = matrix[:, norms > keep * max(float(norms.max(initial=0.0)), 1e-300)]
+    if not kept.shape[1]:
+        return np.zeros((len(matrix), 0))
+    U, singular, _ = np.linalg.svd(kept / np.linalg.norm(kept, axis=0), full_matrices=False)
+    return np.asarray(U[:, singular > 1e-8 * singular[0]])
+
+
+def _beyond(white: Array, inside: Array, basis: Array, group: Index) -> tuple[float, int]:
+    """Sum of squares that a basis, free at every pose, and the model leave; and their rank."""
+    left, columns, rank = white.copy(), inside.copy(), 0
+    for pose in np.unique(group):
+        rows = group == pose
+        block = orthonormal(basis[rows])
+        left[rows] -= block @ (block.T @ left[rows])
+        columns[rows] -= block @ (block.T @ columns[rows])
+        rank += block.shape[1]
+    norms = np.linalg.norm(columns, axis=0)
+    own = orthonormal(columns[:, norms > 1e-6])  # `inside` had columns of length one
+    left -= own @ (own.T @ left)
+    return float(left @ left), rank + own.shape[1]
