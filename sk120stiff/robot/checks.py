@@ -101,7 +101,10 @@ def check_robot(
         name=robot.name if robot is not None else document.name,
         actuated=robot.actuated if robot is not None else (),
         coupled=_rules(robot),
-        loops=(),
+        loops=tuple(
+            rule.name or f"{rule.frames[0]} = {rule.frames[1]} ({rule.type})"
+            for rule in found.description.closures
+        ),
         frames=tuple(link.name for link in document.links),
         base_frame=base_frame,
         tool_frame=tool_frame,

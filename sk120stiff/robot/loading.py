@@ -256,11 +256,11 @@ def _tell(document: UrdfDocument, base: str, tool: str) -> None:
     told = [*document.warnings, *locked_on_way(document, base, tool)]
     told = [finding for finding in told if finding.code not in HARMLESS]
     for finding in told[:_MOST_WARNINGS]:
-        warnings.warn(f"{document.place}: {finding}", ToolkitWarning, stacklevel=3)
+        warnings.warn(f"{document.place}: {finding}", ToolkitWarning, stacklevel=4)
     if len(told) > _MOST_WARNINGS:
         more = len(told) - _MOST_WARNINGS
         warnings.warn(
-            f"{document.place}: {more} more findings; see check", ToolkitWarning, stacklevel=3
+            f"{document.place}: {more} more findings; see check", ToolkitWarning, stacklevel=4
         )
 
 

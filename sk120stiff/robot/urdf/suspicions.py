@@ -19,11 +19,12 @@ _PLACEHOLDER = 1e3  # limits beyond it mean "none"
 
 def suspicions(document: UrdfDocument) -> tuple[Finding, ...]:
     """Findings of a document beyond the repairs made while it was read; never raises."""
-    return tuple(
-        finding
-        for check in (_masses, _limits, _couplings, _names, _sizes, _meshes)
-        for finding in check(document)
-    )
+    with np.errstate(all="ignore"):
+        return tuple(
+            finding
+            for check in (_masses, _limits, _couplings, _names, _sizes, _meshes)
+            for finding in check(document)
+        )
 
 
 def _masses(document: UrdfDocument) -> Iterator[Finding]:

@@ -1,0 +1,171 @@
+"""What `check_robot` says about robots that load."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+import pytest
+
+from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.robot import load_robot
+from sk120stiff.robot.checks import CheckReport, check_robot
+from tests.corpus.robots import example
+
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+
+
+def arm(*axes: str, mass: str = "1", extra: str = "") -> str:
+    """A serial arm, links 0.5 m long along x, one joint per axis."""
+    text = '<robot name="arm"><link name="l0"/>'
+    for k, axis in enumerate(axes, start=1):
+        text += (
+            f'<link name="l{k}"><inertial><mass value="{mass}"/><inertia ixx="1" ixy="0" ixz="0" '
+            f'iyy="1" iyz="0" izz="1"/></inertial></link><joint name="j{k}" type="revolute">'
+            f'<parent link="l{k - 1}"/><child link="l{k}"/><origin xyz="0.5 0 0"/>'
+            f'<axis xyz="{axis}"/>{LIMIT}</joint>'
+        )
+    return (
+        text
+        + f'<link name="tool0"/><joint name="flange" type="fixed"><parent link="l{len(axes)}"/>'
+        + f'<child link="tool0"/><origin xyz="0.5 0 0"/></joint>{extra}</robot>'
+    )
+
+
+def codes(report: CheckReport) -> set[str]:
+    return {finding.code for finding in report.warnings}
+
+
+def test_a_clean_arm_has_nothing_to_say() -> None:
+    report = check_robot(arm("0 0 1", "0 1 0"))
+    assert report.warnings == ()
+    assert report.actuated == ("j1", "j2")
+    assert report.moving == ("j1", "j2")
+    assert (report.coupled, report.loops) == ((), ())
+    assert report.frames == ("l0", "l1", "l2", "tool0")
+    assert (report.base_frame, report.tool_frame) == ("l0", "tool0")
+    assert report.total_mass_kg == 2.0
+
+
+def test_the_report_is_plain_data() -> None:
+    text = json.dumps(dataclasses.asdict(check_robot("motoman_sk120")))
+    assert {"name", "actuated", "coupled", "loops", "frames", "total_mass_kg", "warnings"} <= set(
+        json.loads(text)
+    )
+
+
+def test_the_bundled_robot() -> None:
+    report = check_robot("motoman_sk120")
+    assert report.actuated == load_robot("motoman_sk120").actuated
+    assert "joint_elbow_parallel = -1 · joint_2_l + 0" in report.coupled
+    assert "no_mass" in codes(report)
+    assert report.total_mass_kg == 0.0
+
+
+def test_singular_at_zero_only_where_it_is() -> None:
+    assert "singular_at_zero" not in codes(check_robot(arm("0 0 1", "0 1 0", "1 0 0")))
+    parallel = check_robot(arm(*["0 0 1"] * 4))  # a stretched planar arm
+    (finding,) = [f for f in parallel.warnings if f.code == "singular_at_zero"]
+    assert "rank 2 of 4" in finding.message
+
+
+def test_a_side_branch_is_no_part_of_the_arm() -> None:
+    idle = (
+        '<link name="lamp"/><joint name="lamp_joint" type="revolute"><parent link="l0"/>'
+        f'<child link="lamp"/><axis xyz="0 0 1"/>{LIMIT}</joint>'
+    )
+    report = check_robot(arm("0 0 1", extra=idle))
+    assert report.actuated == ("j1",)
+    with pytest.raises(InputError, match="carried by"):
+        load_robot(arm("0 0 1", extra=idle), base="lamp", tool="tool0")
+
+
+def test_a_joint_that_does_not_move_the_tool() -> None:
+    text = arm("0 0 1", "0 1 0").replace(
+        "</robot>",
+        '<link name="w"/><joint name="roll" type="prismatic"><parent link="tool0"/>'
+        f'<child link="w"/><axis xyz="1 0 0"/><mimic joint="j2" multiplier="0"/>{LIMIT}</joint>'
+        "</robot>",
+    )
+    assert "idle_joint" not in codes(check_robot(text))
+    follower = text.replace(
+        'name="j1" type="revolute">',
+        'name="j1" type="revolute"><mimic joint="free" multiplier="0"/>',
+    )
+    follower = follower.replace(
+        "</robot>",
+        '<link name="f"/><joint name="free" type="revolute">'
+        '<parent link="l0"/><child link="f"/>' + LIMIT + "</joint></robot>",
+    )
+    (finding,) = [f for f in check_robot(follower).warnings if f.code == "idle_joint"]
+    assert "free" in finding.message
+
+
+def test_frames_as_told() -> None:
+    report = check_robot(arm("0 0 1", "0 1 0", "1 0 0"), base="l1", tool="l3")
+    assert (report.base_frame, report.tool_frame) == ("l1", "l3")
+    assert report.actuated == ("j2", "j3")
+    assert any("as told" in reason for reason in report.chosen_because)
+    with pytest.raises(InputError, match="there is no frame 'l33'"):
+        check_robot(arm("0 0 1"), tool="l33")
+
+
+def test_lengths_that_overflow_are_said_not_raised() -> None:
+    text = arm("0 0 1", "0 1 0").replace('xyz="0.5 0 0"', 'xyz="1e308 1e308 0"')
+    assert {"not_finite", "units"} <= codes(check_robot(text))
+
+
+def test_load_robot_warns_of_repairs_and_check_does_not(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(arm("0 0 2", "0 1 0"))
+    with pytest.warns(ToolkitWarning, match=r"arm\.urdf: line 1, joint 'j1': the axis has length"):
+        load_robot(path)
+    assert "axis_not_unit" in codes(check_robot(path))
+
+
+def test_many_repairs_make_few_warnings() -> None:
+    text = arm(*["0 0 2"] * 40)
+    with pytest.warns(ToolkitWarning) as told:
+        load_robot(text)
+    assert len(told) == 21
+    assert "20 more findings" in str(told[-1].message)
+
+
+def test_a_ball_joint_must_be_locked_by_word(tmp_path: Path) -> None:
+    text = arm("0 0 1", "0 1 0").replace('name="j2" type="revolute"', 'name="j2" type="spherical"')
+    with pytest.raises(InputError, match="3 degrees of freedom"):
+        load_robot(text)
+    with pytest.warns(ToolkitWarning) as told:
+        assert load_robot(text, lock={"j2": 0.0}).actuated == ("j1",)
+    assert {str(one.message).rsplit("[")[-1] for one in told} == {
+        "joint_locked]",
+        "locked_on_chain]",
+    }
+    with pytest.raises(InputError, match="held at zero only"):
+        load_robot(text, lock={"j2": 0.5})
+    with pytest.raises(InputError, match="cannot be actuated because it is spherical"):
+        load_robot(text, actuated=["j2"], lock={"j2": 0.0})
+    (tmp_path / "arm.urdf").write_text(text)
+    (tmp_path / "robot.yaml").write_text("urdf: arm.urdf\nlock: {j2: 0.0}\n")
+    report = check_robot(tmp_path)
+    assert report.actuated == ("j1",)
+    assert "locked_on_chain" in codes(report)
+
+
+@pytest.mark.parametrize(
+    ("name", "base", "tool", "joints"),
+    [
+        ("ur10_robot.urdf", "world", "tool0", 6),
+        ("panda.urdf", "panda_link0", "panda_hand_tcp", 7),
+        ("xarm7.urdf", "world", "link_eef", 7),
+        ("kinova.urdf", "base", "j2s6s200_end_effector", 6),
+        ("z1.urdf", "world", "gripperStator", 6),
+        ("so100.urdf", "base", "gripper", 5),
+        ("tiago_no_hand.urdf", "base_footprint", "arm_tool_link", 8),
+        ("tiago.urdf", "base_footprint", "arm_tool_link", 8),
+        ("finger_edu.urdf", "base_link", "finger_tip_link", 3),
+    ],
+)
+def test_default_frames_leave_grippers_out(name: str, base: str, tool: str, joints: int) -> None:
+    report = check_robot(example(name))
+    assert (report.base_frame, report.tool_frame) == (base, tool)
+    assert len(report.actuated) == joints
