@@ -35,15 +35,17 @@ def _masses(document: UrdfDocument) -> Iterator[Finding]:
             "no link has a mass: gravity effects are impossible, gravity torques are all zero",
         )
         return
-    moved = {joint.child for joint in document.joints}
+    zero = [link for link in document.links if link.inertial is not None and link.mass == 0.0]
+    if zero:
+        others = f": {listed([link.name for link in zero])}" if len(zero) > 1 else ""
+        where = at(zero[0].line, "link", zero[0].name)
+        yield Finding("mass_zero", where, f"a mass of zero is stated{others}")
     for link in document.links:
         where = at(link.line, "link", link.name)
         if link.inertial is None:
             continue
         if link.mass < 0.0:
             yield Finding("mass_negative", where, f"mass {link.mass:g} kg is negative")
-        elif link.mass == 0.0 and link.name in moved:
-            yield Finding("mass_zero", where, "mass is zero")
         elif link.mass > _HEAVIEST_LINK:
             yield Finding("units", where, f"mass {link.mass:g} kg: is it given in grams?")
         yield from _inertia(link.inertial, where)

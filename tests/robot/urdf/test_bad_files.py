@@ -120,7 +120,7 @@ REPAIRED = [
     ("mass_negative.urdf", "mass_negative", "link 'upper'", "-1 kg"),
     ("mass_nowhere.urdf", "no_mass", "mass_nowhere.urdf", "gravity effects are impossible"),
     ("mass_zero.urdf", "mass_incomplete", "mass_zero.urdf", "1 of 2 moving joints"),
-    ("mass_zero.urdf", "mass_zero", "link 'upper'", "mass is zero"),
+    ("mass_zero.urdf", "mass_zero", "link 'upper'", "mass of zero"),
     ("material_twice.urdf", "duplicate_material", "line 23, material 'red'", "the first one"),
     ("material_undefined.urdf", "unknown_material", "line 6", "'mauve'"),
     ("mesh_missing.urdf", "mesh_missing", "mesh_missing.urdf", "'arm_description' was not found"),
