@@ -19,6 +19,7 @@ from sk120stiff.measurements.columns import (
     DISPLACEMENTS,
     FORCES,
     MOMENTS,
+    POSITIONS,
     UNCERTAINTIES,
 )
 from sk120stiff.measurements.data import Measurements
@@ -32,6 +33,7 @@ def write_measurements(
     *,
     angle: str = "deg",
     length: str = "mm",
+    as_positions: bool = False,
 ) -> Path:
     """Write both files so that `read_measurements` gives the same readings back.
 
@@ -48,6 +50,8 @@ def write_measurements(
         The CSV file. The YAML file stands beside it.
     angle, length
         Units of the columns.
+    as_positions
+        `displacement` holds positions, rows without load among them: write the columns x, y, z.
 
     Returns
     -------
@@ -74,7 +78,8 @@ def write_measurements(
             where=str(rival),
             remedy="Move it, or choose another name.",
         )
-    columns = list(_columns(measurements, angle, length))
+    measured = POSITIONS if as_positions else DISPLACEMENTS
+    columns = list(_columns(measurements, angle, length, measured))
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([header for header, _ in columns])
@@ -86,7 +91,9 @@ def write_measurements(
     return files.write_atomically(target, stream.getvalue())
 
 
-def _columns(m: Measurements, angle: str, length: str) -> Iterable[_Column]:
+def _columns(
+    m: Measurements, angle: str, length: str, measured: tuple[str, ...]
+) -> Iterable[_Column]:
     yield "pose", m.pose
     for k, name in enumerate(m.joint_names):
         kind = m.joint_kinds[k]
@@ -96,7 +103,7 @@ def _columns(m: Measurements, angle: str, length: str) -> Iterable[_Column]:
     if np.any(m.wrench[:, 3:]):
         for k, name in enumerate(MOMENTS):
             yield _numbers(name, m.wrench[:, 3 + k], "N*m", "moment")
-    for names, values in ((DISPLACEMENTS, m.displacement), (UNCERTAINTIES, m.sigma)):
+    for names, values in ((measured, m.displacement), (UNCERTAINTIES, m.sigma)):
         if values is not None:
             for k, name in enumerate(names):
                 yield _numbers(name, values[:, k], length, "length")

@@ -8,6 +8,7 @@ from sk120stiff.model.file import (
     read_model,
     write_model,
 )
+from sk120stiff.model.holding import held_loads
 from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
 from sk120stiff.model.model import Model, Parameter, joint_spring_model
 
@@ -18,6 +19,7 @@ __all__ = [
     "Parameter",
     "Solution",
     "base_model",
+    "held_loads",
     "joint_spring_model",
     "loaded_stiffness",
     "model_from_text",

@@ -1,0 +1,134 @@
+"""`sk120stiff simulate MODEL PLAN --out CSV`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import open_data, start_model
+from sk120stiff.cli.options import ModelArgument, SeedOption
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import NoiseModel, write_measurements
+from sk120stiff.plan import Schedule, as_positions, simulate
+from sk120stiff.units import parse_values
+
+
+class Zero(StrEnum):
+    """Who shares a zero reading."""
+
+    shared = "shared"
+    separate = "separate"
+
+
+class Steps(StrEnum):
+    """Load steps of each row of the plan."""
+
+    as_given = "as-given"
+    ascending = "ascending"
+    up_down = "up-down"
+
+
+def command(
+    model: ModelArgument,
+    plan: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PLAN",
+            help="Poses and loads: measurements without displacements (others are not looked at).",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path,
+        typer.Option("--out", metavar="CSV", help="Where to write them.", show_default=False),
+    ],
+    noise: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH",
+            help="Standard uncertainty of one reading per axis, e.g. '10 um'.",
+            show_default="none",
+        ),
+    ] = None,
+    zero: Annotated[
+        Zero, typer.Option(help="One zero reading for all loads of a pose, or one for each.")
+    ] = Zero.shared,
+    growth: Annotated[
+        float,
+        typer.Option(min=0.0, max=0.5, help="Noise that grows with the displacement: its share."),
+    ] = 0.0,
+    schedule: Annotated[
+        Steps, typer.Option(help="Each load alone, in steps up to it, or up and down.")
+    ] = Steps.as_given,
+    levels: Annotated[int, typer.Option(min=1, help="Steps up to the full load.")] = 5,
+    repeats: Annotated[int, typer.Option(min=1, help="How often each reading is taken.")] = 1,
+    outliers: Annotated[
+        float,
+        typer.Option(min=0.0, max=0.5, help="Share of readings off by 5 to 20 times the noise."),
+    ] = 0.0,
+    positions: Annotated[
+        bool, typer.Option("--positions", help="Write x, y, z with zero rows, no differences.")
+    ] = False,
+    seed: SeedOption = 0,
+) -> Answer:
+    """Synthetic measurements from a model: load steps, noise, zero readings.
+
+    Example: sk120stiff simulate model.yaml plan.csv --noise '10 um' --out readings.csv
+    """
+    readings, robot = open_data(plan)
+    made = simulate(
+        start_model(robot, model),
+        readings,
+        noise=_noise(noise, growth, zero),
+        schedule=Schedule(schedule.value, levels, repeats, zero.value),
+        outliers=outliers,
+        seed=seed,
+    )
+    source = f"simulated by 'sk120stiff simulate' from {model.name} and {plan.name}, seed {seed}"
+    made = replace(made, measurements=replace(made.measurements, source=source))
+    if positions:
+        written = as_positions(start_model(robot, model), made)
+        write_measurements(written, out, as_positions=True)
+    else:
+        written = made.measurements
+        write_measurements(written, out)
+    loaded = made.measurements
+    largest = float(np.linalg.norm(made.exact, axis=1).max())
+    document = {
+        "rows": written.n_readings,
+        "seed": seed,
+        "readings": loaded.n_readings,
+        "poses": len(loaded.poses),
+        "zero_rows": written.n_readings - loaded.n_readings,
+        "outliers": [int(k) for k in np.flatnonzero(made.outliers)],
+        "largest_um": largest * 1e6,
+        "out": out,
+    }
+    said = (
+        f"{loaded.n_readings} readings at {len(loaded.poses)} poses, displacements up to "
+        f"{largest * 1e6:.4g} µm, seed {seed}."
+    )
+    return Answer(document, [said, f"Written to {out} and {out.with_suffix('.yaml')}."])
+
+
+def _noise(text: str | None, growth: float, zero: Zero) -> NoiseModel | None:
+    if text is None:
+        if growth:
+            raise InputError(
+                "a growing noise needs its size at rest",
+                where="--growth",
+                remedy="Give --noise too, e.g. --noise '10 um'.",
+            )
+        return None
+    values = parse_values(text, "length", where="--noise")
+    if len(values) != 1 or values[0] <= 0.0:
+        raise InputError(
+            f"{text!r} is not one positive length", where="--noise", remedy="Write '10 um'."
+        )
+    return NoiseModel(float(values[0]), growth, zero.value)

@@ -1,0 +1,166 @@
+"""Measurements made from a model: what a tracker would read, noise included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.effects import situation_of
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements.data import NoiseStatement
+from sk120stiff.model import Model
+from sk120stiff.plan.schedule import Schedule, scheduled
+from sk120stiff.robot.coupling import Array
+
+OUTLIER = (5.0, 20.0)  # least and largest size of an outlier, over the noise of its reading
+
+
+@dataclass(frozen=True, eq=False)
+class Simulated:
+    """Simulated readings and what lies under them.
+
+    Attributes
+    ----------
+    measurements
+        The readings, displacements with noise.
+    exact
+        (N, 3) displacements without noise [m].
+    zero_error
+        (N, 3) error of the zero reading that each row subtracts [m]; equal within a zero group.
+    outliers
+        (N,) readings that were made outliers.
+    """
+
+    measurements: Measurements
+    exact: Array
+    zero_error: Array
+    outliers: NDArray[np.bool_]
+
+
+def simulate(
+    model: Model,
+    plan: Measurements,
+    *,
+    noise: NoiseModel | None = None,
+    schedule: Schedule | None = None,
+    outliers: float = 0.0,
+    seed: int = 0,
+) -> Simulated:
+    """Readings that a modelled arm would give.
+
+    A loaded reading and a zero reading are drawn each by itself, by the law of
+    `measurements.noise`; a displacement is their difference.
+
+    Parameters
+    ----------
+    model
+        The truth, at exact equilibrium.
+    plan
+        Poses and loads; displacements in it are not looked at.
+    noise
+        What one reading is worth; None: readings without noise. Rows that state their own
+        uncertainty (sx, sy, sz) are drawn with that. Whether zero readings are shared says the
+        schedule.
+    schedule
+        Load steps, repeats and zero readings; by default every row as given, zeros shared.
+    outliers
+        Share of the loaded readings that are off by 5 to 20 times their noise in a random
+        direction.
+    seed
+        Of the draw.
+
+    Raises
+    ------
+    InputError
+        A plan without loads, or a share that is none.
+    Refusal
+        The springs cannot hold a load.
+    """
+    if not 0.0 <= outliers < 1.0:
+        raise InputError(f"{outliers:g} is no share of outliers", remedy="Give 0 to 1, as 0.05.")
+    if outliers and noise is None:
+        raise InputError(
+            "outliers are measured in units of the noise, and there is none",
+            remedy="Give a noise, e.g. --noise '10 um'.",
+        )
+    steps = schedule or Schedule()
+    readings = scheduled(plan, steps)
+    exact = model.predict(situation_of(model.robot, readings))
+    count = readings.n_readings
+    error, zero_error = np.zeros((count, 3)), np.zeros((count, 3))
+    hit = np.zeros(count, dtype=bool)
+    if noise is not None:
+        rng = np.random.default_rng(seed)
+        own, zero = noise.variances(readings, np.linalg.norm(exact, axis=1))
+        group = readings.zero_group
+        draws = rng.normal(size=(int(group.max()) + 1, 3))[group]
+        zero_error = draws * np.sqrt(zero)
+        error = rng.normal(size=(count, 3)) * np.sqrt(own)
+        hit = rng.random(count) < outliers
+        direction = rng.normal(size=(count, 3))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        size = rng.uniform(*OUTLIER, count) * np.sqrt(own.mean(axis=1))
+        error += (hit * size)[:, None] * direction
+    stated = NoiseStatement()
+    if noise is not None:
+        stated = NoiseStatement(noise.sigma, noise.growth or None)
+    made = replace(
+        readings,
+        displacement=exact + error - zero_error,
+        noise=stated,
+        path=None,
+        source=f"simulated from a model of {model.robot.name}, seed {seed}",
+        data_hash="",
+        notes=(),
+    )
+    return Simulated(made, exact, zero_error, hit)
+
+
+def as_positions(model: Model, simulated: Simulated) -> Measurements:
+    """The same readings as positions of the point in the base frame, with their zero rows.
+
+    `displacement` of what is returned holds positions [m], for `write_measurements` with
+    ``as_positions=True``. The unloaded arm stands where the rigid robot says.
+
+    Raises
+    ------
+    InputError
+        The plan asks for displacements in the axes of the tool.
+    """
+    readings = simulated.measurements
+    if readings.displacement_frame != "base" or readings.displacement is None:
+        raise InputError(
+            "positions are given in axes of the base frame, the plan says 'tool'",
+            where=str(readings.path or "plan"),
+            remedy="Write 'displacement: {frame: base}' into the YAML file.",
+        )
+    start = model.robot.screws(readings.joints, point=readings.point).position
+    _, first = np.unique(readings.zero_group, return_index=True)
+    rows = np.concatenate([first, np.arange(readings.n_readings)])
+    is_zero = np.arange(len(rows)) < len(first)
+    order = np.where(is_zero, _known(readings.zero_order)[rows], _known(readings.order)[rows])
+    zero = start + simulated.zero_error
+    position = np.where(is_zero[:, None], zero[rows], (zero + readings.displacement)[rows])
+    wrench = np.where(is_zero[:, None], 0.0, readings.wrench[rows])
+    sequence = np.argsort(order, kind="stable")
+    picked = readings.select(rows[sequence])
+    branch = picked.branch
+    if branch is not None:
+        branch = tuple("" if z else b for z, b in zip(is_zero[sequence], branch, strict=True))
+    return replace(
+        picked,
+        wrench=wrench[sequence],
+        displacement=position[sequence],
+        order=order[sequence],
+        branch=branch,
+        zero_order=None,
+    )
+
+
+def _known(order: Array | None) -> Array:
+    if order is None:
+        raise ValueError("simulated readings always have an order")
+    return order
