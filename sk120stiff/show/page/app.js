@@ -28,7 +28,7 @@ SK.start = (scene) => {
     gap: actors.makeArrow("gap", colours.gap, { label: "gap" }),
   };
   const frames = { base: actors.makeFrame("base", 0.16 * reach), tool: actors.makeFrame("tool", 0.1 * reach) };
-  let frame = null, pending = false, flight = 0, timer = 0;
+  let frame = null, pending = false, asked = 0, flight = 0, gliding = false, timer = 0;
 
   const onState = (kind, text) => {
     const banner = document.getElementById("connection");
@@ -44,7 +44,8 @@ SK.start = (scene) => {
     pending = true;
     requestAnimationFrame(() => {
       pending = false;
-      engine.request(state, (answer) => { frame = answer; redraw(); });
+      asked = performance.now();
+      engine.request(state, (answer) => { asked = 0; frame = answer; redraw(); });
     });
   }
 
@@ -135,15 +136,16 @@ SK.start = (scene) => {
       panel.refresh();
       changed();
       if (t < 1) requestAnimationFrame(step);
-      else setTimeout(() => { if (mine === flight) camera.follow(frame.position); }, 60);
+      else setTimeout(() => { if (mine === flight) { gliding = false; camera.follow(frame.position); } }, 60);
     };
+    gliding = true;
     step();
   }
   const stop = () => { clearTimeout(timer); timer = 0; panel.playing(false); };
 
   const actions = {
     changed, redraw,
-    leavePose() { flight++; stop(); state.pose = -1; state.reading = -1; panel.refresh(); changed(); },
+    leavePose() { flight++; gliding = false; stop(); state.pose = -1; state.reading = -1; panel.refresh(); changed(); },
     leaveReading() { state.reading = -1; panel.refresh(); changed(); },
     goToPose(k) {
       state.pose = k;
@@ -203,5 +205,7 @@ SK.start = (scene) => {
     document.documentElement.dataset.ready = "yes";
   };
   engine.request(state, begin);
-  Object.assign(SK, { state, stage, camera, actions, changed, redraw, panel, frame: () => frame, picture: camera.picture });
+  // Is anything still to be computed, moved or drawn?
+  const busy = () => Boolean(pending || asked || gliding || camera.busy() || stage.viewer.needs_render);
+  Object.assign(SK, { busy, state, stage, camera, actions, changed, redraw, panel, frame: () => frame, picture: camera.picture });
 };

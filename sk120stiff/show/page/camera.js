@@ -9,7 +9,7 @@ SK.makeCamera = (stage) => {
   viewer.set_camera(camera);
   Object.assign(viewer.controls, { minDistance: 0.1 * reach, maxDistance: 12 * reach, zoomSpeed: 0.8, rotateSpeed: 0.7 });
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-  let flight = 0;
+  let flight = 0, flying = false;
 
   function look(position, target, smoothly = true) {
     const mine = ++flight, from = camera.position.clone(), fromTarget = viewer.controls.target.clone();
@@ -21,8 +21,10 @@ SK.makeCamera = (stage) => {
       viewer.controls.target.lerpVectors(fromTarget, target, ease);
       viewer.controls.update();
       viewer.set_dirty();
-      if (t < 1) requestAnimationFrame(step);
+      flying = t < 1;
+      if (flying) requestAnimationFrame(step);
     };
+    flying = true;
     step();
   }
 
@@ -55,13 +57,15 @@ SK.makeCamera = (stage) => {
     look(ball.center.clone().addScaledVector(away, (0.9 * ball.radius) / Math.sin(narrow)), ball.center, smoothly);
   }
 
+  // The reader takes the camera: no flight goes on, and no pose moves it.
+  function release() { flight++; flying = false; current = ""; }
+
   pane.addEventListener("keydown", (event) => {
     const turn = { ArrowLeft: [-0.12, 0], ArrowRight: [0.12, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] }[event.key];
     const zoom = { "+": 0.9, "=": 0.9, "-": 1.1 }[event.key];
     if (!turn && !zoom) return;
     event.preventDefault();
-    flight++;
-    current = "";
+    release();
     const offset = camera.position.clone().sub(viewer.controls.target);
     if (zoom) offset.multiplyScalar(zoom);
     else {
@@ -74,8 +78,8 @@ SK.makeCamera = (stage) => {
     viewer.controls.update();
     viewer.set_dirty();
   });
-  pane.addEventListener("pointerdown", () => { flight++; current = ""; });
-  pane.addEventListener("wheel", () => { flight++; current = ""; }, { passive: true });
+  pane.addEventListener("pointerdown", release);
+  pane.addEventListener("wheel", release, { passive: true });
   const follow = (point) => { if (current) preset(current, point); };
 
   // The picture with its background and labels, as a PNG address.
@@ -108,5 +112,5 @@ SK.makeCamera = (stage) => {
     return canvas.toDataURL("image/png");
   }
 
-  return { preset, follow, picture, names: [...Object.keys(views), "tool"] };
+  return { preset, follow, busy: () => flying, picture, names: [...Object.keys(views), "tool"] };
 };

@@ -1,0 +1,71 @@
+"""Numbers, units and lists as the stories write them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+
+def um(metres: float) -> str:
+    """A length in micrometres: three digits, none after the point from 100 on."""
+    microns = 1e6 * metres
+    return f"{microns:.0f}" if abs(microns) >= 100.0 else f"{microns:.3g}"
+
+
+def percent(share: float) -> str:
+    """A share in per cent; small ones with a digit more."""
+    value = 100.0 * share
+    return f"{value:.0f} %" if abs(value) >= 10.0 else f"{value:.2g} %"
+
+
+def unit_of(written: str) -> str:
+    """A unit as print has it: ``N*m**2/rad`` becomes N·m²/rad."""
+    return written.replace("**2", "²").replace("**3", "³").replace("*", "·")
+
+
+def with_error(value: float, std: float | None, unit: str = "") -> str:
+    """``(1.41 ± 0.11)·10⁷ N·m/rad``: a value to the digits that its standard error supports."""
+    tail = f" {unit_of(unit)}" if unit else ""
+    if not math.isfinite(value):
+        return f"rigid{tail}" if value > 0 else f"{value}{tail}"
+    if std is None or not math.isfinite(std) or std <= 0.0:
+        return f"{number(value)}{tail}"
+    exponent = math.floor(math.log10(max(abs(value), std)))
+    if -3 <= exponent <= 4:
+        exponent = 0
+    scale = 10.0**exponent
+    places = min(max(0, 1 - math.floor(math.log10(std / scale))), 9)
+    text = f"{value / scale:.{places}f} ± {std / scale:.{places}f}".replace("-", "−")
+    return f"({text})·10{raised(exponent)}{tail}" if exponent else f"{text}{tail}"
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number with a true minus sign and, where it helps, a power of ten."""
+    if not math.isfinite(value):
+        return "–" if math.isnan(value) else ("∞" if value > 0 else "−∞")
+    if value and not 1e-3 <= abs(value) < 1e5:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        return f"{float(mantissa):g}·10{raised(int(exponent))}".replace("-", "−")
+    return f"{value:.{digits}g}".replace("-", "−")
+
+
+def raised(exponent: int) -> str:
+    """Digits as superscripts."""
+    return str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def chance(probability: float) -> str:
+    """A probability as a cell."""
+    return "< 10⁻⁶" if probability < 1e-6 else number(probability, 2)
+
+
+def listed(words: Sequence[str], joint: str = "and") -> str:
+    """``a, b and c``."""
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} {joint} {words[-1]}"
+
+
+def counted(count: int, one: str, many: str = "") -> str:
+    """``1 pose``, ``3 poses``."""
+    return f"{count} {one if count == 1 else many or one + 's'}"

@@ -1,0 +1,314 @@
+"""Static scenes and reports in a real browser: they move, they compute what Python computes."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+from sk120stiff import load_robot
+from sk120stiff.show import Elastic, Report, Scene, SceneFrame, Section, static_scene
+from sk120stiff.show.frame import Request, compute_frame
+from sk120stiff.show.payload import frame_payload
+from tests.show.browser import DESKTOP, PHONE, Page, browser, changed, colours
+from tests.show.scenes import TWO_SLIDES, random_pose, sk120, sk120_scene
+from tests.show.test_frame import with_effect
+
+INSIDE = ("file:", "data:", "blob:", "about:", "chrome:")  # the last: its own new-tab page
+
+pytestmark = pytest.mark.timeout(180)
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    with browser(tmp_path_factory.mktemp("profile")) as window:
+        yield window
+
+
+def bare_robot():
+    text = re.sub(r"<visual>.*?</visual>", "", TWO_SLIDES, flags=re.DOTALL)
+    return load_robot(text)
+
+
+SCENES = {
+    "sk120": sk120_scene,
+    "sk120_bending": lambda: Scene(
+        sk120(), Elastic.of_model(with_effect("link_bending", "link_2_l", 6e6)), title="SK120"
+    ),
+    "sk120_offset": lambda: Scene(
+        sk120(), Elastic.of_model(with_effect("joint_offset", "joint_3_u", 1.0)), title="SK120"
+    ),
+    "gantry": lambda: Scene(
+        load_robot(TWO_SLIDES),
+        Elastic.assumed_for(load_robot(TWO_SLIDES)),
+        wrench=np.array([100.0, 50.0, -80.0, 5.0, -3.0, 2.0]),
+    ),
+    "capsules": lambda: Scene(bare_robot(), Elastic.assumed_for(bare_robot())),
+}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("scenes")
+    return {name: static_scene(folder / f"{name}.html", make()) for name, make in SCENES.items()}
+
+
+def clean(page: Page) -> None:
+    """No complaint on the console, no request that leaves the machine."""
+    assert page.console() == []
+    outside = [u for u in page.requests() if not u.startswith(INSIDE)]
+    assert outside == []
+
+
+def agree(ours: object, theirs: object, place: str) -> None:
+    """Nested numbers agree; matrices stand for eigenvectors, which may point either way."""
+    if isinstance(ours, dict) and "directions" in ours:
+        one, other = (
+            np.transpose(axes["directions"]) @ np.diag(axes["values"]) @ axes["directions"]
+            for axes in (ours, theirs)
+        )
+        np.testing.assert_allclose(one, other, atol=1e-9 * np.abs(other).max(), err_msg=place)
+    elif isinstance(ours, dict):
+        assert isinstance(theirs, dict)
+        assert set(ours) == set(theirs), place
+        for key, value in ours.items():
+            agree(value, theirs[key], f"{place}.{key}")
+    elif isinstance(ours, str) or ours is None:
+        assert ours == theirs, place
+    else:
+        size = float(np.max(np.abs(ours), initial=0.0))
+        rounded = 1e-9 if place.endswith(("links", "deflected")) else 0.0  # to nanometres
+        bound = 1e-9 * size + rounded + 1e-18
+        np.testing.assert_allclose(ours, theirs, atol=bound, rtol=0.0, err_msg=place)
+
+
+@pytest.mark.parametrize("name", list(SCENES))
+def test_the_page_computes_what_python_computes(page: Page, files, name: str) -> None:
+    scene = SCENES[name]()
+    page.open(files[name].as_uri())
+    page.ready()
+    generator = np.random.default_rng(7)
+    for _ in range(4):
+        request = Request(
+            a=random_pose(scene.robot, generator),
+            wrench=np.r_[generator.normal(size=3) * 300.0, generator.normal(size=3) * 50.0],
+            point=generator.normal(size=3) * 0.1,
+            exaggeration=30.0,
+        )
+        expected = frame_payload(compute_frame(scene.tree, scene.elastic, request))
+        sent = {
+            "a": request.a.tolist(),
+            "wrench": request.wrench.tolist(),
+            "point": request.point.tolist(),
+            "exaggeration": request.exaggeration,
+        }
+        script = (
+            "const scene = JSON.parse(document.getElementById('scene').textContent);"
+            "return JSON.stringify(SK.makeEngine(scene.kinematics).compute(arguments[0]))"
+        )
+        agree(json.loads(page.js(script, sent)), expected, name)
+    clean(page)
+
+
+def slider(page: Page, label: str):
+    return page.driver.find_element(By.CSS_SELECTOR, f'input[type=range][aria-label="{label}"]')
+
+
+ELLIPSOID = (
+    "const node = SK.stage.viewer.scene_tree.find(['ellipsoid', 'enhanced', 'surface']).object;"
+    "node.updateMatrix(); return node.matrix.toArray()"
+)
+
+
+def link_matrix(page: Page, name: str) -> list[float]:
+    return page.js(
+        "const tree = SK.stage.viewer.scene_tree.find(['robot']).children;"
+        "const key = Object.keys(tree).find((k) => k.endsWith(' ' + arguments[0]));"
+        "tree[key].object.updateMatrix(); return tree[key].object.matrix.toArray()",
+        name,
+    )
+
+
+def test_a_joint_slider_moves_robot_ellipsoid_and_pixels(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    before, picture = page.js(ELLIPSOID), page.pane("sk120_before")
+    crank, rod = link_matrix(page, "crank"), link_matrix(page, "rod")
+    assert colours(picture) > 2000
+    handle = slider(page, "joint_3_u in °")
+    handle.send_keys(*[Keys.ARROW_RIGHT] * 3, *[Keys.PAGE_UP] * 2)
+    page.settled()
+    after = page.js(ELLIPSOID)
+    assert not np.allclose(before, after, atol=1e-4)
+    assert not np.allclose(crank, link_matrix(page, "crank"), atol=1e-3)  # a coupled joint follows
+    assert not np.allclose(rod, link_matrix(page, "rod"), atol=1e-3)
+    assert changed(picture, page.pane("sk120_after")) > 0.01
+    assert page.js("return SK.state.pose") == -1
+    clean(page)
+
+
+def test_the_drawn_ellipsoid_is_the_compliance(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    scene = sk120_scene()
+    request = Request(scene.first_pose, scene.first_load, scene.point)
+    axes = compute_frame(scene.tree, scene.elastic, request).translation["enhanced"]
+    matrix = np.array(page.js(ELLIPSOID)).reshape(4, 4).T
+    drawn = np.linalg.svd(matrix[:3, :3], compute_uv=False)
+    np.testing.assert_allclose(drawn / drawn[0], axes.values / axes.values[0], rtol=1e-6)
+    np.testing.assert_allclose(matrix[:3, 3], sk120().screws(scene.first_pose).position, atol=1e-9)
+
+
+def test_load_sliders_and_ellipsoid_choices_change_the_picture(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    picture = page.pane()
+    slider(page, "Force z in N").send_keys(*[Keys.PAGE_DOWN] * 6)
+    page.settled()
+    loaded = page.pane()
+    assert changed(picture, loaded) > 0.002
+    for value in ("stiffness", "turnCompliance", "turnStiffness"):
+        page.js(f"document.querySelector('input[value={value}]').click()")
+        page.settled()
+        now = page.pane(f"sk120_{value}")
+        assert changed(loaded, now) > 0.002
+        loaded = now
+    slider(page, "Exaggeration in ×").send_keys(Keys.HOME)
+    page.settled()
+    assert page.js("return SK.state.exaggeration") == pytest.approx(1.0)
+    clean(page)
+
+
+def test_poses_of_the_data_are_visited_with_their_arrows(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    visible = (
+        "return ['measured','predicted','gap'].map((k) => "
+        "SK.stage.viewer.scene_tree.find(['marks', k]).object.visible)"
+    )
+    assert page.js(visible) == [True, True, True]
+    page.driver.find_element(By.CSS_SELECTOR, 'button[aria-label="Next pose"]').click()
+    page.settled()
+    expected = np.asarray(sk120_scene().poses[1].a)
+    np.testing.assert_allclose(page.js("return SK.state.a"), expected, atol=1e-12)
+    text = page.driver.find_element(By.ID, "panel").text
+    assert "measured" in text
+    assert "gap" in text
+    page.pixels("sk120_pose_2")
+    slider(page, "joint_1_s in °").send_keys(Keys.ARROW_RIGHT)
+    page.settled()
+    assert page.js(visible) == [False, False, False]  # no longer the pose that was measured
+    clean(page)
+
+
+def test_typed_numbers_are_taken_within_the_limits(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    field = page.driver.find_element(
+        By.CSS_SELECTOR, 'input[type=number][aria-label="joint_2_l, value in °"]'
+    )
+    for typed, radians in (("20", np.radians(20.0)), ("999", np.radians(70.0)), ("", None)):
+        field.send_keys(Keys.CONTROL, "a")
+        field.send_keys(Keys.DELETE, typed, Keys.TAB)
+        page.settled()
+        if radians is not None:
+            assert page.js("return SK.state.a[1]") == pytest.approx(radians, abs=1e-9)
+    clean(page)
+
+
+def test_everything_can_be_reached_and_is_named(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    unnamed = page.js(
+        "return [...document.querySelectorAll('input, select, button, iframe, [role=application]')]"
+        ".filter((e) => e.getClientRects().length && !(e.labels && e.labels.length)"
+        " && !e.getAttribute('aria-label')"
+        " && !e.textContent.trim()).map((e) => e.outerHTML)"
+    )
+    assert unnamed == []
+    reached = set()
+    for _ in range(60):
+        page.driver.switch_to.active_element.send_keys(Keys.TAB)
+        reached.add(page.js("return document.activeElement.getAttribute('aria-label')"))
+    assert {"joint_1_s in °", "Force x in N", "Next pose", "Camera: tool"} <= reached
+    pane = page.driver.find_element(By.ID, "pane")
+    picture = page.pane()
+    pane.send_keys(*[Keys.ARROW_LEFT] * 4, "+")
+    page.settled()
+    assert changed(picture, page.pane()) > 0.05
+    clean(page)
+
+
+def test_camera_presets_and_screenshot(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    seen = []
+    for name in ("overview", "front", "side", "top", "tool"):
+        page.driver.find_element(By.CSS_SELECTOR, f'button[aria-label="Camera: {name}"]').click()
+        page.settled()
+        seen.append(page.pane(f"sk120_camera_{name}"))
+        assert colours(seen[-1]) > 1000
+    assert min(changed(seen[0], other) for other in seen[1:]) > 0.03
+    address = page.js("return SK.picture()")
+    assert address.startswith("data:image/png;base64,")
+    assert len(address) > 20_000
+
+
+def test_what_is_copied_runs(page: Page, files) -> None:
+    page.open(files["sk120"].as_uri())
+    page.ready()
+    scene = "const scene = JSON.parse(document.getElementById('scene').textContent);"
+    command = page.js(scene + "return SK.words.command(scene, SK.state)")
+    assert command.startswith("sk120stiff stiffness motoman_sk120 --pose '-33.2004,15.9,-55.5957")
+    assert " --wrench '" in command
+    source = page.js(scene + "return SK.words.python(scene, SK.state)")
+    space: dict[str, object] = {}
+    exec(source, space)
+    np.testing.assert_allclose(space["a"], sk120_scene().first_pose, atol=1e-9)
+    np.testing.assert_allclose(space["wrench"], sk120_scene().first_load, atol=1e-6)
+
+
+def test_the_notebook_cell_shows_the_scene(page: Page, tmp_path) -> None:
+    cell = tmp_path / "cell.html"
+    cell.write_text(f"<!doctype html><meta charset=utf-8>{sk120_scene()._repr_html_()}")
+    page.open(cell.as_uri())
+    page.driver.switch_to.frame(0)
+    page.ready()
+    page.driver.switch_to.default_content()
+    assert colours(page.pixels("notebook")) > 2000
+    clean(page)
+
+
+@pytest.mark.parametrize("name", ["sk120", "gantry", "capsules"])
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_it_fits_the_window(page: Page, files, name: str, size: tuple[int, int]) -> None:
+    page.open(files[name].as_uri(), size)
+    page.ready()
+    assert page.js("return document.documentElement.scrollWidth") <= size[0]
+    box = page.js(
+        "const r = document.getElementById('pane').getBoundingClientRect();"
+        "return [r.width, r.height]"
+    )
+    assert box[0] >= min(size[0], 640)
+    assert box[1] >= 300
+    assert colours(page.pane(f"{name}_{size[0]}")) > 500
+    clean(page)
+
+
+def test_a_report_with_a_scene_opens_from_disk(page: Page, tmp_path) -> None:
+    path = Report("Motoman SK120", [Section("Scene", [SceneFrame(sk120_scene(), "SK120")])]).write(
+        tmp_path / "report.html"
+    )
+    for size in (DESKTOP, PHONE):
+        page.open(path.as_uri(), size)
+        page.js("document.querySelector('iframe').scrollIntoView()")
+        page.wait("document.querySelector('iframe').contentDocument")
+        page.driver.switch_to.frame(0)
+        page.ready()
+        page.driver.switch_to.default_content()
+        assert page.js("return document.documentElement.scrollWidth") <= size[0]
+        assert colours(page.pixels(f"report_{size[0]}")) > 1000
+    clean(page)
