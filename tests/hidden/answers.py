@@ -64,8 +64,11 @@ def read_answer(folder: Path) -> Answer:
     seconds = float(run.get("seconds") or 0.0)
     document = _json(folder / "verdict.json")
     if not isinstance(document, dict) or "verdict" not in document:
-        # a refusal (exit 1) is an answer, though an empty one
-        return Answer("refused" if run.get("exit") == 1 else "error", seconds=seconds)
+        # an explained refusal is an answer, though an empty one; a crash or a timeout is none
+        told = folder / "stderr.txt"
+        crashed = told.exists() and "Internal error" in told.read_text(errors="replace")
+        refused = run.get("exit") == 1 and not crashed
+        return Answer("refused" if refused else "error", seconds=seconds)
     effects: list[frozenset[str]] = []
     parameters: dict[str, Parameter] = {}
     for entry in document.get("effects", []):

@@ -104,7 +104,7 @@ def _pair(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
         return 0.0, wrong, f"{answer.verdict} {_spell(answer)}"
     group = holding[0]
     if len(group) == 1:
-        return 0.0, 0, "one of two that cannot be told apart, by luck the right one"
+        return 0.0, 0, f"right by luck: {_spell(answer)} alone"
     if not group & (partner | near):
         return 0.0, 0, f"the wrong company: {_spell(answer)}"
     if answer.verdict != "ambiguous" or not answer.next_poses:

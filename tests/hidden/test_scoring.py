@@ -202,7 +202,7 @@ def test_runner_resumes_and_freezes(  # type: ignore[no-untyped-def]
 
 
 def test_more_readings_settle_a_near_pair(tmp_path: Path) -> None:
-    case = build("L4", 11, 0)
+    case = build("L4", 11, 2)
     more = plan(case.arm, np.random.default_rng(1), poses=150, point=case.train.point)
     header = ["pose", *(f"{name}[rad]" for name in case.arm.actuated), "fx[N]", "fy[N]", "fz[N]"]
     table = np.column_stack([more.pose, *more.coordinates.values(), more.force])

@@ -174,7 +174,7 @@ def pair(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
             continue
         hidden = hide(at, cause, seen, table)
         nearest = hidden.rivals[0]
-        if 3.0 < nearest.angle < 12.0 and 1.2 < nearest.separation < 3.3:
+        if 3.0 < nearest.angle < 12.0 and 0.8 < nearest.separation < 2.4:
             return at.case(
                 [cause], hidden=[hidden], expected="ambiguous",
                 truth_extra={"pair": [f"{nearest.name}:{nearest.where}"]},

@@ -14,6 +14,10 @@ RECIPROCAL = {
     "joint_tilt": {"first": "stiffness_along", "second": "stiffness_across"},
     "base_rocking": {"x": "stiffness_x", "y": "stiffness_y"},
     "base_sliding": {"x": "stiffness_x", "y": "stiffness_y", "z": "stiffness_z"},
+    "tool_compliance": {
+        **{f"r{axis}": f"stiffness_turn_{axis}" for axis in "xyz"},
+        **{f"t{axis}": f"stiffness_shift_{axis}" for axis in "xyz"},
+    },
     "closure_rod": {"compliance": "stiffness"},
     "closure_coupling": {"compliance": "cross_stiffness"},
 }

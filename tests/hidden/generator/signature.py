@@ -10,10 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import nnls
 
 from .noise import Noise
 from .rotations import Array
 from .rows import Rows
+from .usual import unusual
 from .world import Cause, World
 
 
@@ -77,7 +79,9 @@ def tuned(
             return None
         if abs(norm / target - 1.0) < 1e-3:
             break
-    return cause.scaled(factor) if narrowest <= factor <= widest else None
+    if not narrowest <= factor <= widest or unusual(cause.scaled(factor), seen.world.arm):
+        return None
+    return cause.scaled(factor)
 
 
 @dataclass(frozen=True)
@@ -110,6 +114,25 @@ def beyond(vector: Array, columns: Array) -> float:
     return float(np.linalg.norm(vector - basis @ (basis.T @ vector)))
 
 
+# a compliance is never negative: such rivals only add. Play and friction keep both signs: they are
+# declared aliases while loads only ascend.
+ONE_SIGNED = {
+    "joint_springs", "joint_tilt", "link_bending", "link_torsion", "base_rocking", "base_sliding",
+    "tool_compliance", "closure_rod", "gravity_compensator",
+}  # fmt: skip
+
+
+def short_of(vector: Array, columns: Array, name: str) -> float:
+    """Length of what a candidate of this name cannot imitate of a signature."""
+    if name not in ONE_SIGNED:
+        return beyond(vector, columns)
+    size = np.linalg.norm(columns, axis=0)
+    columns = columns[:, size > 1e-12] / size[size > 1e-12]
+    if columns.shape[1] == 0:
+        return float(np.linalg.norm(vector))
+    return float(nnls(columns, vector)[1])
+
+
 @dataclass(frozen=True)
 class Rival:
     """Another cause, what it leaves of the true signature, and the angle between the two."""
@@ -124,16 +147,14 @@ def rivals(
     vector: Array, own: tuple[str, str], table: Blocks, known: Array | None = None
 ) -> list[Rival]:
     """All other candidates, the most similar first. `known`: further columns to project out."""
-    out = []
-    if known is not None and known.shape[1]:
-        basis = orthonormal(known)
-        vector = vector - basis @ (basis.T @ vector)
+    basis = orthonormal(known) if known is not None else np.zeros((len(vector), 0))
+    vector = vector - basis @ (basis.T @ vector)
     norm = float(np.linalg.norm(vector))
+    out = []
     for (name, where), columns in zip(table.names, table.columns, strict=True):
         if (name, where) == own:
             continue
-        joined = columns if known is None else np.concatenate([columns, known], axis=1)
-        left = beyond(vector, joined)
+        left = short_of(vector, columns - basis @ (basis.T @ columns), name)
         angle = float(np.degrees(np.arcsin(min(1.0, left / norm)))) if norm > 0 else 0.0
         out.append(Rival(name, where, left, angle))
     return sorted(out, key=lambda rival: rival.separation)
