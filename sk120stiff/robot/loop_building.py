@@ -65,7 +65,7 @@ def loop_coupling(
     felt = linear.A[np.concatenate([c.coordinates for c in constraints])].any(axis=0)
     scale = np.where(felt, np.where(turns, 1.0, size), np.inf)
     for name in start:
-        tree.joint_index(name)
+        _joint(tree, name, "start of the closures")
     wanted = np.array([start.get(name, 0.0) for name in names])
     rows = _rows(linear, constraints, wanted, scale, len(actuated), dependent)
     closer = Closer(linear, len(actuated), scale, constraints, rows)
@@ -151,6 +151,14 @@ def _constraint(tree: Tree, closure: Closure) -> Constraint:
     return Constraint(closure, (_beyond(near, shared), _beyond(far, shared)))
 
 
+def _joint(tree: Tree, name: str, where: str) -> None:
+    """Make sure that the joint exists."""
+    try:
+        tree.joint_index(name)
+    except InputError as error:
+        raise InputError(error.what, where=where, remedy=error.remedy) from error
+
+
 def _root(tree: Tree) -> str:
     return next(name for name in tree.frame_names if tree.body(name)[0] < 0)
 
@@ -195,7 +203,7 @@ def _dependent(
         named = constraint.closure.dependent
         where = f"closure {constraint.closure.name!r}"
         for name in named:
-            tree.joint_index(name)
+            _joint(tree, name, where)
             why = ""
             if name in followers:
                 why = f"it follows {followers[name].driver!r} by a rule"

@@ -35,7 +35,8 @@ def urdf(name: str, *joints: str) -> str:
         part.split('"')[0] for key in ('parent link="', 'child link="') for part in
         text.split(key)[1:]
     )  # fmt: skip
-    return f'<robot name="{name}">{"".join(f"<link name={chr(34)}{k}{chr(34)}/>" for k in links)}{text}</robot>'
+    bodies = "".join(f'<link name="{link}"/>' for link in links)
+    return f'<robot name="{name}">{bodies}{text}</robot>'
 
 
 def write_robot(folder: Path, text: str, **keys: object) -> Path:
