@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_data, provenance, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
-from sk120stiff.cli.tables import table
-from sk120stiff.identify import Fit, fit, weak_directions
-from sk120stiff.model import write_model
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.effects import effect
+from sk120stiff.errors import InputError
+from sk120stiff.identify import (
+    Compared,
+    Fit,
+    HeldOut,
+    compare,
+    fit,
+    fit_report,
+    held_out,
+    lack_of_fit,
+    profile_intervals,
+    weak_directions,
+)
+from sk120stiff.identify.report import noise_sentence, place_of
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model, read_model, write_model
+
+Interval = tuple[float, float]
 
 
 class Method(StrEnum):
@@ -30,69 +48,234 @@ def command(
     method: Annotated[
         Method, typer.Option(help="Trust-region-reflective, or Levenberg-Marquardt.")
     ] = Method.trf,
+    effects: Annotated[
+        list[str] | None,
+        typer.Option("--with", metavar="EFFECT", help="Identify this too: 'name' or 'name:where'."),
+    ] = None,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PARAM", help="Keep this parameter, 'effect:where.parameter'."),
+    ] = None,
+    free: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PARAM", help="Estimate only the parameters named so."),
+    ] = None,
+    robust: Annotated[
+        bool, typer.Option("--robust", help="Trust readings less that lie far from all others.")
+    ] = False,
+    profile: Annotated[
+        bool, typer.Option("--profile", help="Profile-likelihood intervals: exact, and slower.")
+    ] = False,
+    leave_out: Annotated[
+        bool, typer.Option("--held-out", help="The error at poses left out of the fit.")
+    ] = False,
+    others: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--compare",
+            metavar="MODEL",
+            help="Compare with this: a model file, or effects to add, 'base_rocking+joint_tilt:..'",
+        ),
+    ] = None,
     out: OutOption = None,
 ) -> Answer:
     """Spring values and their uncertainty from measured deflections.
 
+    Says how well each value is known, what these readings cannot tell apart, and whether model and
+    readings agree.
+
     Example: sk120stiff identify robots/motoman_sk120/data/table2_measured.csv --out model.yaml
     """
     readings, robot = open_data(data)
-    found = fit(start_model(robot, model), readings, method=method.value)
+    plain = start_model(robot, model)
+    start = plain
+    for name in effects or ():
+        start = with_effect(start, name, readings)
+    start = with_freedom(start, fix or (), free)
+    found = fit(start, readings, method=method.value, robust=robust)
+    intervals: Sequence[Interval] | None = None
+    if profile:
+        with progress_bar("profile") as report:
+            intervals = profile_intervals(found, progress=report)
+    error: HeldOut | None = None
+    if leave_out:
+        with progress_bar("held out") as report:
+            error = held_out(found, progress=report)
+    lines: tuple[Compared, ...] = ()
+    if others:
+        models = {"model": start}
+        models.update({name: _other(plain, name, readings) for name in others})
+        with progress_bar("compare") as report:
+            lines = compare(models, readings, noise=found.problem.noise, progress=report)
     if out is not None:
         write_model(replace(found.model, provenance=provenance(data, readings)), out)
-    weak = weak_directions(found)
     document = {
         "robot": robot.name,
-        "parameters": parameter_rows(found),
+        "parameters": parameter_rows(found, intervals),
         "rms_um": found.rms * 1e6,
         "sigma_um": found.sigma * 1e6,
         "sigma_stated": found.sigma_stated,
         "chi_square": found.chi_square,
         "degrees_of_freedom": found.degrees_of_freedom,
+        "lack_of_fit": lack_of_fit(found),
         "lack_of_fit_probability": found.lack_of_fit,
+        "aic": found.aic,
+        "bic": found.bic,
         "condition": found.condition,
         "correlation": found.correlation,
-        "weak_directions": list(weak),
-        "noise": found.problem.noise.describe(),
+        "weak_directions": list(weak_directions(found)),
+        "noise": noise_sentence(found),
+        "noise_reasons": found.reasons,
+        "down_weighted": _down_weighted(found),
+        "held_out": None if error is None else _held_out(error),
+        "comparison": [_compared(line) for line in lines],
         "iterations": found.iterations,
         "method": method.value,
         "model": out,
     }
-    return Answer(document, _parts(found, weak))
+    return Answer(document, _parts(found, intervals, error, lines, out))
 
 
-def parameter_rows(found: Fit) -> list[dict[str, object]]:
-    """The estimated parameters as the JSON of several commands states them."""
+def parameter_rows(
+    found: Fit, profile: Sequence[Interval] | None = None
+) -> list[dict[str, object]]:
+    """The estimated parameters as the JSON of several commands states them.
+
+    `value` ± `std` are the estimate and its standard error to first order; `interval_95` is made in
+    compliances, where the readings are linear, and is the better one for soft data. A value that
+    the readings do not show is null.
+    """
+    rows: list[dict[str, object]] = []
+    starts = found.problem.model.values[found.problem.free]
+    ends = found.intervals()
+    for k, p in enumerate(found.parameters):
+        shown = bool(found.identifiable[k])
+        row: dict[str, object] = {
+            "name": p.name,
+            "value": p.public_value if shown else None,
+            "std": p.public_std if shown else None,
+            "unit": p.spec.unit,
+            "interval_95": ends[k],
+            "start": p.spec.public(float(starts[k])),
+            "at_bound": bool(found.at_bound[k]),
+            "identifiable": shown,
+            "plausible": abs(p.value) <= p.spec.plausible,
+        }
+        if profile is not None:
+            row["profile_95"] = profile[k]
+        rows.append(row)
+    return rows
+
+
+def with_effect(model: Model, text: str, readings: Measurements) -> Model:
+    """The model with an effect more, given as ``name`` or ``name:where``.
+
+    Raises
+    ------
+    InputError
+        No such effect, it cannot act there, or the readings lack what its law needs.
+    """
+    from sk120stiff.effects import situation_of
+
+    name, _, where = text.partition(":")
+    found = effect(
+        model.robot, name, where or None, poses=readings.poses, timed=readings.time is not None
+    )
+    if not found.applies_to(situation_of(model.robot, readings)):
+        raise InputError(
+            f"these readings lack what the effect {found.id!r} needs",
+            where=str(readings.path or "measurements"),
+            remedy="See what its law takes: an order, branches, several readings of a pose, a "
+            "weight.",
+        )
+    return model + found
+
+
+def with_freedom(model: Model, fix: Sequence[str], free: Sequence[str] | None) -> Model:
+    """The model with the named parameters fixed, or only the named ones free.
+
+    Raises
+    ------
+    InputError
+        The model has no such parameter.
+    """
+    for name in (*fix, *(free or ())):
+        model.parameter(name)  # refuses unknown names
+    return replace(
+        model,
+        parameters=tuple(
+            replace(p, free=(p.free if free is None else p.name in free) and p.name not in fix)
+            for p in model.parameters
+        ),
+    )
+
+
+def _other(base: Model, text: str, readings: Measurements) -> Model:
+    if Path(text).suffix in (".yaml", ".yml") or Path(text).is_file():
+        return read_model(text, base.robot)
+    for name in text.strip("+ ").split("+"):
+        base = with_effect(base, name.strip(), readings)
+    return base
+
+
+def _down_weighted(found: Fit) -> list[dict[str, object]]:
+    weights, measurements = found.problem.weights, found.problem.measurements
+    if weights is None:
+        return []
     return [
         {
-            "name": p.name,
-            "value": p.public_value,
-            "std": p.public_std,
-            "unit": p.spec.unit,
-            "at_bound": bool(held),
+            "reading": int(row),
+            "pose": measurements.pose[row],
+            "where": place_of(measurements, int(row)),
+            "weight": float(weights[row]),
         }
-        for p, held in zip(found.parameters, found.at_bound, strict=True)
+        for row in found.down_weighted
     ]
 
 
-def _parts(found: Fit, weak: tuple[str, ...]) -> list[object]:
-    rows = []
-    for p, start in zip(found.parameters, found.problem.start * found.problem.scale, strict=True):
-        std = p.public_std
-        share = "" if std is None or not np.isfinite(std) else f"{100 * std / p.public_value:.1f} %"
-        error = "on its bound" if std is None else f"{std:.3g}"
-        rows.append((p.name, p.public_value, error, share, p.spec.unit, p.spec.public(start)))
-    size = "stated" if found.sigma_stated else "estimated"
-    lines = [
-        f"Gap {found.rms * 1e6:.1f} µm rms per axis over {len(found.gap)} readings; noise of one "
-        f"reading {found.sigma * 1e6:.1f} µm ({size}); condition {found.condition:.3g}.",
-        found.problem.noise.describe(),
-    ]
-    if found.lack_of_fit is not None:
-        verdict = "agree within the noise" if found.lack_of_fit > 0.01 else "do not agree"
-        lines.append(
-            f"Model and data {verdict}: χ² = {found.chi_square:.1f} on "
-            f"{found.degrees_of_freedom} degrees of freedom, p = {found.lack_of_fit:.2g}."
+def _held_out(error: HeldOut) -> dict[str, object]:
+    return {"rms_um": error.rms * 1e6, "std_um": error.std * 1e6, "folds": error.folds}
+
+
+def _compared(line: Compared) -> dict[str, object]:
+    return {
+        "name": line.name,
+        "parameters": line.fit.estimated,
+        "rms_um": line.fit.rms * 1e6,
+        "held_out": None if line.held_out is None else _held_out(line.held_out),
+        "loss_um": None if line.loss is None else line.loss * 1e6,
+        "loss_std_um": None if line.loss_std is None else line.loss_std * 1e6,
+        "aic": line.aic,
+        "bic": line.bic,
+        "note": line.note,
+    }
+
+
+def _parts(
+    found: Fit,
+    intervals: Sequence[Interval] | None,
+    error: HeldOut | None,
+    lines: Sequence[Compared],
+    out: Path | None,
+) -> list[object]:
+    parts: list[object] = [fit_report(found, profile=intervals)]
+    if error is not None:
+        parts.append(
+            f"At poses left out of the fit: {error.rms * 1e6:.3g} ± {error.std * 1e6:.2g} µm rms "
+            f"per axis ({error.folds} parts)."
         )
-    columns = ["parameter", "value", "std. error", "", "unit", "start"]
-    return [table("Identified", columns, rows), *lines, *weak]
+    if lines:
+        columns = ["model", "values", "fitted", "held out", "±", "loss", "±", "ΔAIC", "ΔBIC", ""]
+        parts.append(table("Models [µm rms per axis]", columns, [_cells(x) for x in lines]))
+    if out is not None:
+        parts.append(f"Written to {out}.")
+    return parts
+
+
+def _cells(line: Compared) -> tuple[object, ...]:
+    error = line.held_out
+    held: tuple[object, ...] = ("", "", "", "")
+    if error is not None and line.loss is not None and line.loss_std is not None:
+        held = tuple(1e6 * x for x in (error.rms, error.std, line.loss, line.loss_std))
+    fitted = line.fit.rms * 1e6
+    return (line.name, line.fit.estimated, fitted, *held, line.aic, line.bic, line.note)

@@ -222,5 +222,10 @@ def with_values(found: Fit) -> Fit:
     for index, error, held in zip(problem.free, errors, found.at_bound, strict=True):
         std[index] = None if held else float(error)
     x = np.where(found.at_bound & (np.abs(found.x) < 1e-6), 0.0, found.x)
-    values = problem.values(x)
-    return replace(found, model=problem.model.with_values(values, std, origin="identified"))
+    model = problem.model.with_values(problem.values(x), std, origin="identified")
+    parameters = list(model.parameters)
+    for index, held, shown in zip(problem.free, found.at_bound, found.identifiable, strict=True):
+        if held or not shown:
+            origin = "identified: on its bound" if held else "not identifiable, not to be trusted"
+            parameters[index] = replace(parameters[index], origin=origin)
+    return replace(found, model=replace(model, parameters=tuple(parameters)))

@@ -41,7 +41,7 @@ class Problem:
         if self.measurements.displacement is None:
             raise InputError(
                 "there are no measured displacements",
-                where=where,
+                where=f"{where}, line 1",
                 remedy="Add the columns dx, dy, dz (or x, y, z) with their unit.",
             )
         if not self.measurements.wrench.any():

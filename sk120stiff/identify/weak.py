@@ -22,7 +22,8 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
     """Sentences on what a fit cannot tell apart, hardly knows, or found on a physical bound.
 
     Parameters that no reading shows come first, then those of which only combinations are known,
-    those that are strongly correlated, those on a bound, and single values that are vague.
+    those that are strongly correlated, those on a bound, those that are larger than is plausible,
+    and single values that are vague.
     """
     said: list[str] = []
     told: set[int] = set()
@@ -32,6 +33,8 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
     for first, second in _correlated(fit):
         said.append(_correlation(fit, first, second))
     said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound)]
+    far = (np.abs(fit.x) > fit.problem.span) & fit.identifiable
+    said += [_implausible(fit.parameters[k]) for k in np.flatnonzero(far)]
     if fit.degrees_of_freedom < 1 and not fit.sigma_stated:
         said.append(
             "As many values were estimated as were read, and no uncertainty is stated: "
@@ -167,6 +170,16 @@ def _bound(fit: Fit, k: int) -> str:
     return (
         f"{parameter.name} lies on its physical bound; its 95 % interval reaches from {low:.3g} to "
         f"{high:.3g} {unit}."
+    )
+
+
+def _implausible(parameter: Parameter) -> str:
+    spec = parameter.spec
+    limit = abs(spec.public(spec.plausible))
+    than = "softer" if spec.reciprocal else "larger"
+    return (
+        f"{parameter.name} is {than} than is plausible ({parameter.public_value:.3g}, limit "
+        f"{limit:.3g} {spec.unit}): it fits, but it explains nothing."
     )
 
 
