@@ -112,7 +112,7 @@ def test_batches_of_any_shape_are_loops():
 
 
 def test_weight_presses_as_its_potential_says():
-    robot, tree, _, _ = CASES[0]
+    robot = CASES[0][0]
     fresh = UrdfTree(six_axis_arm())
     for pose in np.random.default_rng(4).uniform(-1, 1, (3, 6)):
         values = dict(zip(robot.actuated, pose, strict=True))
