@@ -2,7 +2,7 @@
 
 from sk120stiff.workspace.arm import ElasticArm, elastic_arm
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
-from sk120stiff.workspace.finished import MapCheck, open_map, verify_map
+from sk120stiff.workspace.finished import LoadSummary, MapCheck, open_map, summarise_map, verify_map
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
 from sk120stiff.workspace.mapping import MapReport, write_map
@@ -13,6 +13,7 @@ __all__ = [
     "ElasticArm",
     "Grid",
     "JointGrid",
+    "LoadSummary",
     "MapCheck",
     "MapJob",
     "MapReport",
@@ -24,6 +25,7 @@ __all__ = [
     "parse_axes",
     "solve_inverse",
     "starting_poses",
+    "summarise_map",
     "verify_map",
     "write_map",
 ]

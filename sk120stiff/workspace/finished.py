@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sk120stiff.errors import InputError
+from sk120stiff.workspace.field import STATUS, UNKNOWN_CLASS
 from sk120stiff.workspace.store import MANIFEST, sha256_of, zarr_or_explain
 
 if TYPE_CHECKING:
@@ -79,3 +84,86 @@ def open_map(path: str | os.PathLike[str]) -> xarray.Dataset:
         verify_map(folder)  # says so
     dataset: xarray.Dataset = xarray.open_zarr(folder, consolidated=True)
     return dataset
+
+
+@dataclass(frozen=True)
+class LoadSummary:
+    """One load of a map in a few numbers.
+
+    Attributes
+    ----------
+    softest, stiffest
+        Smallest and largest minimum stiffness of all points [N/m].
+    softest_at, stiffest_at
+        Coordinates of those points by axis [rad or m].
+    critical
+        Smallest critical load factor.
+    unstable
+        Number of points at which K_θ − K_C is not positive definite.
+    """
+
+    softest: float
+    softest_at: dict[str, float]
+    stiffest: float
+    stiffest_at: dict[str, float]
+    critical: float
+    unstable: int
+
+
+def summarise_map(path: str | os.PathLike[str]) -> tuple[tuple[LoadSummary, ...], dict[str, int]]:
+    """Every load's summary, and how many points have which status; read chunk by chunk."""
+    dataset = open_map(path)
+    stiffness = dataset["minimum_stiffness"]
+    axes = stiffness.dims[1:]
+    parts = dict(zip(stiffness.dims, stiffness.data.chunks, strict=True))
+    ends = {axis: np.cumsum([0, *parts[axis]]) for axis in axes}
+    counts = dict.fromkeys(STATUS, 0)
+    best: list[_Extremes] = [_Extremes() for _ in range(stiffness.sizes["load"])]
+    for corner in itertools.product(*(range(len(parts[axis])) for axis in axes)):
+        where = {
+            axis: slice(int(ends[axis][k]), int(ends[axis][k + 1]))
+            for axis, k in zip(axes, corner, strict=True)
+        }
+        chunk = dataset.isel(where).load()
+        if "status" in chunk:
+            for number, count in enumerate(np.bincount(chunk["status"].values.ravel())):
+                counts[STATUS[number]] += int(count)
+        else:
+            counts[STATUS[0]] += int(chunk["conditioning"].size)
+        for load, extremes in enumerate(best):
+            extremes.take(chunk.isel(load=load), [str(axis) for axis in axes])
+    return tuple(extremes.summary() for extremes in best), counts
+
+
+class _Extremes:
+    """Extremes of one load, gathered chunk by chunk."""
+
+    def __init__(self) -> None:
+        self.low: tuple[float, dict[str, float]] = (math.inf, {})
+        self.high: tuple[float, dict[str, float]] = (-math.inf, {})
+        self.critical = math.inf
+        self.unstable = 0
+
+    def take(self, chunk: xarray.Dataset, axes: list[str]) -> None:
+        values = chunk["minimum_stiffness"].values
+        if not np.isfinite(values).any():
+            return
+        for pick, better in ((np.nanargmin, True), (np.nanargmax, False)):
+            where = np.unravel_index(int(pick(values)), values.shape)
+            value = float(values[where])
+            if (value < self.low[0]) if better else (value > self.high[0]):
+                at = {
+                    axis: float(chunk[axis].values[k]) for axis, k in zip(axes, where, strict=True)
+                }
+                if better:
+                    self.low = (value, at)
+                else:
+                    self.high = (value, at)
+        self.critical = min(self.critical, float(np.nanmin(chunk["critical_load_factor"].values)))
+        stability = chunk["stability"].values
+        self.unstable += int(((stability != 0) & (stability != UNKNOWN_CLASS)).sum())
+
+    def summary(self) -> LoadSummary:
+        return LoadSummary(
+            self.low[0], self.low[1], self.high[0], self.high[1], self.critical, self.unstable
+        )

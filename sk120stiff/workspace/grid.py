@@ -14,7 +14,9 @@ from sk120stiff.errors import InputError
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import to_si
 
-_ITEM = re.compile(r"\s*([^=\s]+)\s*=\s*([^\sA-Za-z°µ]*)\s*(.*?)\s*")
+_NUMBERS = r"(?:[^\sA-Za-z°µ]|(?<=[\d.])[eE](?=[+-]?\d))*"
+_ITEM = re.compile(rf"\s*([^=\s]+)\s*=\s*({_NUMBERS})\s*(.*?)\s*")
+LONGEST_AXIS = 10_000_000
 _EXAMPLE = (
     "Write it like 'joint_2_l=-70:70:5 deg' (start:stop:step; an empty start or stop is the "
     "joint's limit)."
@@ -193,6 +195,12 @@ def _values(text: str, unit: str, limit: tuple[float, float, str], where: str) -
     if not step > 0.0 or stop < start:
         raise InputError(
             f"{text!r} has no points", where=where, remedy="start ≤ stop and step > 0 are needed."
+        )
+    if (stop - start) / step > LONGEST_AXIS:
+        raise InputError(
+            f"{text!r} has {(stop - start) / step:.3g} points",
+            where=where,
+            remedy="Take larger steps.",
         )
     # A billionth of a step keeps a stop that is a whole number of steps away.
     steps = np.arange(math.floor((stop - start) / step + 1e-9) + 1, dtype=float)

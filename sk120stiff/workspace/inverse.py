@@ -88,10 +88,24 @@ def rotation_vector(rotation: Array) -> Array:
     longest = np.argmax(np.linalg.norm(symmetric, axis=-2), axis=-1)
     column = np.take_along_axis(symmetric, longest[..., None, None], axis=-1)[..., 0]
     column = column / np.maximum(np.linalg.norm(column, axis=-1, keepdims=True), 1e-300)
+    column = np.where((column * skew).sum(-1, keepdims=True) < 0.0, -column, column)
     usual = skew / np.maximum(2.0 * sine, 1e-300)[..., None]
     near_half = (sine < 1e-6) & (cosine < 0.0)
     unit = np.where(near_half[..., None], column, usual)
     return np.where((angle < 1e-12)[..., None], 0.5 * skew, angle[..., None] * unit)
+
+
+def rotation_of(roll: float, pitch: float, yaw: float) -> Array:
+    """(3, 3) rotation Rz(yaw) Ry(pitch) Rx(roll), as a URDF writes it [rad]."""
+    cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
+    cy, sy = np.cos(yaw), np.sin(yaw)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
 
 
 def starting_poses(arm: ElasticArm, count: int, rest: Array) -> Array:

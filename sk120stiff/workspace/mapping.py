@@ -15,6 +15,7 @@ from sk120stiff.workspace.store import MapStore
 
 Progress = Callable[[int, int], None]
 
+FAST_POINTS, SLOW_POINTS = 1 << 17, 1 << 12  # of a chunk: for one load, for slow work
 CONNECT_SECONDS = 5  # after which a scheduler counts as unreachable
 STARVED_SECONDS = 120  # after which a cluster without workers counts as gone
 IN_FLIGHT = 3  # chunks per worker that are handed out ahead
@@ -52,6 +53,7 @@ def write_map(
     *,
     scheduler: str | None = None,
     threads: int | None = None,
+    chunk_points: int | None = None,
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> MapReport:
@@ -71,6 +73,9 @@ def write_map(
         it the map is computed here.
     threads
         Threads per process; one per available core by default.
+    chunk_points
+        Points that are computed, held in memory and written together; by default as many as make
+        about a second's work.
     overwrite
         Replace another map of that name.
     progress
@@ -86,7 +91,7 @@ def write_map(
     begin = time.perf_counter()
     client = None if scheduler is None else _connect(scheduler)
     try:
-        store = MapStore(Path(path).absolute(), job)
+        store = MapStore(Path(path).absolute(), job, chunk_points or _chunk_points(job))
         done = store.prepare(overwrite=overwrite)
         size, number = job.points.grid.size, store.chunks.number
         missing = [chunk for chunk in range(number) if chunk not in done]
@@ -111,6 +116,12 @@ def write_map(
     return MapReport(store.path, size, computed, time.perf_counter() - begin, number)
 
 
+def _chunk_points(job: MapJob) -> int:
+    if job.points.cartesian or job.arm.varying is not None:
+        return SLOW_POINTS
+    return max(SLOW_POINTS, FAST_POINTS // len(job.loads))
+
+
 def _points(store: MapStore, chunk: int) -> int:
     begin, end = store.chunks.stretch(chunk)
     return end - begin
@@ -123,7 +134,7 @@ def _connect(address: str) -> Any:
         raise MissingPart("distributed", "cluster", needed_for="a cluster") from error
     try:
         connect: Any = Client
-        return connect(address, timeout=CONNECT_SECONDS, set_as_default=False)
+        return connect(address, timeout=CONNECT_SECONDS)
     except (OSError, ValueError, TimeoutError) as error:
         raise InputError(
             f"no Dask scheduler answers at {address!r}",

@@ -27,7 +27,6 @@ from sk120stiff.workspace.field import UNKNOWN_CLASS, MapJob, Numbers, Variable
 from sk120stiff.workspace.grid import Chunks
 
 PROGRESS, MANIFEST = ".progress", "manifest.json"
-JOINT_POINTS, POSITION_POINTS = 1 << 17, 1 << 12  # points of a chunk, for one load
 VERSION = 1  # of the layout and of what the numbers mean
 
 
@@ -41,16 +40,18 @@ class MapStore:
         The folder, by custom ``….zarr``.
     job
         What the map holds.
+    chunk_points
+        Points that a chunk has at most.
     """
 
     path: Path
     job: MapJob
+    chunk_points: int
 
     @property
     def chunks(self) -> Chunks:
         """How the grid is cut."""
-        points = POSITION_POINTS if self.job.points.cartesian else JOINT_POINTS
-        return Chunks(self.job.points.grid.shape, max(256, points // len(self.job.loads)))
+        return Chunks(self.job.points.grid.shape, self.chunk_points)
 
     def prepare(self, *, overwrite: bool = False) -> frozenset[int]:
         """Make the folder or take up what an earlier run left; the chunks that are done.

@@ -1,0 +1,261 @@
+"""`sk120stiff map ROBOT --grid ... --out STORE.zarr`."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import open_model, open_robot, pose_of, wrench_of
+from sk120stiff.cli.options import (
+    AtOption,
+    BaseOption,
+    ModelOption,
+    PoseOption,
+    RobotArgument,
+    ToolOption,
+)
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.robot.coupling import Array
+from sk120stiff.units import parse_values
+from sk120stiff.workspace import (
+    ElasticArm,
+    Grid,
+    JointGrid,
+    LoadSummary,
+    MapJob,
+    MapReport,
+    PositionGrid,
+    elastic_arm,
+    parse_axes,
+    summarise_map,
+    verify_map,
+    write_map,
+)
+from sk120stiff.workspace.grid import CARTESIAN
+from sk120stiff.workspace.inverse import rotation_of
+
+
+def command(
+    robot: RobotArgument,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="STORE.zarr", help="Folder to write the map to.")
+    ],
+    grid: Annotated[
+        list[str],
+        typer.Option(
+            "--grid",
+            metavar="AXES",
+            help="Axes as NAME=START:STOP:STEP with units, 'joint_2_l=-70:70:2; joint_3_u=::2 deg' "
+            "(an empty start or stop is the joint's limit), or positions of the point, "
+            "'x=0:3:0.1; y=0; z=-1:2:0.1 m'. May be given several times.",
+        ),
+    ],
+    model: ModelOption = None,
+    wrench: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--wrench",
+            metavar="VALUES",
+            help="A load as in 'stiffness'; give it several times for several loads.",
+            show_default="no load",
+        ),
+    ] = None,
+    pose: PoseOption = None,
+    at: AtOption = None,
+    axis: Annotated[
+        str | None,
+        typer.Option(
+            "--tool-axis",
+            metavar="X,Y,Z",
+            help="For positions: direction of the tool's z axis in the base frame ('0,0,-1': "
+            "down). Rotation about it is free.",
+            show_default="any orientation",
+        ),
+    ] = None,
+    orientation: Annotated[
+        str | None,
+        typer.Option(
+            metavar="RPY",
+            help="For positions: orientation of the tool, roll, pitch and yaw as in a URDF "
+            "('180,0,0 deg').",
+            show_default="any orientation",
+        ),
+    ] = None,
+    directions: Annotated[
+        bool, typer.Option("--directions", help="Store the softest and stiffest directions too.")
+    ] = False,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Dask scheduler (tcp://host:8786) whose workers share the folder of the map.",
+            show_default="compute here",
+        ),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace another map of that name.")
+    ] = False,
+    base: BaseOption = None,
+    tool: ToolOption = None,
+) -> Answer:
+    """Stiffness over the workspace: minimum, maximum, directions, stability under loads.
+
+    The map is a Zarr store with units and labels. A run that was stopped in whatever way goes on
+    where it was when the same command is given again. A finished map is checked against the
+    checksums of when it was written.
+
+    Example: sk120stiff map motoman_sk120 --grid 'joint_2_l=::2; joint_3_u=::2 deg'
+    --wrench '0,0,-490 N' --out sk120.zarr
+    """
+    arm_robot = open_robot(robot, base, tool)
+    arm = elastic_arm(open_model(arm_robot, model), frame=at)
+    rest = pose_of(arm_robot, pose)
+    loads = np.array([wrench_of(text) for text in wrench] if wrench else [np.zeros(6)])
+    points = _points(arm, grid, rest, axis, orientation)
+    job = MapJob(arm, points, loads, with_directions=directions)
+    with progress_bar("Mapping") as report:
+        written = write_map(job, out, scheduler=scheduler, overwrite=overwrite, progress=report)
+    check = verify_map(out)
+    if not check.intact:
+        damaged = [*check.missing, *check.damaged]
+        raise Refusal(
+            f"{len(damaged)} of {check.files} files of this map are not as they were written, the "
+            f"first is {damaged[0]}",
+            where=str(out),
+            remedy="Make it anew with --overwrite.",
+        )
+    loads_found, status = summarise_map(out)
+    document = {
+        "robot": arm.name,
+        "store": str(out),
+        "points": written.points,
+        "written": written.computed,
+        "seconds": written.seconds,
+        "chunks": written.chunks,
+        "files_verified": check.files,
+        "status": status,
+        "wrenches": loads,
+        "loads": loads_found,
+        "units": {
+            "softest": "N/m",
+            "stiffest": "N/m",
+            "critical": "1",
+            "softest_at": "rad or m",
+            "stiffest_at": "rad or m",
+        },
+    }
+    return Answer(document, parts=_parts(arm, written, check.files, status, loads, loads_found))
+
+
+def _points(
+    arm: ElasticArm, texts: list[str], rest: Array, axis: str | None, orientation: str | None
+) -> JointGrid | PositionGrid:
+    limits = {
+        joint: (float(low), float(high), "length" if slides else "angle")
+        for joint, low, high, slides in zip(
+            arm.joints, arm.lower, arm.upper, arm.slides, strict=True
+        )
+    }
+    limits |= dict.fromkeys(CARTESIAN, (-np.inf, np.inf, "length"))
+    grid = Grid(parse_axes(texts, limits))
+    names = {each.name for each in grid.axes}
+    if not names & set(CARTESIAN):
+        if axis or orientation:
+            raise InputError(
+                "an orientation of the tool was given, but the grid is over joints",
+                where="--tool-axis" if axis else "--orientation",
+                remedy="Give x, y and z in --grid.",
+            )
+        _warn_beyond_limits(grid, limits)
+        return JointGrid(grid, rest)
+    if names != set(CARTESIAN):
+        raise InputError(
+            "a grid over positions has the axes x, y and z and no other",
+            where="--grid",
+            remedy="One number makes an axis of one point: 'y=0 m'.",
+        )
+    direction = None if axis is None else _unit_vector(axis)
+    rotation = None
+    if orientation is not None:
+        rotation = rotation_of(*_three(orientation, "angle", "--orientation"))
+    return PositionGrid(grid, rest, direction, rotation)
+
+
+def _warn_beyond_limits(grid: Grid, limits: dict[str, tuple[float, float, str]]) -> None:
+    for axis in grid.axes:
+        low, high, _ = limits[axis.name]
+        slack = 1e-9 * max(1.0, float(np.abs(axis.values).max()))
+        if axis.values.min() < low - slack or axis.values.max() > high + slack:
+            warnings.warn(
+                f"the grid goes beyond the limits of {axis.name}, {low:.4g} to {high:.4g}; "
+                "those points are computed as if the joint could go there",
+                ToolkitWarning,
+                stacklevel=2,
+            )
+
+
+def _three(text: str, kind: str, where: str) -> Array:
+    values = parse_values(text, kind, where=where)
+    if values.shape != (3,):
+        raise InputError(f"{len(values)} numbers given, three are needed", where=where)
+    return values
+
+
+def _unit_vector(text: str) -> Array:
+    try:
+        vector = np.array([float(part) for part in text.replace(",", " ").split()])
+    except ValueError as error:
+        raise InputError(f"{text!r} is no direction", where="--tool-axis") from error
+    length = float(np.linalg.norm(vector))
+    if vector.shape != (3,) or not np.isfinite(length) or length == 0.0:
+        raise InputError(
+            f"{text!r} is no direction", where="--tool-axis", remedy="Write three numbers: 0,0,-1."
+        )
+    return vector / length
+
+
+def _parts(
+    arm: ElasticArm,
+    written: MapReport,
+    files: int,
+    status: dict[str, int],
+    loads: Array,
+    found: tuple[LoadSummary, ...],
+) -> list[object]:
+    rate = f", {written.computed / written.seconds:,.0f} points/s" if written.computed else ""
+    parts: list[object] = [
+        f"{written.path}: {written.points:,} points, {written.computed:,} of them computed now in "
+        f"{written.seconds:.1f} s{rate}; {files} files verified."
+    ]
+    if any(count for label, count in status.items() if label != "reached"):
+        counts = [f"{count:,} {label}" for label, count in status.items() if count]
+        parts.append("Points: " + "; ".join(counts) + ".")
+    rows = [
+        (
+            ", ".join(f"{component:g}" for component in (load if load[3:].any() else load[:3])),
+            summary.softest * 1e-6,
+            _place(arm, summary.softest_at),
+            summary.stiffest * 1e-6,
+            _place(arm, summary.stiffest_at),
+            summary.critical,
+            summary.unstable,
+        )
+        for load, summary in zip(loads, found, strict=True)
+    ]
+    head = ("load", "softest", "at", "stiffest", "at", "critical factor", "unstable points")
+    parts.append(table("Minimum principal stiffness [N/µm] over the map", head, rows))
+    return parts
+
+
+def _place(arm: ElasticArm, coordinates: dict[str, float]) -> str:
+    turns = {joint for joint, slides in zip(arm.joints, arm.slides, strict=True) if not slides}
+    return ", ".join(
+        f"{name} {np.degrees(value):.1f}°" if name in turns else f"{name} {value * 1e3:.0f} mm"
+        for name, value in coordinates.items()
+    )

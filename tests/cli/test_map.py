@@ -1,0 +1,73 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sk120stiff.workspace import open_map
+from tests.cli.conftest import Run
+
+GRID = ("--grid", "joint_2_l=-70:70:35; joint_3_u=-100:0:50 deg")
+
+
+def test_a_map_is_written_and_summed_up(run: Run, tmp_path: Path) -> None:
+    store = str(tmp_path / "m.zarr")
+    loads = ("--wrench", "0,0,-490 N", "--wrench", "100,0,0,0,10,0 N, N*m")
+    found = run("map", "motoman_sk120", *GRID, *loads, "--out", store, "--json")
+    assert found.code == 0, found.stderr
+    document = found.document
+    assert document["points"] == document["written"] == 15
+    assert document["seconds"] > 0.0
+    assert document["status"]["reached"] == 15
+    assert np.shape(document["wrenches"]) == (2, 6)
+    dataset = open_map(store)
+    softest = float(dataset["minimum_stiffness"].isel(load=0).min())
+    assert document["loads"][0]["softest"] == softest
+    again = run("map", "motoman_sk120", *GRID, *loads, "--out", store, "--json")
+    assert again.document["written"] == 0
+
+
+def test_people_see_a_table(run: Run, tmp_path: Path) -> None:
+    store = str(tmp_path / "m.zarr")
+    found = run("map", "motoman_sk120", "--grid", "x=1.8:2.2:0.2; y=0; z=0:4:2 m", "--out", store)
+    assert found.code == 0, found.stderr
+    assert "6 points" not in found.stderr
+    assert "out of reach" in found.stdout
+    assert "softest" in found.stdout
+    assert "mm" in found.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("--grid", "joint_2_l=0:1:0.1"), "unit"),
+        (("--grid", "elbow=0:1:0.1 rad"), "joint_2_l"),
+        (("--grid", "x=0:1:0.1; y=0 m"), "x, y and z"),
+        (("--grid", "x=0; y=0; z=0; joint_2_l=0 m"), "m"),
+        ((*GRID, "--wrench", "nan,0,0 N"), "nan"),
+        ((*GRID, "--wrench", "1,0,0"), "unit"),
+        ((*GRID, "--scheduler", "tcp://127.0.0.1:9"), "scheduler"),
+        ((*GRID, "--tool-axis", "0,0,-1"), "x, y and z"),
+        (("--grid", "x=0; y=0; z=0 m", "--tool-axis", "0,0,0"), "no direction"),
+        (("--grid", "x=0; y=0; z=0 m", "--orientation", "0,0 deg"), "three"),
+        (("--grid", "joint_2_l=0:1:1e-6; joint_3_u=0:1:1e-6 rad"), "GB are free"),
+    ],
+)
+def test_bad_input_ends_with_two_and_a_message(
+    run: Run, tmp_path: Path, options: tuple[str, ...], says: str
+) -> None:
+    found = run("map", "motoman_sk120", *options, "--out", str(tmp_path / "m.zarr"))
+    assert found.code == 2, found.stdout
+    assert says in found.stderr
+    assert "Traceback" not in found.stderr
+    assert not (tmp_path / "m.zarr").exists()
+
+
+def test_a_damaged_map_is_a_refusal(run: Run, tmp_path: Path) -> None:
+    store = tmp_path / "m.zarr"
+    arguments = ("map", "motoman_sk120", *GRID, "--out", str(store))
+    assert run(*arguments).code == 0
+    victim = next(path for path in (store / "stability" / "c").rglob("*") if path.is_file())
+    victim.write_bytes(victim.read_bytes()[:-1])
+    found = run(*arguments)
+    assert found.code == 1
+    assert "stability" in found.stderr
