@@ -105,9 +105,9 @@ class Elastic:
         """The same assumed spring at every joint, for a robot of which no stiffness is known."""
         springs = np.full(robot.n, ASSUMED_STIFFNESS)
         found = cls.of_springs(robot, springs, frame=frame)
-        return cls(
-            found.mechanism, found.compliance, "100 kN·m/rad assumed at every joint", assumed=True
-        )
+        unit = "100 kN/m" if all(robot.prismatic) else "100 kN·m/rad"
+        unit += " (kN/m where it slides)" if any(robot.prismatic) and "rad" in unit else ""
+        return cls(found.mechanism, found.compliance, f"{unit} assumed at every joint", True)
 
     @classmethod
     def of_model(cls, model: Model, *, at: ArrayLike | None = None, label: str = "") -> Elastic:

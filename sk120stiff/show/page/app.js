@@ -64,7 +64,7 @@ SK.start = (scene) => {
       const capped = values.map((value) => value < 0 || value * perUnit > limit);
       ellipsoid.set(frame.position, axes.directions, lengths, {
         whole: values.every((value) => value >= 0 && value !== Infinity), capped,
-        texts: values.map((value) => (!state.show.labels || !texts ? "" : value < 0 ? "unstable" : value === Infinity ? "rigid" : `${number(value * quantity.factor)} ${quantity.unit}`)),
+        texts: values.map((value) => (!state.show.labels || !texts ? "" : value < 0 ? "unstable" : value === Infinity || Math.abs(value) <= 1e-9 * Math.abs(values[0]) ? "rigid" : `${number(value * quantity.factor)} ${quantity.unit}`)),
       });
     };
     if (state.formulation === "conventional") draw(ellipsoids.conventionalFilled, "conventional", true);

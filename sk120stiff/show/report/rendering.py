@@ -122,11 +122,15 @@ def _superscript(number: int) -> str:
 
 
 def _prose(text: str) -> Markup:
-    """Plain text in which `code` and **strong** words are marked."""
-    marked = escape(text)
-    marked = re.sub(r"`([^`]+)`", r"<code>\1</code>", marked)
-    marked = re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", marked)
-    return Markup(marked)
+    """Plain text in which `code`, **strong** words and K_C-like symbols are marked."""
+    parts = re.split(r"`([^`]+)`", escape(text))
+    for k, part in enumerate(parts):
+        if k % 2:
+            parts[k] = f"<code>{part}</code>"
+        else:
+            strong = re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", part)
+            parts[k] = re.sub(r"\b([KC])_(C|X|θ)(?!\w)", r"\1<sub>\2</sub>", strong)
+    return Markup("".join(parts))
 
 
 def _slug(title: str) -> str:
