@@ -23,7 +23,7 @@ COMMANDS = {
     "explain": "What is missing when simulation and measurement disagree.",
     "simulate": "Synthetic measurements from a model: load steps, noise, zero readings.",
     "map": "Stiffness over the workspace: minimum, maximum, directions, stability under loads.",
-    "paper": "The 2005 paper's tables, figures and claims, ours beside theirs.",
+    "paper": "The 2005 paper's tables, figures, claims: ours beside theirs.",
     "view": "The robot, its ellipsoids and its gaps, live in the browser.",
 }
 

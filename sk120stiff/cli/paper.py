@@ -25,7 +25,7 @@ _COLOURS = {
 
 
 def command(out: OutFolderOption = None) -> Answer:
-    """The 2005 paper's tables, figures and claims, ours beside theirs.
+    """The 2005 paper's tables, figures, claims: ours beside theirs.
 
     With --out DIR: report.html, every figure as SVG and PNG, every table as CSV.
     """
