@@ -33,6 +33,15 @@ DataOption = Annotated[
         show_default=False,
     ),
 ]
+BeforeOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--before",
+        metavar="MODEL",
+        help="A second model, whose predictions are shown beside those of the first.",
+        show_default=False,
+    ),
+]
 NoOpenOption = Annotated[
     bool, typer.Option("--no-open", help="Print the address without opening a browser.")
 ]
@@ -62,6 +71,7 @@ def command(
     robot: RobotArgument,
     model: ModelOption = None,
     data: DataOption = None,
+    before: BeforeOption = None,
     pose: PoseOption = None,
     wrench: WrenchOption = None,
     static: StaticOption = None,
@@ -80,7 +90,7 @@ def command(
     if measured is not None:  # the frames that the readings are about
         base, tool = base or measured.base_frame, tool or measured.tool_frame
     arm = open_robot(robot, base, tool)
-    scene = _scene(arm, model, measured, pose, wrench)
+    scene = _scene(arm, model, before, measured, pose, wrench)
     if static is not None:
         from sk120stiff.show import static_scene
 
@@ -107,6 +117,7 @@ def _read(data: Path) -> Measurements:
 def _scene(
     robot: Robot,
     model_file: Path | None,
+    before: Path | None,
     data: Measurements | None,
     pose: str | None,
     wrench: str | None,
@@ -119,8 +130,15 @@ def _scene(
     load = None if wrench is None else wrench_of(wrench)
     model = base_model(robot) if model_file is None else read_model(model_file, robot)
     if model is not None:
+        shown = {} if before is None else {"before": read_model(before, robot)}
         return scene_of_model(
-            model, data, title=robot.name, a=a, wrench=load, model_file=model_file or ""
+            model,
+            data,
+            models={**shown, "model": model},
+            title=robot.name,
+            a=a,
+            wrench=load,
+            model_file=model_file or "",
         )
     note(
         "No stiffness is known for this robot; the page shows an assumed one and says so. "

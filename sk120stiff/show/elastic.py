@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Mechanism, Robot
-from sk120stiff.stiffness import ElasticLaw, Equilibrium, equilibrium
+from sk120stiff.stiffness import ElasticLaw, equilibrium
 
 if TYPE_CHECKING:
     from sk120stiff.model import Model
@@ -167,8 +167,8 @@ class Elastic:
         """(n, n) tangent compliance of the unloaded arm at a pose [rad/(N·m)]."""
         return self.compliance if self.model is None else _unloaded(self.model, a)[1]
 
-    def rest(self, a: Array, wrench: Array, point: Array) -> Equilibrium:
-        """Exact equilibrium under a wrench at the point.
+    def rest(self, a: Array, wrench: Array, point: Array) -> tuple[Array, Array]:
+        """Exact equilibrium under a wrench at the point: z (n,) and the point's position (3,) [m].
 
         Raises
         ------
@@ -176,19 +176,13 @@ class Elastic:
             The springs cannot hold the load.
         """
         if self.model is None:
-            return equilibrium(self.mechanism, self.coordinates(a), wrench, self._law, point=point)
+            found = equilibrium(self.mechanism, self.coordinates(a), wrench, self._law, point=point)
+            return found.z, found.screws.position
         from sk120stiff.effects import situation_of_load
 
         situation = situation_of_load(self.model.robot, a, wrench, point=point)
-        found = self.model.solve(situation).rest
-        return Equilibrium(
-            z=found.z[0],
-            screws=self.mechanism.screws(found.z[0], point),
-            torques=found.torques[0],
-            compliance=found.compliance[0],
-            K_C=found.K_C[0],
-            iterations=found.iterations,
-        )
+        loaded = self.model.solve(situation).rest
+        return loaded.z[0], loaded.screws.position[0]
 
     @property
     def _law(self) -> ElasticLaw:

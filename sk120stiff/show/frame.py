@@ -119,12 +119,12 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
     links = place_elastic(tree, elastic, z)
     deflected: Array | None = None
     try:
-        rest = elastic.rest(request.a, request.wrench, request.point)
+        rest, position = elastic.rest(request.a, request.wrench, request.point)
     except Refusal:
         pass  # the page says so; every other number still holds
     else:
-        deflection["equilibrium"] = rest.screws.position - start.position
-        exaggerated = z + request.exaggeration * (rest.z - z)
+        deflection["equilibrium"] = position - start.position
+        exaggerated = z + request.exaggeration * (rest - z)
         deflected = place_elastic(tree, elastic, exaggerated)
     soft = np.diag(C) > 0.0
     K_C_soft = symmetric_part(K_C[np.ix_(soft, soft)])

@@ -31,8 +31,12 @@ def frame_of(model: Model, wrench: np.ndarray = WRENCH, exaggeration: float = 1.
 
 @pytest.mark.parametrize(
     "model",
-    [springs, lambda: with_effect("base_rocking", "base_link", 2e7)],
-    ids=["springs", "rocking"],
+    [
+        springs,
+        lambda: with_effect("base_rocking", "base_link", 2e7),
+        lambda: with_effect("closure_rod", effect_places("closure_rod")[0], 1e8),
+    ],
+    ids=["springs", "rocking", "rod"],
 )
 def test_agrees_with_the_stiffness_command(model) -> None:
     frame, found = frame_of(model()), loaded_stiffness(model(), A, WRENCH)
@@ -102,7 +106,7 @@ def test_links_ride_on_the_compliance_before_them(name: str, where: str) -> None
 
 
 def test_compliance_that_changes_with_the_pose_follows_the_pose() -> None:
-    model = with_effect("closure_rod", next(iter(effect_places("closure_rod"))), 1e7)
+    model = with_effect("closure_rod", effect_places("closure_rod")[0], 1e7)
     elastic = Elastic.of_model(model)
     generator = np.random.default_rng(8)
     one, other = (elastic.tangent(random_pose(sk120(), generator)) for _ in range(2))

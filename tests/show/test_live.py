@@ -19,7 +19,7 @@ from tornado.websocket import websocket_connect
 from sk120stiff.errors import InputError
 from sk120stiff.show.live import LiveServer
 from sk120stiff.show.live.handlers import MAX_PAGES, PATIENCE
-from tests.show.scenes import DATA, sk120, sk120_scene
+from tests.show.scenes import DATA, ROOT, sk120, sk120_scene
 
 REQUEST = {"a": [0.1] * 6, "wrench": [100, 0, -50, 0, 0, 0], "point": [0, 0, 0], "exaggeration": 50}
 
@@ -280,8 +280,9 @@ def test_the_command_prints_its_address_and_ends_on_interrupt() -> None:
 
 def test_the_command_writes_a_file_instead(tmp_path) -> None:
     target = tmp_path / "scene.html"
-    running = _view("--static", str(target))
+    paper = str(ROOT / "robots" / "motoman_sk120" / "model.yaml")
+    running = _view("--static", str(target), "--data", str(DATA), "--before", paper)
     out, err = running.communicate(timeout=60)
     assert running.returncode == 0, err
     assert json.loads(out) == {"url": target.as_uri(), "scene": str(target)}
-    assert "Motoman" in target.read_text() or "motoman" in target.read_text()
+    assert '"models":["before","model"]' in target.read_text()
