@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.errors import ToolkitWarning
+from sk120stiff.errors import ToolkitError, ToolkitWarning
 from sk120stiff.robot.loading import assemble, find_robot
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import (
@@ -33,7 +33,8 @@ class CheckReport:
     actuated
         Joints that motors drive between base and tool; empty when nothing moves there.
     coupled
-        Joints that follow another one, as rules ``follower = multiplier · driver + offset``.
+        Joints that follow another one, as rules ``follower = multiplier · driver + offset``, and
+        joints that a closed loop determines.
     loops
         Closed loops that `robot.yaml` declares.
     frames
@@ -101,9 +102,10 @@ def check_robot(
         name=robot.name if robot is not None else document.name,
         actuated=robot.actuated if robot is not None else (),
         coupled=_rules(robot),
-        loops=tuple(
-            rule.name or f"{rule.frames[0]} = {rule.frames[1]} ({rule.type})"
-            for rule in found.description.closures
+        loops=()
+        if robot is None
+        else tuple(
+            f"{closure.name}: {' meets '.join(closure.frames)}" for closure in robot.closures
         ),
         frames=tuple(link.name for link in document.links),
         base_frame=base_frame,
@@ -118,17 +120,22 @@ def check_robot(
 def _rules(robot: Robot | None) -> tuple[str, ...]:
     if robot is None:
         return ()
-    return tuple(
+    rules = [
         f"{name} = {rule.multiplier:g} · {rule.driver} + {rule.offset:g}"
         for name, rule in robot.followers.items()
-    )
+    ]
+    return (*rules, *(f"{name} by a closed loop" for name in robot.dependent))
 
 
 def _kinematics(robot: Robot) -> list[Finding]:
     """What the arm itself shows: a singular zero pose, joints that do not move the tool."""
     findings = []
-    J = robot.jacobian(np.zeros(robot.n))  # (6, n)
     where = f"{robot.base_frame} → {robot.tool_frame}"
+    try:
+        J = robot.jacobian(np.zeros(robot.n))  # (6, n)
+    except ToolkitError as error:
+        message = f"the loops cannot be closed with all joints at zero: {error.what}"
+        return [Finding("open_at_zero", where, message)]
     if not np.isfinite(J).all():
         return [Finding("not_finite", where, "the Jacobian overflows: look at lengths and axes")]
     reach = float(np.max(np.linalg.norm(J[:3], axis=0), initial=0.0)) or 1.0

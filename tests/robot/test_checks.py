@@ -4,6 +4,7 @@ import dataclasses
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sk120stiff.errors import InputError, ToolkitWarning
@@ -169,3 +170,60 @@ def test_default_frames_leave_grippers_out(name: str, base: str, tool: str, join
     report = check_robot(example(name))
     assert (report.base_frame, report.tool_frame) == (base, tool)
     assert len(report.actuated) == joints
+
+
+def pin_joint(name: str, parent: str, child: str, xyz: str, kind: str = "revolute") -> str:
+    moving = f'<axis xyz="0 1 0"/>{LIMIT}' if kind == "revolute" else ""
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{xyz}"/>{moving}</joint>'
+    )
+
+
+FOUR_BAR = (
+    '<robot name="four_bar">'
+    + "".join(f'<link name="{link}"/>' for link in ("base", "crank", "coupler", "rocker", "pin"))
+    + pin_joint("crank_joint", "base", "crank", "0 0 0")
+    + pin_joint("knee", "crank", "coupler", "0 0 1")
+    + pin_joint("coupler_end", "coupler", "pin", "1.5 0 0", "fixed")
+    + pin_joint("rocker_joint", "base", "rocker", "1.5 0 0")
+    + pin_joint("rocker_end", "rocker", "pin", "0 0 1")
+    + "</robot>"
+)
+
+
+def test_the_advice_for_a_closed_loop_works(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="form a closed loop") as refusal:
+        check_robot(FOUR_BAR)
+    assert "make rocker_end fixed" in str(refusal.value.remedy)
+    assert "new empty child link pin_closure" in str(refusal.value.remedy)
+    closures = str(refusal.value.remedy).partition("closures:")[2]
+    opened = FOUR_BAR.replace(
+        pin_joint("rocker_end", "rocker", "pin", "0 0 1"),
+        pin_joint("rocker_end", "rocker", "pin_closure", "0 0 1", "fixed"),
+    ).replace("<joint", '<link name="pin_closure"/><joint', 1)
+    (tmp_path / "arm.urdf").write_text(opened)
+    (tmp_path / "robot.yaml").write_text(
+        f"urdf: arm.urdf\ntool_frame: coupler\nactuated: [crank_joint]\nclosures:{closures}\n"
+    )
+    report = check_robot(tmp_path)
+    assert report.actuated == ("crank_joint",)
+    assert len(report.loops) == 1
+    assert "pin_closure meets pin" in report.loops[0]
+    assert {"knee by a closed loop", "rocker_joint by a closed loop"} <= set(report.coupled)
+    assert load_robot(tmp_path).placement([0.4])[:3, :3] == pytest.approx(np.eye(3), abs=1e-9)
+
+
+def test_a_loop_that_is_open_at_zero_is_said(tmp_path: Path) -> None:
+    opened = FOUR_BAR.replace(
+        pin_joint("rocker_end", "rocker", "pin", "0 0 1"),
+        pin_joint("rocker_end", "rocker", "far", "0 0 1", "fixed"),
+    ).replace("<joint", '<link name="far"/><joint', 1)
+    opened = opened.replace('"1.5 0 0"/><axis', '"2.5 0 0"/><axis')  # reached by leaning forward
+    (tmp_path / "arm.urdf").write_text(opened)
+    (tmp_path / "robot.yaml").write_text(
+        "urdf: arm.urdf\ntool_frame: coupler\nactuated: [crank_joint]\n"
+        "closures: [{frames: [far, pin], start: {crank_joint: 0.8, knee: 0.3}}]\n"
+    )
+    (finding,) = [f for f in check_robot(tmp_path).warnings if f.code == "open_at_zero"]
+    assert "cannot be closed" in finding.message
