@@ -21,6 +21,7 @@ COMMANDS = {
     "identify": "Spring values and their uncertainty from measured deflections.",
     "predict": "Predicted displacement of every reading, and the gap to it.",
     "explain": "What is missing when simulation and measurement disagree.",
+    "plan": "The poses and loads to measure next.",
     "simulate": "Synthetic measurements from a model: load steps, noise, zero readings.",
     "map": "Stiffness over the workspace: minimum, maximum, directions, stability under loads.",
     "paper": "The 2005 paper's tables, figures, claims: ours beside theirs.",

@@ -1,20 +1,35 @@
 """Which poses and loads to measure next, and what such a measurement would read."""
 
-from sk120stiff.plan.discriminate import Choice, discriminating_readings, signature_columns
-from sk120stiff.plan.pool import Pool, random_pool, random_poses
+from sk120stiff.plan.design import Design, d_optimal
+from sk120stiff.plan.discriminate import (
+    Choice,
+    Rivalry,
+    discriminating_readings,
+    rivalry,
+    signature_columns,
+)
+from sk120stiff.plan.pool import Pool, Region, random_pool, random_poses
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
+from sk120stiff.plan.spread import random_choice, well_spread
 
 __all__ = [
     "Choice",
+    "Design",
     "Pool",
+    "Region",
+    "Rivalry",
     "Schedule",
     "Simulated",
     "as_positions",
+    "d_optimal",
     "discriminating_readings",
+    "random_choice",
     "random_pool",
     "random_poses",
+    "rivalry",
     "scheduled",
     "signature_columns",
     "simulate",
+    "well_spread",
 ]

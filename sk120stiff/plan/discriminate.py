@@ -2,17 +2,20 @@
 
 If effect e is true with the size that was fitted, its rival f and the base model imitate part of
 its signature u = S_e α. What they cannot imitate, λ = ‖M_[B, S_f] u‖², is the evidence. Poses are
-chosen one after the other so that λ grows fastest.
+chosen so that λ is as large as can be: greedily, then by exchange.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sk120stiff.effects import Effect
+from sk120stiff.errors import InputError
 from sk120stiff.model import Model
+from sk120stiff.plan.design import DISPLACEMENT, best_choice
 from sk120stiff.plan.pool import Pool
 from sk120stiff.robot.coupling import Array
 
@@ -24,7 +27,7 @@ class Choice:
     Attributes
     ----------
     rows
-        (K,) chosen candidates, in the order of their choice.
+        (K,) chosen candidates.
     before, after
         √λ without and with them, in units of the noise.
     """
@@ -32,6 +35,44 @@ class Choice:
     rows: tuple[int, ...]
     before: float
     after: float
+
+
+@dataclass(frozen=True, eq=False)
+class Rivalry:
+    """Two effects and what each reading of a pool would say between them.
+
+    Attributes
+    ----------
+    gains
+        (2, M, k, k) information of every candidate, for either effect as the true one: base and
+        rival over their plausible ranges, last the signature.
+    known
+        (2, k, k) information before.
+    """
+
+    gains: Array
+    known: Array
+
+    def evidence_of(self, rows: Sequence[int]) -> float:
+        """√λ of a choice, the smaller of both directions, in units of the noise."""
+        total = self.known + self.gains[:, list(rows)].sum(axis=1)
+        return float(np.sqrt(_evidence(total).min()))
+
+    def best(self, count: int) -> Choice:
+        """The readings that tell most, for the effect that is the harder to tell."""
+        if not 1 <= count <= self.gains.shape[1]:
+            raise InputError(
+                f"{count} readings cannot be chosen from {self.gains.shape[1]} candidates"
+            )
+        size = self.gains.shape[-1]
+
+        def worth(total: Array) -> Array:
+            both = total.reshape(len(total), 2, size, size)
+            return np.asarray(_evidence(both).min(axis=-1))
+
+        flat = np.moveaxis(self.gains, 0, 1).reshape(len(self.gains[0]), 2 * size, size)
+        rows = best_choice(worth, flat, self.known.reshape(2 * size, size), count)
+        return Choice(tuple(rows), self.evidence_of([]), self.evidence_of(rows))
 
 
 def discriminating_readings(
@@ -59,40 +100,105 @@ def discriminating_readings(
     sigma
         Standard uncertainty of one displacement per axis [m].
     known
-        (k, k) information that is already there, from `information`; none by default.
+        (k, k) information that is already there; none by default.
     """
     columns = signature_columns(model, effect, rival, pool) / sigma  # (M, 3, k)
     gains = np.einsum("mik,mil->mkl", columns, columns)
-    total = np.zeros(gains.shape[1:]) if known is None else known.copy()
-    ridge = 1e-9 * np.trace(gains.mean(axis=0)) * np.eye(len(total))
-    ridge[-1, -1] = 0.0
-    before = _evidence((total + ridge)[None])[0]
-    rows: list[int] = []
-    free = np.ones(len(gains), dtype=bool)
-    for _ in range(min(count, len(gains))):
-        found = _evidence(total + ridge + gains)
-        pick = int(np.argmax(np.where(free, found, -np.inf)))
-        free[pick] = False
-        rows.append(pick)
-        total = total + gains[pick]
-    after = _evidence((total + ridge)[None])[0]
+    start = prior(columns.shape[-1])
+    if known is not None:
+        start = start + known
+    rows = best_choice(_evidence, gains, start, min(count, len(gains)))
+    total = start + gains[rows].sum(axis=0)
+    before, after = _evidence(np.array([start, total]))
     return Choice(tuple(rows), float(np.sqrt(before)), float(np.sqrt(after)))
 
 
+def rivalry(
+    model: Model,
+    effect: Effect,
+    rival: Effect,
+    pool: Pool,
+    *,
+    sigma: float,
+    known: Pool | None = None,
+) -> Rivalry:
+    """What a pool of readings would say between two effects, whichever of them is true.
+
+    Parameters
+    ----------
+    model
+        Base model; an effect that it holds keeps its values, another has its typical size.
+    effect, rival
+        What is to be told apart.
+    pool
+        Candidate readings.
+    sigma
+        Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
+    known
+        Readings that were taken already.
+    """
+    gains, start = [], []
+    for true, other in ((effect, rival), (rival, effect)):
+        columns = signature_columns(model, true, other, pool) / (sigma * DISPLACEMENT)
+        gains.append(np.einsum("mik,mil->mkl", columns, columns))
+        before = prior(columns.shape[-1])
+        if known is not None:
+            old = signature_columns(model, true, other, known) / (sigma * DISPLACEMENT)
+            before = before + np.einsum("mik,mil->kl", old, old)
+        start.append(before)
+    size = max(block.shape[-1] for block in start)
+    return Rivalry(
+        np.array([_padded(block, size) for block in gains]),
+        np.array([_padded(block, size) for block in start])
+        + np.array([_filling(size, block.shape[-1]) for block in start]),
+    )
+
+
 def signature_columns(model: Model, effect: Effect, rival: Effect, pool: Pool) -> Array:
-    """(M, 3, k) columns of base and rival, and last the signature of the effect [m]."""
-    full = model if rival.id in {e.id for e in model.effects} else model + rival
+    """(M, 3, k) columns of base and rival over their plausible ranges, last the signature [m].
+
+    The base are the free parameters of the model. An effect whose values are all zero has its
+    typical size.
+    """
+    full = model
+    for added in (effect, rival):
+        if added.id not in {present.id for present in full.effects}:
+            full = full + added
     _, derivative = full.predict_with_sensitivities(pool.situation)
     owner = np.array([parameter.effect.id for parameter in full.parameters])
-    typical = np.array([parameter.spec.typical for parameter in full.parameters])
+    free = np.array([parameter.free for parameter in full.parameters])
+    plausible = np.array([parameter.spec.plausible for parameter in full.parameters])
     own = owner == effect.id
-    others = derivative[:, :, ~own] * typical[~own]
-    signature = derivative[:, :, own] @ full.values[own]
-    return np.concatenate([others, signature[:, :, None]], axis=2)
+    sizes = full.values[own]
+    if not sizes.any():
+        sizes = np.array([p.spec.typical for p in full.parameters])[own]
+    others = free & ~own
+    signature = derivative[:, :, own] @ sizes
+    return np.concatenate(
+        [derivative[:, :, others] * plausible[others], signature[:, :, None]], axis=2
+    )
+
+
+def prior(size: int) -> Array:
+    """(k, k) information of the plausible ranges; none on the signature."""
+    ridge = np.eye(size)
+    ridge[-1, -1] = 0.0
+    return ridge
+
+
+def _padded(block: Array, size: int) -> Array:
+    """A block with zero rows and columns in front, so that the signature stays last."""
+    missing = size - block.shape[-1]
+    return np.pad(block, [(0, 0)] * (block.ndim - 2) + [(missing, 0), (missing, 0)])
+
+
+def _filling(size: int, own: int) -> Array:
+    return np.diag(np.r_[np.ones(size - own), np.zeros(own)])
 
 
 def _evidence(information: Array) -> Array:
-    """(M,) Schur complement of the last column."""
-    inner, border = information[:, :-1, :-1], information[:, :-1, -1]
+    """(...,) Schur complement of the last column."""
+    inner, border = information[..., :-1, :-1], information[..., :-1, -1]
     solved = np.linalg.solve(inner, border[..., None])[..., 0]
-    return np.maximum(information[:, -1, -1] - (border * solved).sum(-1), 0.0)
+    left = information[..., -1, -1] - (border * solved).sum(-1)
+    return np.asarray(np.maximum(left, 0.0))

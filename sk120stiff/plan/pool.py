@@ -5,14 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.effects import Situation, situation_of_load
+from sk120stiff.errors import InputError, Refusal
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 
 REACH_OF_UNLIMITED = np.pi  # rad; a joint without limits is used over one turn
 REACH_OF_UNLIMITED_SLIDE = 0.5  # m
 SHARE_OF_RANGE = 0.9  # the ends of the range are left out
+DRAWS = 200  # batches drawn before a region is given up
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,46 @@ class Pool:
         return self.situation.count
 
 
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Where the arm may stand, beside its joint limits; in the base frame [m].
+
+    Attributes
+    ----------
+    lowest
+        Height above which every joint and the measured point must stay.
+    low, high
+        (3,) corners of a box that the measured point must not leave.
+    """
+
+    lowest: float = -np.inf
+    low: Array | None = None
+    high: Array | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high"):
+            corner = getattr(self, name)
+            if corner is not None and np.shape(corner) != (3,):
+                raise InputError(f"a corner of the box has the shape {np.shape(corner)}, not (3,)")
+        if self.low is not None and self.high is not None and np.any(self.low >= self.high):
+            raise InputError(
+                "the box has no inside", remedy="Give the smaller corner first: x, y, z each."
+            )
+
+    def holds(self, robot: Robot, a: Array, point: Array) -> NDArray[np.bool_]:
+        """(N,) poses a (N, n) that lie in the region, coupled joints within their limits too."""
+        at = robot.screws(a, point=point).position
+        good = at[:, 2] >= self.lowest
+        if self.low is not None:
+            good &= (at >= self.low).all(axis=1)
+        if self.high is not None:
+            good &= (at <= self.high).all(axis=1)
+        if np.isfinite(self.lowest):
+            for frame in robot.frames:
+                good &= robot.placement(a, frame)[:, 2, 3] >= self.lowest - 1e-9
+        return good & _coupled_within_limits(robot, a)
+
+
 def random_pool(
     robot: Robot,
     *,
@@ -41,34 +84,97 @@ def random_pool(
     force: float,
     point: Array,
     seed: int = 0,
+    region: Region | None = None,
+    force_point: Array | None = None,
 ) -> Pool:
     """Random poses within the joint limits, each under loads in random directions.
 
     Parameters
     ----------
     robot
-        The robot; only joint limits restrict its poses.
+        The robot.
     poses, directions
         Number of poses, and of load directions at each.
     force
         Size of the loads [N].
-    point
-        (3,) measured and loaded point in the tool frame [m].
+    point, force_point
+        (3,) measured point and point of the force in the tool frame [m]; the force acts at the
+        measured point unless said otherwise.
     seed
         Of the draw.
+    region
+        Restricts the poses further.
+
+    Raises
+    ------
+    Refusal
+        Next to no pose lies in the region.
     """
     rng = np.random.default_rng(seed)
     a = random_poses(robot, poses, rng)
+    if region is not None:
+        a = poses_in(robot, poses, rng, region, point)
     loads = np.zeros((poses * directions, 6))
     loads[:, :3] = rng.normal(size=(poses * directions, 3))
     loads[:, :3] *= force / np.linalg.norm(loads[:, :3], axis=1, keepdims=True)
-    return Pool(situation_of_load(robot, np.repeat(a, directions, axis=0), loads, point=point))
+    repeated = np.repeat(a, directions, axis=0)
+    return Pool(situation_of_load(robot, repeated, loads, point=point, force_point=force_point))
 
 
 def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     """(count, n) coordinates drawn evenly from the middle of the joint ranges."""
+    lower, upper = usable_range(robot)
+    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+    return np.asarray(middle + half * rng.uniform(-1.0, 1.0, (count, robot.n)))
+
+
+def usable_range(robot: Robot) -> tuple[Array, Array]:
+    """Lower and upper end (n,) of the ranges from which poses are drawn [rad or m]."""
     reach = np.where(robot.prismatic, REACH_OF_UNLIMITED_SLIDE, REACH_OF_UNLIMITED)
     lower = np.where(np.isfinite(robot.lower), robot.lower, -reach)
     upper = np.where(np.isfinite(robot.upper), robot.upper, reach)
     middle, half = 0.5 * (lower + upper), 0.5 * SHARE_OF_RANGE * (upper - lower)
-    return np.asarray(middle + half * rng.uniform(-1.0, 1.0, (count, robot.n)))
+    return middle - half, middle + half
+
+
+def poses_in(
+    robot: Robot, count: int, rng: np.random.Generator, region: Region, point: ArrayLike
+) -> Array:
+    """(count, n) random coordinates in a region.
+
+    Raises
+    ------
+    Refusal
+        Next to no pose lies in it.
+    """
+    at = np.asarray(point, dtype=float)
+    found: list[Array] = []
+    missing = count
+    for _ in range(DRAWS):
+        drawn = random_poses(robot, max(count, 64), rng)
+        kept = drawn[region.holds(robot, drawn, at)][:missing]
+        found.append(kept)
+        missing -= len(kept)
+        if not missing:
+            return np.concatenate(found)
+    raise Refusal(
+        f"only {count - missing} of {DRAWS * max(count, 64)} poses drawn within the joint limits "
+        "lie where the arm may stand",
+        where=robot.name,
+        remedy="Lower the least height or widen the box.",
+    )
+
+
+def _coupled_within_limits(robot: Robot, a: Array) -> NDArray[np.bool_]:
+    good = np.ones(len(a), dtype=bool)
+    if not robot.followers:
+        return good
+    values = robot.joint_values(a)
+    for joint in robot.document.joints:
+        low, high = joint.lower, joint.upper
+        if joint.name not in robot.followers or joint.name not in values:
+            continue
+        if joint.type != "continuous" and low is not None and high is not None and low < high:
+            value = values[joint.name]
+            good &= (value >= low - 1e-9) & (value <= high + 1e-9)
+    return good

@@ -1,0 +1,373 @@
+"""`sk120stiff plan --model M --count N`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import open_data, start_model
+from sk120stiff.cli.options import SeedOption
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.effects import Effect, effect, situation_of
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import Measurements, write_measurements
+from sk120stiff.model import Model, read_model
+from sk120stiff.plan import (
+    Pool,
+    Region,
+    d_optimal,
+    random_choice,
+    random_pool,
+    rivalry,
+    well_spread,
+)
+from sk120stiff.robot.coupling import Array
+from sk120stiff.units import parse_values
+
+DRAWS = 50  # random and well-spread choices that a plan is held against
+
+
+def command(
+    model: Annotated[Path, typer.Option("--model", metavar="MODEL", help="Model file (YAML).")],
+    count: Annotated[int, typer.Option(min=1, help="Number of readings (pose and load each).")],
+    between: Annotated[
+        str | None,
+        typer.Option(
+            metavar="EFFECT,EFFECT",
+            help="Tell these two apart: 'name' or 'name:where' each.",
+            show_default="make the parameters well known",
+        ),
+    ] = None,
+    wanted: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--for",
+            metavar="PARAM",
+            help="Make this well known: a parameter, or an effect with all it has.",
+            show_default="all free ones",
+        ),
+    ] = None,
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CSV", help="Readings there are already; points and noise are theirs."
+        ),
+    ] = None,
+    force: Annotated[str, typer.Option(metavar="FORCE", help="Size of the loads.")] = "400 N",
+    noise: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH",
+            help="Standard uncertainty of one reading.",
+            show_default="the data's, else 10 um",
+        ),
+    ] = None,
+    point: Annotated[
+        str | None,
+        typer.Option(
+            metavar="XYZ",
+            help="Measured and loaded point in the tool frame, e.g. '0,50,120 mm'.",
+            show_default="the data's, else the tool frame's origin",
+        ),
+    ] = None,
+    lowest: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH", help="Height in the base frame below which nothing may go."),
+    ] = None,
+    box: Annotated[
+        str | None,
+        typer.Option(
+            metavar="XYZXYZ",
+            help="Box in the base frame for the measured point: '0.8,-1,0, 2.2,1,1.5 m'.",
+        ),
+    ] = None,
+    candidates: Annotated[int, typer.Option(min=10, help="Poses to choose from.")] = 400,
+    directions: Annotated[int, typer.Option(min=1, help="Load directions at each pose.")] = 12,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="CSV", help="Where to write them, for the measurement."),
+    ] = None,
+    seed: SeedOption = 0,
+) -> Answer:
+    """The poses and loads to measure next.
+
+    D-optimal for the parameters that count, or T-optimal between two effects; within joint limits
+    and the region that is given. `gain` is the precision (or evidence) over that of random poses.
+
+    Example: sk120stiff plan --model model.yaml --count 15 --out plan.csv
+    """
+    known, start = _opened(model, data)
+    at, force_at = _points(known, point)
+    pool = random_pool(
+        start.robot,
+        poses=candidates,
+        directions=directions,
+        force=_one(force, "force", "--force"),
+        point=at,
+        force_point=force_at,
+        seed=seed,
+        region=_region(lowest, box),
+    )
+    sigma = _sigma(known, noise)
+    before = None if known is None else Pool(situation_of(start.robot, known.masked()))
+    with progress_bar("plan"):
+        if between is None:
+            chosen = _precise(start, pool, before, wanted, count, sigma, seed)
+        else:
+            chosen = _telling(start, pool, before, between, count, sigma, seed)
+    rows, document, said = chosen
+    poses, plan = _plan(start, pool, rows, known)
+    document = {"poses": poses, **document, "sigma_um": sigma * 1e6, "seed": seed, "out": out}
+    if out is not None:
+        write_measurements(plan, out)
+        said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
+    return Answer(document, [_table(plan), *said])
+
+
+Chosen = tuple[Sequence[int], dict[str, object], list[object]]
+
+
+def _precise(
+    model: Model,
+    pool: Pool,
+    before: Pool | None,
+    wanted: Sequence[str] | None,
+    count: int,
+    sigma: float,
+    seed: int,
+) -> Chosen:
+    names: list[str] = []
+    for text in wanted or ():
+        model, found = _named(model, text)
+        names += found
+    design = d_optimal(
+        model, pool, count=count, sigma=sigma, parameters=names or None, known=before
+    )
+    random, spread = _held_against(design.gain_over, pool, count, seed)
+    expected: list[dict[str, object]] = []
+    rows = []
+    for name, std in zip(design.parameters, design.std, strict=True):
+        p = model.parameter(name)
+        public, unit = p.spec.public_std(p.value, float(std)), p.spec.unit
+        expected.append(
+            {
+                "name": name,
+                "value": p.public_value,
+                "std": public,
+                "unit": unit,
+                "internal_std": float(std),
+                "internal_unit": p.spec.internal_unit,
+            }
+        )
+        shown = (public, unit) if np.isfinite(public) else (float(std), p.spec.internal_unit)
+        rows.append((name, p.public_value, *shown))
+    document: dict[str, object] = {
+        "criterion": "D-optimal",
+        "for": design.parameters,
+        "gain": random,
+        "gain_over_spread": spread,
+        "expected": expected,
+    }
+    said: list[object] = [
+        table("To expect", ["parameter", "value", "std. error", "unit"], rows),
+        f"Standard errors {random:.2f} times smaller than with random poses, {spread:.2f} times "
+        "smaller than with well-spread ones.",
+    ]
+    return design.rows, document, said
+
+
+def _telling(
+    model: Model,
+    pool: Pool,
+    before: Pool | None,
+    between: str,
+    count: int,
+    sigma: float,
+    seed: int,
+) -> Chosen:
+    first, second = _two_effects(model, between)
+    rivals = rivalry(model, first, second, pool, sigma=sigma, known=before)
+    choice = rivals.best(count)
+
+    def gain_over(rows: Sequence[int]) -> float:
+        return choice.after / max(rivals.evidence_of(rows), 1e-12)
+
+    random, spread = _held_against(gain_over, pool, count, seed)
+    document: dict[str, object] = {
+        "criterion": "T-optimal",
+        "between": [first.id, second.id],
+        "gain": random,
+        "gain_over_spread": spread,
+        "evidence": choice.after,
+        "evidence_before": choice.before,
+    }
+    verdict = (
+        "enough to tell them apart" if choice.after > 3.3 else "not enough: plan more readings"
+    )
+    said: list[object] = [
+        f"Evidence between {first.id} and {second.id}: {choice.after:.2f} standard errors "
+        f"({verdict}), {choice.before:.2f} before.",
+        f"{random:.2f} times that of random poses, {spread:.2f} times that of well-spread ones.",
+    ]
+    return choice.rows, document, said
+
+
+def _held_against(
+    gain_over: Callable[[Sequence[int]], float], pool: Pool, count: int, seed: int
+) -> tuple[float, float]:
+    """Median gain over random and over well-spread choices."""
+    rng = np.random.default_rng(seed + 1)
+    random = [gain_over(random_choice(pool, count, rng)) for _ in range(DRAWS)]
+    spread = [gain_over(well_spread(pool, count, rng)) for _ in range(DRAWS)]
+    return float(np.median(random)), float(np.median(spread))
+
+
+def _opened(model: Path, data: Path | None) -> tuple[Measurements | None, Model]:
+    if data is None:
+        return None, read_model(model)
+    known, robot = open_data(data)
+    return known, start_model(robot, model)
+
+
+def _points(known: Measurements | None, text: str | None) -> tuple[Array, Array]:
+    if text is not None:
+        values = parse_values(text, "length", where="--point")
+        if len(values) != 3:
+            raise InputError(
+                f"{text!r} is no point", where="--point", remedy="Write '0,50,120 mm'."
+            )
+        return values, values
+    if known is not None:
+        return known.point, known.force_point
+    return np.zeros(3), np.zeros(3)
+
+
+def _sigma(known: Measurements | None, text: str | None) -> float:
+    if text is not None:
+        return _one(text, "length", "--noise")
+    if known is not None and known.noise.sigma is not None:
+        return known.noise.sigma
+    return 1e-5
+
+
+def _one(text: str, kind: str, where: str) -> float:
+    values = parse_values(text, kind, where=where)
+    if len(values) != 1 or values[0] <= 0.0:
+        raise InputError(f"{text!r} is not one positive number", where=where)
+    return float(values[0])
+
+
+def _region(lowest: str | None, box: str | None) -> Region:
+    least, low, high = -np.inf, None, None
+    if lowest is not None:
+        values = parse_values(lowest, "length", where="--lowest")
+        if len(values) != 1:
+            raise InputError(f"{lowest!r} is not one height", where="--lowest")
+        least = float(values[0])
+    if box is not None:
+        corners = parse_values(box, "length", where="--box")
+        if len(corners) != 6:
+            raise InputError(
+                f"{box!r} is no box", where="--box", remedy="Write '0.8,-1,0, 2.2,1,1.5 m'."
+            )
+        low, high = corners[:3], corners[3:]
+    return Region(least, low, high)
+
+
+def _named(model: Model, text: str) -> tuple[Model, list[str]]:
+    """The model with the parameter's effect in it, and the parameters that are meant."""
+    head, dot, _ = text.rpartition(".")
+    if dot and text in model.names:
+        return model, [text]
+    present = [p.name for p in model.parameters if text in (p.effect.id, p.effect.name)]
+    if present:
+        return model, present
+    name, _, where = (head if dot else text).partition(":")
+    added = effect(model.robot, name, where or None)
+    larger = model if added.id in {e.id for e in model.effects} else model + added
+    if not dot:
+        return larger, [p.name for p in larger.parameters if p.effect.id == added.id]
+    return larger, [larger.parameter(text).name]
+
+
+def _two_effects(model: Model, text: str) -> tuple[Effect, Effect]:
+    """Two effects in one text; the name of a place may hold a comma itself."""
+    words = text.split(",")
+    failure: InputError | None = None
+    for cut in range(1, len(words)):
+        try:
+            first, second = (
+                _effect(model, ",".join(part).strip()) for part in (words[:cut], words[cut:])
+            )
+        except InputError as error:
+            failure = failure or error
+            continue
+        if first.id == second.id:
+            raise InputError(f"{first.id!r} stands there twice", where="--between")
+        return first, second
+    if failure is not None:
+        raise failure
+    raise InputError(
+        f"{text!r} does not name two effects",
+        where="--between",
+        remedy="Write two with a comma between them: 'base_rocking,joint_tilt:joint_1_s'.",
+    )
+
+
+def _effect(model: Model, text: str) -> Effect:
+    for present in model.effects:
+        if text in (present.id, present.name):
+            return present
+    name, _, where = text.partition(":")
+    return effect(model.robot, name, where or None)
+
+
+def _plan(
+    model: Model, pool: Pool, rows: Sequence[int], known: Measurements | None
+) -> tuple[list[dict[str, object]], Measurements]:
+    """The chosen readings, those of one pose together, as JSON and as measurements to be taken."""
+    situation = pool.situation.rows(np.array(sorted(rows), dtype=np.intp))
+    _, index = np.unique(situation.a, axis=0, return_inverse=True)
+    order = {pose: k for k, pose in enumerate(dict.fromkeys(index.tolist()))}
+    labels = tuple(f"p{order[pose] + 1}" for pose in index.tolist())
+    robot = model.robot
+    plan = Measurements(
+        pose=labels,
+        joint_names=robot.actuated,
+        joint_kinds=tuple("length" if slides else "angle" for slides in robot.prismatic),
+        joints=situation.a,
+        wrench=situation.wrench,
+        displacement=None,
+        robot=robot.source,
+        base_frame=robot.base_frame,
+        tool_frame=robot.tool_frame,
+        point=situation.point,
+        force_point=situation.force_point,
+        zero="unknown" if known is None else known.zero,
+        source="poses and loads chosen by 'sk120stiff plan'",
+    )
+    poses: list[dict[str, object]] = [
+        {
+            "pose": label,
+            "joints": dict(zip(robot.actuated, a.tolist(), strict=True)),
+            "wrench": wrench.tolist(),
+        }
+        for label, a, wrench in zip(labels, situation.a, situation.wrench, strict=True)
+    ]
+    return poses, plan
+
+
+def _table(plan: Measurements) -> object:
+    scale = [180.0 / np.pi if kind == "angle" else 1e3 for kind in plan.joint_kinds]
+    unit = ["deg" if kind == "angle" else "mm" for kind in plan.joint_kinds]
+    columns = ["pose", *(f"{n} [{u}]" for n, u in zip(plan.joint_names, unit, strict=True))]
+    rows = [
+        (label, *(f"{x:.1f}" for x in a * scale), *(f"{x:.0f}" for x in w[:3]))
+        for label, a, w in zip(plan.pose, plan.joints, plan.wrench, strict=True)
+    ]
+    return table("Measure", [*columns, "fx [N]", "fy [N]", "fz [N]"], rows)

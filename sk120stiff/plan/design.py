@@ -1,0 +1,179 @@
+"""Choosing readings from a pool: D-optimal design, greedily and then by exchange.
+
+The information of a choice is the sum of its readings' AᵀA, on top of what is known already and of
+the plausible range of every parameter (Chaloner & Verdinelli 1995): so it is regular from the first
+reading on. D-optimal for some of the parameters is what makes the determinant of their own part of
+the covariance least, the others free (D_s, Atkinson, Donev & Tobias 2007). After the greedy choice
+single readings are exchanged as long as that helps (Fedorov 1972).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.model import Model
+from sk120stiff.plan.pool import Pool
+from sk120stiff.robot.coupling import Array
+
+#: information (M, k, k) → what it is worth (M,); more is better
+Worth = Callable[[Array], Array]
+
+PASSES = 20
+BETTER = 1e-9  # gain in worth that counts as one
+DISPLACEMENT = np.sqrt(2.0)  # a displacement is two readings
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Readings chosen from a pool for the sake of some parameters.
+
+    Attributes
+    ----------
+    rows
+        (K,) chosen candidates.
+    parameters
+        Full names of the k parameters that count.
+    std
+        (k,) standard errors to expect of their internal values.
+    worth
+        Mean logarithm of the inverse of the standard errors, over their plausible ranges.
+    gains
+        The candidates' information, for `worth_of` other choices.
+    known
+        (P, P) information before.
+    """
+
+    rows: tuple[int, ...]
+    parameters: tuple[str, ...]
+    std: Array
+    worth: float
+    gains: Array
+    known: Array
+    interest: NDArray[np.intp]
+
+    def worth_of(self, rows: Sequence[int]) -> float:
+        """Worth of another choice from the same pool."""
+        total = self.known + self.gains[list(rows)].sum(axis=0)
+        return float(determinant_worth(self.interest)(total[None])[0])
+
+    def gain_over(self, rows: Sequence[int]) -> float:
+        """Geometric mean of the standard errors of another choice, over that of this one."""
+        return float(np.exp(self.worth - self.worth_of(rows)))
+
+
+def d_optimal(
+    model: Model,
+    pool: Pool,
+    *,
+    count: int,
+    sigma: float,
+    parameters: Sequence[str] | None = None,
+    known: Pool | None = None,
+) -> Design:
+    """Choose readings that make parameters as well known as can be.
+
+    Parameters
+    ----------
+    model
+        Model with its values; its free parameters are estimated, the others are known.
+    pool
+        Candidate readings.
+    count
+        How many to choose; each candidate at most once.
+    sigma
+        Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
+    parameters
+        Full names of those that count, all free ones by default.
+    known
+        Readings that were taken already.
+
+    Raises
+    ------
+    InputError
+        Nothing is free, a name is unknown or not free, or the pool is too small.
+    """
+    free = model.free
+    names = [model.names[k] for k in free]
+    if not names:
+        raise InputError("no parameter of the model is free", where=model.robot.name)
+    wanted = list(dict.fromkeys(parameters or names))
+    for name in wanted:
+        model.parameter(name)
+        if name not in names:
+            raise InputError(
+                f"the parameter {name!r} is fixed in the model",
+                remedy="Write 'free: true' at it.",
+            )
+    if not 1 <= count <= pool.count:
+        raise InputError(f"{count} readings cannot be chosen from {pool.count} candidates")
+    interest = np.array([names.index(name) for name in wanted], dtype=np.intp)
+    span = np.array([model.parameters[k].spec.plausible for k in free])
+    noise = sigma * DISPLACEMENT
+    gains = information(model, pool, span) / noise**2
+    start = np.eye(len(span))
+    if known is not None:
+        start += information(model, known, span).sum(axis=0) / noise**2
+    worth = determinant_worth(interest)
+    rows = best_choice(worth, gains, start, count)
+    total = start + gains[rows].sum(axis=0)
+    std = np.sqrt(np.diag(np.linalg.inv(total)))[interest] * span[interest]
+    reached = float(worth(total[None])[0])
+    return Design(tuple(rows), tuple(wanted), std, reached, gains, start, interest)
+
+
+def information(model: Model, pool: Pool, span: Array) -> Array:
+    """(M, P, P) AᵀA of each candidate for the free parameters over their spans [m²]."""
+    _, derivative = model.predict_with_sensitivities(pool.situation)
+    A = derivative[:, :, model.free] * span
+    return np.asarray(np.einsum("mik,mil->mkl", A, A))
+
+
+def determinant_worth(interest: NDArray[np.intp]) -> Worth:
+    """Half the logarithm of the determinant of the information on some parameters, per parameter.
+
+    The information on some of them is the Schur complement of the others.
+    """
+
+    def worth(total: Array) -> Array:
+        others = np.setdiff1d(np.arange(total.shape[-1]), interest)
+        whole = np.linalg.slogdet(total)[1]
+        rest = np.linalg.slogdet(total[:, others[:, None], others])[1] if len(others) else 0.0
+        return np.asarray(0.5 * (whole - rest) / len(interest))
+
+    return worth
+
+
+def best_choice(worth: Worth, gains: Array, known: Array, count: int) -> list[int]:
+    """Rows of `gains` (M, k, k) whose sum is worth most: greedy, then by exchange."""
+    rows: list[int] = []
+    total = known.copy()
+    free = np.ones(len(gains), dtype=bool)
+    for _ in range(count):
+        pick = _best(worth(total + gains), free)
+        rows.append(pick)
+        free[pick] = False
+        total = total + gains[pick]
+    reached = float(worth(total[None])[0])
+    for _ in range(PASSES):
+        before = reached
+        for slot, row in enumerate(rows):
+            without = total - gains[row]
+            found = worth(without + gains)
+            pick = _best(found, free)
+            if found[pick] > reached + BETTER:
+                free[row], free[pick] = True, False
+                rows[slot] = pick
+                total = without + gains[pick]
+                reached = float(found[pick])
+        if reached <= before + BETTER:
+            break
+    return rows
+
+
+def _best(found: Array, free: NDArray[np.bool_]) -> int:
+    return int(np.argmax(np.where(free, found, -np.inf)))
