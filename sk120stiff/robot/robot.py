@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.constraint import Closure
 from sk120stiff.robot.coupling import Array, Coupling, Follower
 from sk120stiff.robot.loops import LoopCoupling
@@ -184,9 +185,18 @@ class Robot:
     def gravity_torque(self, a: ArrayLike) -> Array:
         """(..., n) torques by which the robot's own weight drives the actuated joints [N·m or N].
 
-        Zero for a robot whose URDF states no mass: ask `total_mass` before you trust it.
+        Warns
+        -----
+        ToolkitWarning
+            The URDF states no mass at all, so that every torque is zero.
         """
         coordinates = self.coordinates(a)
+        if self.total_mass == 0.0:
+            warnings.warn(
+                f"{self.name} states no masses: its gravity torques are all zero",
+                ToolkitWarning,
+                stacklevel=2,
+            )
         flat = coordinates.reshape(-1, self.n)
         torques = np.empty_like(flat)
         for k, row in enumerate(flat):

@@ -227,3 +227,11 @@ def test_a_loop_that_is_open_at_zero_is_said(tmp_path: Path) -> None:
     )
     (finding,) = [f for f in check_robot(tmp_path).warnings if f.code == "open_at_zero"]
     assert "cannot be closed" in finding.message
+
+
+def test_gravity_without_masses_is_never_silent() -> None:
+    robot = load_robot(arm("0 1 0", mass="0"))
+    with pytest.warns(ToolkitWarning, match="states no masses"):
+        assert robot.gravity_torque([0.0]) == pytest.approx([0.0])
+    assert "no_mass" in codes(check_robot(arm("0 1 0", mass="0")))
+    assert load_robot(arm("0 1 0")).gravity_torque([0.0]) != pytest.approx([0.0])
