@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sk120stiff.errors import InputError
 from sk120stiff.model import Model, base_model
 from sk120stiff.paper.printed import LOWER, STEP, UPPER
 from sk120stiff.robot import Mechanism, Robot, Screws, load_robot
@@ -70,7 +71,9 @@ def setting() -> Setting:
     robot = load_robot("motoman_sk120")
     model = base_model(robot)
     if model is None:
-        raise FileNotFoundError("the bundled robot has lost its model.yaml")
+        raise InputError(
+            "the bundled robot has no model.yaml", where=robot.name, remedy="Reinstall the package."
+        )
     return Setting(robot, model)
 
 

@@ -85,5 +85,5 @@ def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
 
 
 def symmetric_part(matrix: Array) -> Array:
-    """(M + Mᵀ)/2, the part of a stiffness that does work over a closed path of zero."""
+    """(M + Mᵀ)/2, the part of a stiffness that leaves no work over on a closed path."""
     return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from sk120stiff.robot import Mechanism
+from sk120stiff.errors import Refusal
+from sk120stiff.robot import Mechanism, Screws
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.cartesian import cartesian_compliance, spring_matrix
 from sk120stiff.stiffness.complementary import complementary_stiffness
@@ -58,20 +59,32 @@ def deflection(
         (n,) springs [N·m/rad or N/m]; an infinite one is rigid.
     point
         (3,) in the end frame [m].
+
+    Raises
+    ------
+    Refusal
+        The load is exactly critical, or no equilibrium exists.
     """
     load = np.asarray(wrench, dtype=float)
     springs = np.asarray(stiffness, dtype=float)
-    start = mechanism.screws(np.asarray(a, dtype=float), point)
+    coordinates = np.asarray(a, dtype=float)
+    start = mechanism.screws(coordinates, point)
     soft = np.isfinite(springs)
     J = start.jacobian[..., soft]
     K_theta = spring_matrix(springs[soft])
     K_C = complementary_stiffness(start, load)[..., soft, :][..., :, soft]
     conventional = (cartesian_compliance(J, K_theta) @ load[..., None])[..., :3, 0]
-    torques = (np.swapaxes(J, -1, -2) @ load[..., None])
-    step = np.linalg.solve(K_theta - K_C, torques)  # (..., soft, 1)
+    torques = np.swapaxes(J, -1, -2) @ load[..., None]
+    try:
+        step = np.linalg.solve(K_theta - K_C, torques)  # (..., soft, 1)
+    except np.linalg.LinAlgError as error:
+        raise Refusal(
+            "K_θ − K_C is singular: this load is exactly critical and the deflection has no bound",
+            remedy="Lower the load.",
+        ) from error
     enhanced = (J[..., :3, :] @ step)[..., 0]
-    curvature = _path_curvature(mechanism, start.jacobian.shape[-1], a, point, soft, step[..., 0])
-    at_rest = equilibrium(mechanism, np.asarray(a, dtype=float), load, linear_springs(springs), point=point)
+    curvature = _path_curvature(start, soft, step[..., 0])
+    at_rest = equilibrium(mechanism, coordinates, load, linear_springs(springs), point=point)
     return Deflection(
         conventional=conventional,
         enhanced=enhanced,
@@ -80,12 +93,9 @@ def deflection(
     )
 
 
-def _path_curvature(
-    mechanism: Mechanism, n: int, a: ArrayLike, point: Array | None, soft: Array, step: Array
-) -> Array:
+def _path_curvature(screws: Screws, soft: NDArray[np.bool_], step: Array) -> Array:
     """δᵀ (∂²x/∂z²) δ of the point for each axis: K_C of a unit force along it is that Hessian."""
-    screws = mechanism.screws(np.asarray(a, dtype=float), point)
-    delta = np.zeros((*step.shape[:-1], n))
+    delta = np.zeros((*step.shape[:-1], len(soft)))
     delta[..., soft] = step
     axes = []
     for axis in range(3):

@@ -32,7 +32,9 @@ class PaperWork:
     joint_conventional: Array
 
 
-def paper_work(screws: Screws, stiffness: Array, force: ArrayLike, displacement: Array) -> PaperWork:
+def paper_work(
+    screws: Screws, stiffness: Array, force: ArrayLike, displacement: Array
+) -> PaperWork:
     """Works of eq. (14) and (15) for a displacement of the point.
 
     Parameters

@@ -143,3 +143,19 @@ def test_a_load_that_springs_cannot_hold_is_refused():
     arm = mixed_arm(0)
     with pytest.raises(Refusal, match="equilibrium"):
         deflection(arm.mechanism, arm.poses(1, 0)[0], np.array([0, 0, 1e9, 0, 0, 0]), arm.springs)
+
+
+def test_an_exactly_critical_load_is_refused():
+    """A bar of 1 m on a spring of 1000 N·m/rad, pressed along itself by 1 kN."""
+    text = (
+        '<robot name="column"><link name="ground"/><link name="bar"/><link name="tip"/>'
+        '<joint name="hinge" type="revolute"><parent link="ground"/><child link="bar"/>'
+        '<axis xyz="0 1 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>'
+        '<joint name="end" type="fixed"><parent link="bar"/><child link="tip"/>'
+        '<origin xyz="0 0 1"/></joint></robot>'
+    )
+    mechanism = load_robot(text, base="ground", tool="tip").mechanism()
+    with pytest.raises(Refusal, match="exactly critical"):
+        deflection(mechanism, [0.0], [0, 0, -1000.0, 0, 0, 0], [1000.0])
+    below = deflection(mechanism, [0.0], [1.0, 0, -999.0, 0, 0, 0], [1000.0])
+    assert below.enhanced[0] == pytest.approx(1.0)  # a thousand times the 1 mm of the spring alone
