@@ -118,14 +118,18 @@ def _poses(found: Localisation) -> Iterator[str]:
     while top < len(ranked) and carried < 0.5:
         carried += ranked[top].share
         top += 1
-    worst = ranked[0]
-    if carried >= 0.5 and top <= min(MANY_POSES, len(found.poses) // 2):
-        verb = "carries" if top == 1 else "carry"
-        named = _listed([pose.label for pose in ranked[:top]])
-        lead = f"{'Pose' if top == 1 else 'Poses'} {named} {verb} {_percent(carried)} of it"
-    else:
+    worst = f"a gap of {_um(ranked[0].rms)} rms"
+    if carried < 0.5 or top > min(MANY_POSES, len(found.poses) // 2):
         lead = f"It shows at {len(ranked)} of {len(found.poses)} poses"
-    yield f"{lead}; the worst, {worst.label}, has a gap of {_um(worst.rms)} rms."
+        yield f"{lead}; the worst, {ranked[0].label}, has {worst}."
+    elif top == 1:
+        yield f"Pose {ranked[0].label} alone carries {_percent(carried)} of it, with {worst}."
+    else:
+        named = _listed([pose.label for pose in ranked[:top]])
+        yield (
+            f"Poses {named} carry {_percent(carried)} of it; the worst, {ranked[0].label}, has "
+            f"{worst}."
+        )
 
 
 def _loads(found: Localisation) -> Iterator[str]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.style import new_figure, styled
+from sk120stiff.show.wording import with_error
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,5 @@ def _scale(e: Estimate) -> float:
 
 
 def _written(e: Estimate) -> str:
-    doubt = "" if e.std is None else f" ± {e.std:.2g}"
     note = f"  {e.note}" if e.note else ""
-    return f"{e.value:.5g}{doubt} {e.unit}{note}"
+    return f"{with_error(e.value, e.std, e.unit)}{note}"

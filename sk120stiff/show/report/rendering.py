@@ -104,7 +104,7 @@ def _cell(value: object, digits: int) -> str:
     if value is None:
         return "–"
     if not isinstance(value, Real) or isinstance(value, bool):
-        return str(value)
+        return _kept_together(str(value))
     number = float(value)
     if not math.isfinite(number):
         return "–" if math.isnan(number) else ("∞" if number > 0 else "−∞")
@@ -115,6 +115,11 @@ def _cell(value: object, digits: int) -> str:
         mantissa, exponent = text.split("e")
         text = f"{mantissa}·10{_superscript(int(exponent))}"
     return text.replace("-", "−")
+
+
+def _kept_together(text: str) -> str:
+    """A number and its unit are never parted at the end of a line."""
+    return re.sub(r"(?<=\d) (?=(?:µm|mm|m|N|deg)\b|%|±)|(?<=±) (?=\d)", "\u00a0", text)
 
 
 def _superscript(number: int) -> str:

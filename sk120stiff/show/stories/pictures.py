@@ -96,12 +96,12 @@ def _draw_arm(
     for name in names:
         if name in view.gaps:
             end = flat(tip + scale * view.gaps[name], tip)
-            panel.annotate(
-                "", end, shown[-1], zorder=3,
-                arrowprops={"arrowstyle": "-|>,head_width=0.14,head_length=0.3", "linewidth": 1.3,
-                            "color": colours[name], "shrinkA": 0, "shrinkB": 0},
+            step = end - shown[-1]
+            panel.quiver(
+                *shown[-1], *step, angles="xy", scale_units="xy", scale=1.0, width=0.005,
+                color=colours[name], headwidth=3.4, headlength=4.2, headaxislength=3.8, zorder=3,
             )  # fmt: skip
-            panel.plot(*end, alpha=0.0)  # annotations do not count for the limits
+            panel.plot(*end, alpha=0.0)  # arrows do not count for the limits
 
 
 def _above(point: Array, _: Array) -> Array:
@@ -140,7 +140,7 @@ def _draw_suspicion(panel: Axes, suspicion: Suspicion, *, marked: bool) -> None:
                alpha=0.7, markeredgewidth=0)  # fmt: skip
     panel.set_xlabel(suspicion.label, fontsize=7.5)
     panel.locator_params(nbins=4)
-    title = "\n".join(textwrap.wrap(suspicion.name.split(", on which")[0], 36)[:2])
+    title = "\n".join(textwrap.wrap(suspicion.name.split(", on which")[0], 31)[:2])
     verdict = f"{100 * suspicion.explained:.0f} % taken away" if suspicion.seen else "chance"
     panel.set_title(f"{title}\n{'strongest: ' if marked else ''}{verdict}", fontsize=7.5,
                     fontweight="bold" if marked else "normal")  # fmt: skip

@@ -1,4 +1,4 @@
-"""Numbers, units and lists as the stories write them."""
+"""Numbers, units and lists as reports and figures write them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def um(metres: float) -> str:
 def percent(share: float) -> str:
     """A share in per cent; small ones with a digit more."""
     value = 100.0 * share
-    return f"{value:.0f} %" if abs(value) >= 10.0 else f"{value:.2g} %"
+    return f"{value:.0f} %" if abs(value) >= 9.95 else f"{value:.2g} %"
 
 
 def unit_of(written: str) -> str:
@@ -56,7 +56,7 @@ def raised(exponent: int) -> str:
 
 def chance(probability: float) -> str:
     """A probability as a cell."""
-    return "< 10⁻⁶" if probability < 1e-6 else number(probability, 2)
+    return "<\u00a010⁻⁶" if probability < 1e-6 else number(probability, 2)
 
 
 def listed(words: Sequence[str], joint: str = "and") -> str:

@@ -1,0 +1,165 @@
+"""What was named, how large it is, and what a sceptic would ask for."""
+
+from __future__ import annotations
+
+import math
+
+from sk120stiff.explain import Explanation, Finding
+from sk120stiff.identify import Fit
+from sk120stiff.model import Parameter
+from sk120stiff.show.report import Block, Note, Section, Table
+from sk120stiff.show.stories.verdicts import near, sentence_of
+from sk120stiff.show.wording import counted, listed, number, percent, unit_of, with_error
+
+
+def evidence_section(answer: Explanation) -> Section:
+    """Every finding with its size and its evidence; for ``outside``, what came nearest."""
+    if answer.verdict == "outside":
+        return Section("What came nearest, and why it is not named", _outside(answer))
+    if not answer.findings:
+        return Section("What was looked for", _nothing(answer))
+    if len(answer.findings) == 1:
+        finding = answer.findings[0]
+        return Section("What was found, and the evidence", _finding(answer, finding))
+    parts: list[Block] = [
+        Section(finding.effect.id, _finding(answer, finding)) for finding in answer.findings
+    ]
+    return Section("What was found, and the evidence", parts)
+
+
+def _finding(answer: Explanation, finding: Finding) -> list[Block]:
+    blocks: list[Block] = [f"**{finding.effect.sentence()}** (`{finding.effect.id}`)"]
+    blocks.append(_sizes(answer, finding))
+    if finding.exact:
+        blocks.append(
+            Note(
+                "No readings of this kind can tell it from "
+                f"{_or(finding.exact)}: {_sentences(answer, finding.exact)} Take the name as "
+                "one of this class.",
+                "caution",
+                "One of several words for it",
+            )
+        )
+    rivals = near(finding)
+    if rivals:
+        blocks.append(
+            Note(
+                f"These readings cannot tell it from {_or(rivals)}: "
+                f"{_sentences(answer, rivals)} The readings proposed below would.",
+                "caution",
+                "Not settled",
+            )
+        )
+    blocks.append(_evidence(answer, finding))
+    return blocks
+
+
+def _sizes(answer: Explanation, finding: Finding) -> Table:
+    rows = parameter_rows(
+        answer.final, [p for p in answer.final.model.parameters if p.effect == finding.effect]
+    )
+    return Table(
+        ["parameter", "value ± standard error", "95 % from", "to", "unit"],
+        rows,
+        "Its size. An interval of a stiffness is open upwards where the readings do not exclude "
+        "that this direction is rigid.",
+    )
+
+
+def parameter_rows(fit: Fit, parameters: list[Parameter]) -> list[tuple[object, ...]]:
+    """Name, value ± error, interval and unit of parameters of a fitted model."""
+    ends = dict(zip((p.name for p in fit.parameters), fit.intervals(), strict=True))
+    rows: list[tuple[object, ...]] = []
+    for p in parameters:
+        low, high = ends.get(p.name, (math.nan, math.nan))
+        value = with_error(p.public_value, p.public_std)
+        rows.append((p.spec.name, value, number(low), number(high), unit_of(p.spec.unit)))
+    return rows
+
+
+def _evidence(answer: Explanation, finding: Finding) -> Table:
+    e = finding.evidence
+    c = e.confirmation
+    rows: list[tuple[object, object, object]] = [
+        (
+            "Misfit without it",
+            f"χ² larger by {e.misfit_gain:.0f}",
+            "in noise variances, all parameters refitted"
+            if answer.final.sigma_stated
+            else "in units of the assumed noise, all parameters refitted",
+        ),
+        (
+            "Score without it",
+            f"extended BIC worse by {e.score_gain:.1f}",
+            "6 is strong, 10 decisive; the score pays for the size of the catalogue",
+        ),
+    ]
+    if e.runner_up is not None and math.isfinite(e.runner_up_gap):
+        lost = f"{e.runner_up} loses by {e.runner_up_gap:.1f}"
+        rows.append(("Runner-up", lost, "in extended BIC; below 6 it would stand beside the name"))
+    else:
+        rows.append(("Runner-up", "none", "no other effect comes near with a plausible size"))
+    gain = with_error(c.gain, c.gain_error)
+    rows += [
+        (
+            "Held-out poses",
+            f"better in {c.folds_improved} of {c.folds} folds",
+            f"misfit per axis falls by {gain} noise variances (± standard error over poses)",
+        ),
+        (
+            "Poses drawn again",
+            f"same name in {percent(c.frequency)}",
+            "of the resamplings of all poses with replacement",
+        ),
+    ]
+    return Table(["question", "answer", "meaning"], rows, "Evidence for the name.")
+
+
+def _nothing(answer: Explanation) -> list[Block]:
+    looked = len({item.name.rpartition(".")[0] for item in answer.smallest_detectable})
+    left = answer.adequacy
+    blocks: list[Block] = [
+        f"All effects of the catalogue at all places where they can act ({looked}) were tried, "
+        "alone and together, with the springs refitted beside them. None improves the model by "
+        "more than chance, on the fitted poses and on poses left out.",
+    ]
+    if left.tests and left.probability < 0.05:
+        blocks.append(
+            Note(
+                f"The tests of what is left give p = {left.probability:.2g}. That is not enough to "
+                "claim that something is missing, and not little enough to be sure that nothing "
+                "is: more poses would settle it.",
+                "caution",
+                "Not beyond doubt",
+            )
+        )
+    return blocks
+
+
+def _outside(answer: Explanation) -> list[Block]:
+    left = answer.adequacy
+    blocks: list[Block] = [
+        f"What the best models of the catalogue leave over is beyond noise (p = "
+        f"{left.probability:.2g}; {left.excess:.1f} noise standard deviations in all, where what "
+        f"they explain amounts to {left.explained:.1f}).",
+    ]
+    if answer.suspects:
+        rows = [(name, sentence_of(answer, name)) for name in answer.suspects]
+        blocks.append(
+            Table(["effect", "what it would mean"], rows, "Nearest, but not it: none of these.")
+        )
+    blocks.append(
+        f"The section before tells where the gap lives. {counted(len(answer.suspects), 'name')} "
+        "stood nearest; take them as hints at the place, not as causes."
+        if answer.suspects
+        else "No effect came near. The section before tells where the gap lives."
+    )
+    return blocks
+
+
+def _or(names: tuple[str, ...] | list[str]) -> str:
+    return listed([f"`{name}`" for name in names], "or")
+
+
+def _sentences(answer: Explanation, names: tuple[str, ...] | list[str]) -> str:
+    return " ".join(sentence_of(answer, name) for name in names)

@@ -1,0 +1,132 @@
+"""The report of `explain`: a manager reads its first lines, a metrologist checks the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sk120stiff.explain import Explanation, noise_floor
+from sk120stiff.measurements import Measurements
+from sk120stiff.show.report import (
+    Block,
+    Items,
+    KeyFigure,
+    KeyFigures,
+    Note,
+    Report,
+    Section,
+)
+from sk120stiff.show.stories.evidence_section import evidence_section
+from sk120stiff.show.stories.gap_section import gap_section
+from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
+from sk120stiff.show.stories.parameters_section import parameters_section
+from sk120stiff.show.stories.verdicts import lead_of, title_of
+from sk120stiff.show.stories.where_section import where_section
+from sk120stiff.show.wording import chance, counted, listed, percent, um
+
+CROSS = "on poses left out in turn (cross-validation by pose)"
+
+def explain_report(
+    answer: Explanation,
+    readings: Measurements,
+    *,
+    data: str = "",
+    heldout: str = CROSS,
+    scene: str = "",
+    scene_link: str = "",
+    next_poses: str = "",
+    reproducibility: Mapping[str, str] | None = None,
+) -> Report:
+    """Tell an explanation as a report.
+
+    Parameters
+    ----------
+    answer
+        The explanation.
+    readings
+        The measurements that were explained.
+    data
+        What they are called.
+    heldout
+        What the held-out gap was taken on, in words.
+    scene
+        Text of the page of the 3-D scene, shown inside the report; empty for none.
+    scene_link, next_poses
+        Relative addresses of files that lie beside the report; empty where there are none.
+    reproducibility
+        Name → text, shown last.
+    """
+    sections: list[Section | None] = [
+        _answer(answer),
+        gap_section(answer, heldout=heldout, scene=scene, scene_link=scene_link),
+        where_section(answer),
+        evidence_section(answer),
+        parameters_section(answer),
+        left_section(answer, readings),
+        blind_section(answer),
+        next_section(answer, next_poses),
+    ]
+    used = readings.masked()
+    robot = answer.base.model.robot.name
+    counts = f"{counted(used.n_readings, 'reading')} at {counted(len(used.poses), 'pose')}"
+    return Report(
+        title=title_of(answer),
+        subtitle=f"{robot}, {counts}" + (f", `{data}`" if data else ""),
+        lead=lead_of(answer),
+        sections=[section for section in sections if section is not None],
+        reproducibility=reproducibility or {},
+    )
+
+def _answer(answer: Explanation) -> Section:
+    blocks: list[Block] = [key_figures(answer)]
+    if answer.findings:
+        blocks.append(Items([_line(answer, k) for k in range(len(answer.findings))], ordered=True))
+    elif answer.where:
+        blocks.append(answer.where[0])
+    blocks += [Note(reason, "note", "About the noise") for reason in answer.noise_reasons]
+    return Section("The answer", blocks)
+
+def _line(answer: Explanation, k: int) -> str:
+    finding = answer.findings[k]
+    step, before = answer.steps[k + 1], answer.steps[k]
+    c = finding.evidence.confirmation
+    rivals = [f"`{name}`" for name in finding.alternatives]
+    alternatives = f", or {listed(rivals, 'or')}" if rivals else ""
+    return (
+        f"{finding.effect.sentence()} (`{finding.effect.id}`{alternatives}) Held-out gap "
+        f"{um(before.heldout_rms)} → {um(step.heldout_rms)} µm; better in {c.folds_improved} of "
+        f"{c.folds} folds; same name in {percent(c.frequency)} of resamplings."
+    )
+
+def key_figures(answer: Explanation) -> KeyFigures:
+    """The numbers that matter: gap, noise, names, what is left."""
+    first, last = answer.steps[0], answer.steps[-1]
+    floor = noise_floor(answer.final)
+    changed = bool(answer.findings)
+    gap = KeyFigure(
+        "gap, held out",
+        um(last.heldout_rms),
+        "µm",
+        f"was {um(first.heldout_rms)} µm" if changed else "rms per axis, poses left out of the fit",
+    )
+    noise = KeyFigure(
+        "noise alone",
+        um(floor),
+        "µm",
+        "stated or from repeats" if answer.final.sigma_stated else "estimated from the scatter",
+    )
+    closed = KeyFigure(
+        "closed",
+        percent(1.0 - last.heldout_rms / first.heldout_rms) if changed else "–",
+        "",
+        "of the held-out gap",
+    )
+    tests = answer.adequacy.tests
+    left = KeyFigure(
+        "left beyond noise",
+        ("yes" if answer.adequacy.lacking else "no") if tests else "?",
+        "",
+        f"p = {chance(answer.adequacy.probability)}" if tests else "nothing tells",
+    )
+    figures = [gap, noise, closed, left] if changed else [gap, noise, left]
+    return KeyFigures(figures)
+

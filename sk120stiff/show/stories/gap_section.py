@@ -1,0 +1,123 @@
+"""The gap step by step, pose by pose, and on the arm."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.explain import Explanation, noise_floor
+from sk120stiff.identify import Fit
+from sk120stiff.model import Model
+from sk120stiff.show.figures import GapStep, gap_per_pose, gap_waterfall
+from sk120stiff.show.report import Block, Picture, SceneFrame, Section, Table
+from sk120stiff.show.stories.pictures import exaggeration, gap_vectors
+from sk120stiff.show.stories.scenes import arm_views, models_of
+from sk120stiff.show.wording import counted, percent, um
+
+Array = NDArray[np.float64]
+MANY = 40  # poses beyond which bars are no longer told apart
+
+
+def gap_section(
+    answer: Explanation, *, heldout: str, scene: str = "", scene_link: str = ""
+) -> Section:
+    """Table and waterfall of the steps, the gap of every pose, the gap vectors.
+
+    Parameters
+    ----------
+    heldout
+        What the held-out gap was taken on, in words.
+    scene, scene_link
+        Text of the scene's page, and its address beside the report.
+    """
+    floor = noise_floor(answer.final)
+    blocks: list[Block] = [
+        "The gap is measured minus predicted displacement, root mean square over readings and "
+        f"axes. The held-out gap is taken {heldout}: readings that had no part in the fit. "
+        f"Noise alone makes {um(floor)} µm; no honest model gets below that on held-out readings.",
+        steps_table(answer),
+    ]
+    if len(answer.steps) > 1:
+        blocks.append(_waterfall(answer, floor))
+    models = models_of(answer)
+    blocks += [_per_pose(answer.base, models, floor), on_the_arm(answer.base, models)]
+    if scene:
+        title = f"The arm at its {counted(len(answer.base.problem.situation.poses), 'pose')}"
+        caption = "Choose a pose and a load: measured, predicted and gap vectors, before and after."
+        blocks.append(SceneFrame(scene, title, caption if answer.findings else "", scene_link))
+    return Section("The gap, step by step", blocks)
+
+
+def steps_table(answer: Explanation) -> Table:
+    """Fitted and held-out gap of every step, and the share of the first gap that is closed."""
+    first = answer.steps[0]
+    rows = [
+        (
+            step.label,
+            1e6 * step.fit_rms,
+            1e6 * step.heldout_rms,
+            None if step is first else percent(1.0 - step.heldout_rms / first.heldout_rms),
+        )
+        for step in answer.steps
+    ]
+    return Table(
+        ["model", "fitted", "held out", "closed, held out"],
+        rows,
+        "Gap rms per axis; every step is refitted at exact equilibrium.",
+        units=["", "µm", "µm", ""],
+        digits=3,
+    )
+
+
+def _waterfall(answer: Explanation, floor: float) -> Picture:
+    steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
+    first, last = answer.steps[0], answer.steps[-1]
+    return Picture(
+        gap_waterfall(steps, noise_floor=floor),
+        alt=f"Bars of the gap of {len(steps)} models. Fitted: from {um(first.fit_rms)} to "
+        f"{um(last.fit_rms)} µm. Held out: from {um(first.heldout_rms)} to "
+        f"{um(last.heldout_rms)} µm. Noise floor {um(floor)} µm.",
+        caption="Bars: readings that were fitted. Diamonds: poses left out.",
+    )
+
+
+def _per_pose(fit: Fit, models: dict[str, Model], floor: float) -> Picture | str:
+    poses = fit.problem.situation.poses
+    gaps = {name: pose_rms(fit, model) for name, model in models.items()}
+    if len(poses) > MANY:
+        worst = {name: um(float(values.max())) for name, values in gaps.items()}
+        told = ", ".join(f"{value} µm {name}" for name, value in worst.items())
+        return f"There are {counted(len(poses), 'pose')}; the largest gap of one is {told}."
+    told = "; ".join(
+        f"{name} {um(float(values.min()))} to {um(float(values.max()))} µm"
+        for name, values in gaps.items()
+    )
+    return Picture(
+        gap_per_pose(poses, gaps, noise_floor=floor),
+        alt=f"Bars of the rms gap of {len(poses)} poses: {told}.",
+        caption="The gap of every pose.",
+    )
+
+
+def on_the_arm(fit: Fit, models: dict[str, Model]) -> Picture:
+    """Gap vectors at the largest load of every pose."""
+    views = arm_views(fit, models)
+    largest = {
+        name: um(max(float(np.linalg.norm(view.gaps[name])) for view in views)) for name in models
+    }
+    told = ", ".join(f"up to {value} µm {name}" for name, value in largest.items())
+    return Picture(
+        gap_vectors(views),
+        alt=f"The arm at {len(views)} poses from above and from the side, with gap vectors {told}.",
+        caption="Gap vectors at the largest load of every pose, drawn "
+        f"{exaggeration(views):,.0f} times too long.".replace(",", " "),
+    )
+
+
+def pose_rms(fit: Fit, model: Model) -> Array:
+    """(poses,) rms gap per axis of a model on the readings of a fit [m]."""
+    situation = fit.problem.situation
+    square = ((fit.problem.measured - model.predict(situation)) ** 2).mean(axis=1)
+    total = np.bincount(situation.pose, square, minlength=len(situation.poses))
+    count = np.bincount(situation.pose, minlength=len(situation.poses))
+    return np.sqrt(total / np.maximum(count, 1))

@@ -1,0 +1,137 @@
+"""What is left, what the noise is, what these readings cannot show, and what to measure next."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from sk120stiff.explain import Detectable, Explanation, noise_floor
+from sk120stiff.measurements import Measurements
+from sk120stiff.show.report import Block, Items, Note, Section, Table
+from sk120stiff.show.wording import counted, number, percent, um, unit_of
+
+
+def left_section(answer: Explanation, readings: Measurements) -> Section:
+    """Adequacy of the final model, the noise model, and rows set aside."""
+    left = answer.adequacy
+    rows = [(name, number(p, 2)) for name, p in left.tests.items()]
+    blocks: list[Block] = [
+        f"The final model leaves {um(answer.final.rms)} µm rms per axis on the fitted readings; "
+        f"the noise makes {um(noise_floor(answer.final))} µm.",
+    ]
+    if rows:
+        blocks.append(
+            Table(["test", "p"], rows, "Is anything left beyond noise? Small p: yes.", digits=2)
+        )
+    else:
+        blocks.append("The noise is estimated from the gap itself, so no test of it is possible.")
+    blocks += [answer.noise.describe(), *answer.noise_reasons]
+    if not answer.final.sigma_stated:
+        blocks.append(
+            f"The final model, if true, shows a noise of {um(answer.final.sigma)} µm for one "
+            "reading. It should agree with the scatter within poses, which needs no model."
+        )
+    if answer.set_aside:
+        blocks.append(_set_aside(answer, readings))
+    return Section("What is left, and the noise", blocks)
+
+
+def _set_aside(answer: Explanation, readings: Measurements) -> Note:
+    used = readings.masked()
+    told = []
+    for row in answer.set_aside:
+        line = int(used.line[row])
+        told.append(f"pose {used.pose[row]}" + (f", line {line}" if line else ""))
+    return Note(
+        f"{counted(len(told), 'reading')} of {used.n_readings} no smooth cause can have made, and "
+        f"no fit used: {'; '.join(told)}. Look for a disturbed reading or a slip of the pen. "
+        "Nothing was deleted.",
+        "caution",
+        "Set aside",
+    )
+
+
+def blind_section(answer: Explanation) -> Section:
+    """Effects that never show here, and the smallest size of the others that would have."""
+    blocks: list[Block] = []
+    if answer.not_observable:
+        blocks.append(
+            "At no plausible size would these have shown in these readings. They may be there."
+        )
+        blocks.append(Items(_grouped(answer.not_observable)))
+    visible = [item for item in answer.smallest_detectable if item.value is not None]
+    if visible:
+        blocks.append(
+            Table(
+                ["effect", "would have shown"],
+                _sizes(visible),
+                "Smallest size that would have been named in four of five cases: a stiffness at "
+                "or below the value given, anything else at or above it.",
+            )
+        )
+    return Section("What these readings cannot show", blocks)
+
+
+def _grouped(names: Sequence[str]) -> list[str]:
+    """``name`` → where, where: one line for each effect."""
+    places: dict[str, list[str]] = defaultdict(list)
+    for full in names:
+        name, _, where = full.partition(":")
+        places[name].append(where)
+    return [f"`{name}` at {', '.join(where)}" for name, where in places.items()]
+
+
+def _sizes(visible: Sequence[Detectable]) -> list[tuple[str, str]]:
+    by_effect: dict[str, list[Detectable]] = defaultdict(list)
+    for item in visible:
+        effect, _, _ = item.name.rpartition(".")
+        by_effect[effect].append(item)
+    return [(effect, _written(items)) for effect, items in by_effect.items()]
+
+
+def _written(items: Sequence[Detectable]) -> str:
+    if len(items) > 6:  # a constant for every pose, say: the range tells enough
+        values = [float(item.value or 0.0) for item in items]
+        return f"{number(min(values), 3)} to {number(max(values), 3)} {unit_of(items[0].unit)}"
+    return ", ".join(
+        f"{item.name.rpartition('.')[2]} {number(float(item.value or 0.0), 3)} {unit_of(item.unit)}"
+        for item in items
+    )
+
+
+def next_section(answer: Explanation, link: str) -> Section | None:
+    """Poses and loads that would settle the names, or None where nothing is open."""
+    if answer.next_poses is None:
+        return None
+    a, wrench = answer.next_poses
+    robot = answer.final.model.robot
+    units = ["mm" if slides else "deg" for slides in robot.prismatic]
+    scale = np.array([1e3 if slides else np.degrees(1.0) for slides in robot.prismatic])
+    rows = [
+        (f"next_{k + 1}", *(round(float(x), 1) for x in a[k] * scale),
+         *(round(float(f), 0) for f in wrench[k, :3]))
+        for k in range(len(a))
+    ]  # fmt: skip
+    where = f" They stand in `{link}`, ready for the next campaign." if link else ""
+    return Section(
+        "What to measure next",
+        [
+            f"These {counted(len(a), 'reading')} tell the open names apart best, chosen one after "
+            f"the other from 400 poses within the joint limits.{where}",
+            Table(
+                ["reading", *robot.actuated, "fx", "fy", "fz"],
+                rows,
+                "Poses and forces to measure.",
+                units=["", *units, "N", "N", "N"],
+            ),
+        ],
+    )
+
+
+def share_seen(answer: Explanation) -> str:
+    """How much of the catalogue these readings could show."""
+    effects = {item.name.rpartition(".")[0] for item in answer.smallest_detectable}
+    seen = len(effects) - len(answer.not_observable)
+    return f"{seen} of {len(effects)} ({percent(seen / max(len(effects), 1))})"

@@ -1,0 +1,100 @@
+"""Parameters before and after: how much the missing effect had bent the joint springs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.explain import Explanation
+from sk120stiff.identify import Fit
+from sk120stiff.model import Parameter
+from sk120stiff.show.figures import Estimate, parameter_forest
+from sk120stiff.show.report import Block, Picture, Section, Table
+from sk120stiff.show.wording import listed, number, percent, unit_of, with_error
+
+WORTH_TELLING = 0.01
+
+
+def parameters_section(answer: Explanation) -> Section:
+    """All parameters of the base model, alone and with what was added."""
+    before = {p.name: p for p in answer.base.parameters}
+    after = [p for p in answer.final.parameters if p.name in before]
+    if not answer.findings:
+        return Section("Parameters", [springs_table(answer.base)])
+    blocks: list[Block] = [_told(before, after), _table(before, after)]
+    drawn = [
+        Estimate(_short(p), p.public_value, p.public_std, unit_of(p.spec.unit),
+                 before[p.name].public_value)
+        for p in after
+        if np.isfinite(p.public_value) and np.isfinite(before[p.name].public_value)
+    ]  # fmt: skip
+    if drawn:
+        blocks.append(
+            Picture(
+                parameter_forest(drawn, reference_name="value before"),
+                alt="Each parameter with its 95 % range, as a multiple of its value before: "
+                + "; ".join(f"{e.name} {number(e.value / (e.reference or 1.0), 3)}" for e in drawn),
+                caption="Values with the added effect, as multiples of those without it (orange).",
+            )
+        )
+    return Section("Parameters before and after", blocks)
+
+
+def springs_table(fit: Fit) -> Table:
+    """Estimates with error and 95 % interval."""
+    rows = [
+        (
+            _short(p),
+            with_error(p.public_value, p.public_std),
+            number(low),
+            number(high),
+            unit_of(p.spec.unit),
+        )
+        for p, (low, high) in zip(fit.parameters, fit.intervals(), strict=True)
+    ]
+    return Table(["parameter", "value ± standard error", "95 % from", "to", "unit"], rows,
+                 "Estimated parameters.")  # fmt: skip
+
+
+def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
+    bent = [(p, p.public_value / before[p.name].public_value - 1.0) for p in after]
+    bent = [(p, change) for p, change in bent if np.isfinite(change)]
+    worth = sorted((b for b in bent if abs(b[1]) > WORTH_TELLING), key=lambda b: -abs(b[1]))
+    if not worth:
+        return (
+            "The missing effect had hardly bent the springs: none changes by more than "
+            f"{percent(WORTH_TELLING)}. A spring fit alone would not have betrayed it."
+        )
+    soft = [f"{_short(p)} {percent(change)}" for p, change in worth if change > 0.0]
+    stiff = [f"{_short(p)} {percent(-change)}" for p, change in worth if change < 0.0]
+    said = []
+    if soft:
+        said.append(f"too soft: {listed(soft)}")
+    if stiff:
+        said.append(f"too stiff: {listed(stiff)}")
+    return (
+        "Springs fitted alone cover up for what is missing. Without the added effect they had come "
+        f"out {'; '.join(said)}."
+    )
+
+
+def _table(before: dict[str, Parameter], after: list[Parameter]) -> Table:
+    rows = []
+    for p in after:
+        old = before[p.name]
+        change = p.public_value / old.public_value - 1.0
+        rows.append(
+            (
+                _short(p),
+                with_error(old.public_value, old.public_std),
+                with_error(p.public_value, p.public_std),
+                percent(change).replace("-", "−") if np.isfinite(change) else None,
+                unit_of(p.spec.unit),
+            )
+        )
+    return Table(["parameter", "before", "after", "change", "unit"], rows,
+                 "Value ± standard error, without and with what was added.")  # fmt: skip
+
+
+def _short(p: Parameter) -> str:
+    """The joint alone where it is a plain joint spring."""
+    return p.effect.where if p.effect.name == "joint_springs" else p.name

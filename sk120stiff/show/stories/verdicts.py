@@ -1,0 +1,99 @@
+"""The answer in a sentence or two that someone who signs for a machine understands."""
+
+from __future__ import annotations
+
+from sk120stiff.effects import effect
+from sk120stiff.explain import Explanation, Finding, noise_floor
+from sk120stiff.show.wording import counted, listed, um
+
+
+def title_of(answer: Explanation) -> str:
+    """Heading of the report."""
+    return {
+        "none": "Model and measurement agree",
+        "named": "Why model and measurement disagree",
+        "ambiguous": "Why model and measurement disagree: more than one name fits",
+        "outside": "Model and measurement disagree, and no known cause explains it",
+    }[answer.verdict]
+
+
+def lead_of(answer: Explanation) -> str:
+    """The answer, and by how much the gap shrank."""
+    return {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}[
+        answer.verdict
+    ](answer)
+
+
+def _none(answer: Explanation) -> str:
+    step = answer.steps[0]
+    return (
+        f"Nothing is missing that these readings could show. The model misses them by "
+        f"{um(step.fit_rms)} µm rms per axis; the noise alone makes "
+        f"{um(noise_floor(answer.final))} µm."
+    )
+
+
+def _named(answer: Explanation) -> str:
+    said = " ".join(finding.effect.sentence() for finding in answer.findings)
+    return f"{said} {shrinks(answer)}"
+
+
+def _ambiguous(answer: Explanation) -> str:
+    settled = [f.effect.sentence() for f in answer.findings if f.settled]
+    open_ = [f for f in answer.findings if not f.settled]
+    said = " ".join(settled)
+    for finding in open_:
+        rivals = [_said(answer, name) for name in near(finding)]
+        said += f" {finding.effect.sentence()} Or: {' Or: '.join(rivals)}"
+    tail = " These readings cannot tell which."
+    if answer.next_poses is not None:
+        tail += f" {counted(len(answer.next_poses[0]), 'further reading')} would."
+    return f"{said.strip()}{tail} {shrinks(answer)}"
+
+
+def _outside(answer: Explanation) -> str:
+    step = answer.steps[0]
+    return (
+        f"Something is missing, and no effect of the catalogue explains it. The model misses the "
+        f"readings by {um(step.fit_rms)} µm rms per axis; the noise alone makes "
+        f"{um(noise_floor_of_noise(answer))} µm. Where it lives is told below."
+    )
+
+
+def shrinks(answer: Explanation) -> str:
+    """By how much the gap fell on poses that no fit has seen."""
+    first, last = answer.steps[0], answer.steps[-1]
+    added = "it" if len(answer.findings) == 1 else "them"
+    return (
+        f"With {added} in the model the gap on poses left out of the fit falls from "
+        f"{um(first.heldout_rms)} to {um(last.heldout_rms)} µm; the noise alone makes "
+        f"{um(noise_floor(answer.final))} µm."
+    )
+
+
+def noise_floor_of_noise(answer: Explanation) -> float:
+    """What the noise makes as far as anything but the gap tells [m]."""
+    found = answer.details.get("localisation")
+    return float(found.noise) if found is not None else noise_floor(answer.final)
+
+
+def near(finding: Finding) -> list[str]:
+    """Alternatives that other poses could tell apart."""
+    return [name for name in finding.alternatives if name not in finding.exact]
+
+
+def names_of(answer: Explanation) -> str:
+    """``joint_tilt:joint_2_l`` and so on, as a list."""
+    return listed([f"`{finding.effect.id}`" for finding in answer.findings])
+
+
+def sentence_of(answer: Explanation, name: str) -> str:
+    """What an effect ``name:where`` is, in its own words."""
+    return _said(answer, name)
+
+
+def _said(answer: Explanation, full: str) -> str:
+    name, _, where = full.partition(":")
+    situation = answer.base.problem.situation
+    found = effect(answer.base.model.robot, name, where, poses=situation.poses)
+    return found.sentence()
