@@ -1,0 +1,187 @@
+"""What `explain` leaves in its folder, and what it prints: `demo` uses the same."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff.cli.document import as_json_text
+from sk120stiff.cli.opening import provenance
+from sk120stiff.cli.predict import prediction_table
+from sk120stiff.cli.tables import table
+from sk120stiff.effects import situation_of
+from sk120stiff.errors import InputError
+from sk120stiff.explain import Explanation, verdict_document
+from sk120stiff.files import write_atomically
+from sk120stiff.measurements import Measurements, write_measurements
+from sk120stiff.model import write_model
+from sk120stiff.show.wording import with_error
+
+SAID = {
+    "none": "Model and data agree within the noise: nothing is missing.",
+    "named": "Something was missing, and it has a name.",
+    "ambiguous": "Something is missing; these readings cannot tell which of several names.",
+    "outside": "Something is missing that no effect of the catalogue explains.",
+}
+TOLD = 3  # sentences on where the gap lives that are printed; the report has all
+
+
+@dataclass(frozen=True)
+class Task:
+    """What was explained.
+
+    Attributes
+    ----------
+    readings
+        The measurements.
+    data
+        Their file.
+    inputs
+        All input files, for the report.
+    holdout
+        File of held-out readings, or None.
+    seed
+        Of folds and resampling.
+    """
+
+    readings: Measurements
+    data: Path
+    inputs: Sequence[Path]
+    holdout: Path | None = None
+    seed: int = 0
+
+
+def check_folder(out: Path) -> None:
+    """Complain before the work, not after it.
+
+    Raises
+    ------
+    InputError
+        `out` is a file.
+    """
+    if out.exists() and not out.is_dir():
+        raise InputError(
+            "this is a file, not a folder", where=str(out), remedy="Name another folder."
+        )
+
+
+def write_answer(
+    answer: Explanation,
+    task: Task,
+    out: Path,
+    *,
+    report: bool,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[str, object]:
+    """Write model, gaps, next poses, scene and report; the verdict last, so that it marks the end.
+
+    Returns
+    -------
+    dict
+        The content of `verdict.json`, and where the files are.
+    """
+    tell = progress or (lambda _done, _total: None)
+    following = None if answer.next_poses is None else "next_poses.csv"
+    pages = _pages(answer, task, following, tell) if report else {}
+    fitted = replace(answer.final.model, provenance=provenance(task.data, task.readings))
+    gaps = io.StringIO()
+    predicted = fitted.predict(situation_of(fitted.robot, task.readings))
+    prediction_table(task.readings, predicted).to_csv(gaps, index=False)
+    document = verdict_document(answer, following)
+    # An old verdict must not stand beside new files, nor old proposals and pages beside a new one.
+    for stale in ("verdict.json", "next_poses.csv", "next_poses.yaml", "report.html", "scene.html"):
+        (out / stale).unlink(missing_ok=True)
+    write_model(fitted, out / "model.yaml")
+    write_atomically(out / "gaps.csv", gaps.getvalue())
+    if following is not None:
+        write_measurements(_plan(answer, task.readings), out / following)
+    for name, text in pages.items():
+        write_atomically(out / name, text)
+    write_atomically(out / "verdict.json", as_json_text(document) + "\n")
+    tell(100, 100)
+    places = {"out": out, "model": out / "model.yaml"}
+    return {**document, **places, **{Path(name).stem: out / name for name in pages}}
+
+
+def _pages(
+    answer: Explanation, task: Task, following: str | None, tell: Callable[[int, int], None]
+) -> dict[str, str]:
+    """Names and texts of scene and report."""
+    from sk120stiff.show import reproducibility, scene_html
+    from sk120stiff.show.stories import explain_report, explain_scene
+
+    tell(88, 100)
+    scene = scene_html(explain_scene(answer, subtitle=task.data.name, model_file="model.yaml"))
+    tell(91, 100)
+    command = provenance(task.data, task.readings)["command"]
+    told = explain_report(
+        answer,
+        task.readings,
+        data=task.data.name,
+        scene=scene,
+        scene_link="scene.html",
+        next_poses=following or "",
+        reproducibility=reproducibility(command, task.inputs, seed=task.seed),
+        **({} if task.holdout is None else {"heldout": _heldout(task.holdout)}),
+    )
+    return {"scene.html": scene, "report.html": told.html()}
+
+
+def _heldout(file: Path) -> str:
+    return f"on the readings of `{file.name}`, which are of other poses"
+
+
+def _plan(answer: Explanation, readings: Measurements) -> Measurements:
+    if answer.next_poses is None:
+        raise ValueError("there is nothing to measure next")
+    a, wrench = answer.next_poses
+    return Measurements(
+        pose=tuple(f"next_{k + 1}" for k in range(len(a))),
+        joint_names=readings.joint_names,
+        joint_kinds=readings.joint_kinds,
+        joints=np.asarray(a),
+        wrench=np.asarray(wrench),
+        displacement=None,
+        robot=readings.robot,
+        base_frame=readings.base_frame,
+        tool_frame=readings.tool_frame,
+        point=readings.point,
+        force_point=readings.force_point,
+        source="poses and loads that tell the named alternatives apart",
+    )
+
+
+def parts(answer: Explanation, out: Path, *, report: bool) -> list[object]:
+    """The answer for people."""
+    shown: list[object] = [SAID[answer.verdict], *findings(answer)]
+    rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
+    shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
+    shown += answer.where[:TOLD]
+    if answer.suspects:
+        shown.append(f"Nearest, but not it: {', '.join(answer.suspects)}.")
+    shown += answer.noise_reasons
+    if answer.next_poses is not None:
+        shown.append(f"Measure next what stands in {out / 'next_poses.csv'}.")
+    if report:
+        shown.append(f"Report: {out / 'report.html'}")
+    shown.append(f"Results are in {out}.")
+    return shown
+
+
+def findings(answer: Explanation) -> list[str]:
+    """Every named effect, its alternatives and its size."""
+    lines = []
+    for finding in answer.findings:
+        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}]")
+        for other in finding.alternatives:
+            kind = "always the same" if other in finding.exact else "not told apart here"
+            lines.append(f"  or {other} ({kind})")
+        for p in answer.final.model.parameters:
+            if p.effect == finding.effect:
+                value = with_error(p.public_value, p.public_std, p.spec.unit)
+                lines.append(f"  {p.spec.name} {value}")
+    return lines
