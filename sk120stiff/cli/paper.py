@@ -12,6 +12,7 @@ from rich.table import Table
 from sk120stiff.cli.frame import Answer, note
 from sk120stiff.cli.options import OutFolderOption
 from sk120stiff.cli.tables import progress_bar
+from sk120stiff.errors import InputError
 from sk120stiff.files import write_atomically
 from sk120stiff.paper import Reproduction, Verdict, reproduce
 from sk120stiff.paper.document import as_document
@@ -30,8 +31,7 @@ def command(out: OutFolderOption = None) -> Answer:
     With --out DIR: report.html, every figure as SVG and PNG, every table as CSV.
     """
     if out is not None:
-        write_atomically(out / ".writable", "")  # complain before the work, not after it
-        (out / ".writable").unlink()
+        _check_writable(out)
     with progress_bar("recomputing the paper") as report:
         found = reproduce(report)
     tables = side_by_side(found)
@@ -47,6 +47,16 @@ def command(out: OutFolderOption = None) -> Answer:
     if out is not None:
         parts.append(f"Report: {out / 'report.html'}")
     return Answer(document, parts)
+
+
+def _check_writable(out: Path) -> None:
+    """Complain before the work, not after it."""
+    probe = out / ".writable"
+    try:
+        write_atomically(probe, "")
+    except InputError as error:
+        raise InputError(error.what, where=str(out), remedy=error.remedy) from error
+    probe.unlink()
 
 
 def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> list[Path]:
