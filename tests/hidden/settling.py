@@ -22,22 +22,28 @@ UNITS = {"deg": np.pi / 180.0, "rad": 1.0, "m": 1.0, "mm": 1e-3, "N": 1.0, "kN":
 
 
 def settles(truth: dict[str, Any], answer: Path) -> bool:
-    """Whether the data with the proposed readings added tell the pair apart."""
+    """Whether the proposed readings tell the pair apart, repeated until they are as many as the
+    readings so far."""
     case = rebuild(truth["level"], truth["seed"])
     extra = proposed(answer / "next_poses.csv", case)
     if extra is None:
         return False
-    rows = joined(case.train, extra)
-    clean = case.world.with_causes()
-    seen = view(clean, rows, case.noise)
-    cause = case.hidden[0].cause
+    before = _separations(truth, case, case.train)
+    after = _separations(truth, case, joined(case.train, extra))
+    repeats = case.train.count / extra.count
+    # what independent readings add to lambda adds up
+    return all(
+        first**2 + repeats * (second**2 - first**2) > TOLD_APART**2
+        for first, second in zip(before, after, strict=True)
+    )
+
+
+def _separations(truth: dict[str, Any], case: Case, rows: Rows) -> list[float]:
+    seen = view(case.world.with_causes(), rows, case.noise)
     partner = {identity_of(text) for text in truth["pair"]}
     others = [c for c in unit_causes(case.arm) if identity(c.name, c.where) in partner]
-    u = signature(seen, cause)
-    return all(
-        rival.separation > TOLD_APART
-        for rival in rivals(u, (cause.name, cause.where), blocks(seen, others))
-    )
+    found = rivals(signature(seen, case.hidden[0].cause), ("", ""), blocks(seen, others))
+    return [rival.separation for rival in found]
 
 
 def proposed(path: Path, case: Case) -> Rows | None:

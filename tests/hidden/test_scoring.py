@@ -201,13 +201,14 @@ def test_runner_resumes_and_freezes(  # type: ignore[no-untyped-def]
         score.main([str(folder)])
 
 
-def test_more_readings_settle_a_near_pair(tmp_path: Path) -> None:
+def test_good_poses_settle_a_near_pair(tmp_path: Path) -> None:
     case = build("L4", 11, 2)
-    more = plan(case.arm, np.random.default_rng(1), poses=150, point=case.train.point)
+    more = plan(case.arm, np.random.default_rng(1), poses=60, point=case.train.point)
     header = ["pose", *(f"{name}[rad]" for name in case.arm.actuated), "fx[N]", "fy[N]", "fz[N]"]
     table = np.column_stack([more.pose, *more.coordinates.values(), more.force])
-    for count, settled in ((1, False), (len(table), True)):
-        lines = [",".join(header), *(",".join(map(str, row)) for row in table[:count])]
+    idle = np.column_stack([table[:1, :-3], 1e-3 * table[:1, -3:]])  # almost no load
+    for rows, settled in ((idle, False), (table, True)):
+        lines = [",".join(header), *(",".join(map(str, row)) for row in rows)]
         (tmp_path / "next_poses.csv").write_text("\n".join(lines))
         assert settles(case.truth(), tmp_path) is settled
     (tmp_path / "next_poses.csv").write_text("pose\n1\n")

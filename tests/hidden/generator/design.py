@@ -65,7 +65,9 @@ def plan(
     clock = zero = 0
     for pose in range(poses):
         direction = everywhere if schedule == "one_direction" else _direction(rng)
-        levels = list(full * np.arange(1, loads + 1) / loads * rng.uniform(0.95, 1.05))
+        # equal loads everywhere keep a drift and a slide along the load exact aliases
+        spread = 1.0 if schedule == "one_direction" else rng.uniform(0.95, 1.05)
+        levels = list(full * np.arange(1, loads + 1) / loads * spread)
         steps = [(level, 1, 1) for level in levels]
         if schedule == "up_down":
             steps += [(level, -1, 1) for level in levels[-2::-1]]
