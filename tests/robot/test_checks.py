@@ -230,8 +230,9 @@ def test_a_loop_that_is_open_at_zero_is_said(tmp_path: Path) -> None:
 
 
 def test_gravity_without_masses_is_never_silent() -> None:
-    robot = load_robot(arm("0 1 0", mass="0"))
+    light = arm("0 1 0", "0 1 0", mass="0")
     with pytest.warns(ToolkitWarning, match="states no masses"):
-        assert robot.gravity_torque([0.0]) == pytest.approx([0.0])
-    assert "no_mass" in codes(check_robot(arm("0 1 0", mass="0")))
-    assert load_robot(arm("0 1 0")).gravity_torque([0.0]) != pytest.approx([0.0])
+        assert load_robot(light).gravity_torque([0.0, 0.0]) == pytest.approx([0.0, 0.0])
+    assert "no_mass" in codes(check_robot(light))
+    heavy = load_robot(arm("0 1 0", "0 1 0"))  # 1 kg, 0.5 m from the first axis; y turns x down
+    assert heavy.gravity_torque([0.0, 0.0]) == pytest.approx([9.80665 * 0.5, 0.0])
