@@ -150,6 +150,31 @@ class Options:
 
 
 @dataclass(frozen=True)
+class Alias:
+    """Two names for one thing.
+
+    Attributes
+    ----------
+    name
+        ``effect:where.parameter``, with ``[part]`` behind it where only a part is meant.
+    other
+        Another parameter, or `SPRINGS` for all joint springs together.
+    when
+        The kind of readings that it holds for; empty where it holds for all.
+    """
+
+    name: str
+    other: str
+    when: str = ""
+
+
+SPRINGS = "joint_springs"
+PURE_FORCES = "all loads are pure forces"
+LOADS_GROW = "all loads only grow"
+ONE_WAY = "all loads point one way and grow with the order of the readings"
+
+
+@dataclass(frozen=True)
 class Effect(ABC):
     """One physical cause at one place.
 
@@ -157,6 +182,8 @@ class Effect(ABC):
     ----------
     name
         Public identifier (class attribute).
+    exchangeable
+        The parameters are draws of one size (class attribute).
     where
         URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
     scale
@@ -167,6 +194,7 @@ class Effect(ABC):
     scale: float = 1.0
 
     name: ClassVar[str]
+    exchangeable: ClassVar[bool] = False
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
@@ -197,8 +225,11 @@ class Effect(ABC):
         """Groups of parameters that are equal where the part is as stiff one way as the other."""
         return ()
 
-    def aliases(self, robot: Robot) -> tuple[str, ...]:
-        """Other effects (``name:where``) that no reading of positions can tell from this one."""
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
+        """What no reading of positions can tell from this effect, for reasons of its own.
+
+        Compliances about one and the same axis need no mention: `declared_aliases` finds them.
+        """
         return ()
 
     def applies_to(self, situation: Situation) -> bool:
@@ -242,7 +273,16 @@ class Elastic(Effect):
 
 
 class LinearElastic(Elastic):
-    """Elongation linear in torque and in parameters: e = Σ_p values[p] · pattern_p τ."""
+    """Elongation linear in torque and in parameters: e = Σ_p values[p] · pattern_p τ.
+
+    Attributes
+    ----------
+    one_axis_each
+        Parameter k is the compliance of coordinate k alone, the same at all poses (class
+        attribute). Two such compliances about one axis are one.
+    """
+
+    one_axis_each: ClassVar[bool] = False
 
     @abstractmethod
     def patterns(self, situation: Situation) -> Array:

@@ -9,9 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import LoadError, ParameterSpec
+from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError, ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
+from sk120stiff.robot.anatomy import sample_poses
 from sk120stiff.robot.chain import skew
 from sk120stiff.robot.coupling import Array
 
@@ -38,12 +39,30 @@ class ForceScale(ForceSensorEffect):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Relative gain errors of the three force axes."""
         return tuple(
-            ParameterSpec(f"gain_{axis}", "1", "1", plausible=0.05, typical=0.01) for axis in AXES
+            ParameterSpec(f"gain_{axis}", "1", "1", plausible=0.12, typical=0.01) for axis in AXES
         )
 
     def sentence(self) -> str:
         """What happens."""
         return "The force sensor's axes read too much or too little in proportion."
+
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
+        """All gains together are what all compliances together are.
+
+        A single one is, too, where its axis always lies along a slide and no other joint yields
+        that way: the lift of a SCARA.
+        """
+        every = "+".join(spec.name for spec in self.parameters)
+        found = [Alias(f"{self.id}[{every}]", SPRINGS, PURE_FORCES)]
+        screws = robot.screws(sample_poses(robot, 12))
+        columns = screws.linear_jacobian  # (12, 3, n)
+        for k, spec in enumerate(self.parameters):
+            along = np.abs(np.einsum("nij,ni->nj", columns, screws.rotation[:, :, k]))
+            for j in np.flatnonzero(robot.prismatic):
+                if (along[:, j] > 1.0 - 1e-9).all() and np.delete(along, j, axis=1).max() < 1e-9:
+                    spring = f"{SPRINGS}:{robot.actuated[j]}.stiffness"
+                    found.append(Alias(f"{self.id}.{spec.name}", spring))
+        return tuple(found)
 
     @cached_property
     def generators(self) -> Array:
@@ -64,7 +83,7 @@ class ForceBias(ForceSensorEffect):
         """True force where the sensor reads zero."""
         size = self.scale**2
         return tuple(
-            ParameterSpec(f"force_{axis}", "N", "N", plausible=30.0 * size, typical=5.0 * size)
+            ParameterSpec(f"force_{axis}", "N", "N", plausible=50.0 * size, typical=5.0 * size)
             for axis in AXES
         )
 
@@ -92,7 +111,7 @@ class ForceRotation(ForceSensorEffect):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Mounting angles about the sensor axes."""
         return tuple(
-            ParameterSpec(f"angle_{axis}", "rad", "rad", plausible=0.09, typical=0.0175)
+            ParameterSpec(f"angle_{axis}", "rad", "rad", plausible=0.15, typical=0.0175)
             for axis in AXES
         )
 
@@ -119,7 +138,7 @@ class ForceCrosstalk(ForceSensorEffect):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Share of each axis's reading that is added to another's."""
         return tuple(
-            ParameterSpec(f"{source}_to_{target}", "1", "1", plausible=0.09, typical=0.01)
+            ParameterSpec(f"{source}_to_{target}", "1", "1", plausible=0.12, typical=0.01)
             for source, target in permutations(AXES, 2)
         )
 

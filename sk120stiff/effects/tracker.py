@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import Options, ParameterSpec, ReadingError, scale_of
+from sk120stiff.effects.base import SPRINGS, Alias, Options, ParameterSpec, ReadingError, scale_of
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.chain import skew
@@ -71,9 +71,9 @@ class ReadingScale(TrackerEffect):
         """The identity."""
         return np.eye(3)[None]
 
-    def aliases(self, robot: Robot) -> tuple[str, ...]:
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
         """A scale is what all compliances together are."""
-        return ("joint_springs:all",)
+        return (Alias(f"{self.id}.scale", SPRINGS),)
 
 
 @dataclass(frozen=True)
@@ -126,6 +126,7 @@ class ZeroOffset(TrackerEffect):
 
     poses: tuple[str, ...] = ()
     name: ClassVar[str] = "zero_offset"
+    exchangeable: ClassVar[bool] = True
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:

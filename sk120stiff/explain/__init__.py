@@ -11,8 +11,9 @@ from sk120stiff.explain.explanation import (
 )
 from sk120stiff.explain.localisation import Localisation
 from sk120stiff.explain.localise import localise
+from sk120stiff.explain.steering import Options
 from sk120stiff.explain.where_words import where_sentences
-from sk120stiff.explain.workflow import Options, explain
+from sk120stiff.explain.workflow import explain
 
 __all__ = [
     "Detectable",

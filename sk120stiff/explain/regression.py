@@ -91,9 +91,7 @@ class Regression:
         """Sums over poses, each counted `weights` (g,) times."""
         gram, moment, square, count = self.by_pose
         w = np.ones(self.poses) if weights is None else weights
-        return Sums(
-            np.tensordot(w, gram, axes=1), w @ moment, float(w @ square), float(w @ count)
-        )
+        return Sums(np.tensordot(w, gram, axes=1), w @ moment, float(w @ square), float(w @ count))
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,22 +116,28 @@ class Solved:
         Their values in typical sizes.
     rss
         Residual sum of squares.
+    logdet
+        Logarithm of the determinant of the information matrix of the values.
     """
 
     columns: Index
     values: Array
     rss: float
+    logdet: float
 
 
 def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) -> Solved:
     """Least squares over `columns` with non-negative values where `lower` is zero.
+
+    Values are drawn towards zero as if their plausible range were a standard deviation, which only
+    counts in directions that the readings do not show; `rss` holds that share too.
 
     Columns that would be negative are dropped, the worst first. So are columns whose part that the
     ones before them cannot imitate would not show at any plausible value.
     """
     active = columns
     while len(active):
-        gram = sums.gram[np.ix_(active, active)]
+        gram = sums.gram[np.ix_(active, active)] + np.diag(plausible[active] ** -2.0)
         scale = np.sqrt(np.diag(gram))
         if (scale <= 0.0).any():
             active = active[scale > 0.0]
@@ -154,9 +158,10 @@ def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) ->
         size = values * scale
         forbidden = (values < 0.0) & (lower[active] == 0.0)
         if not forbidden.any():
-            return Solved(active, values, max(sums.square - float(half @ half), 0.0))
+            rss = max(sums.square - float(half @ half), 0.0)
+            return Solved(active, values, rss, 2.0 * float(np.log(np.diag(factor) * scale).sum()))
         active = np.delete(active, int(np.argmin(np.where(forbidden, size, np.inf))))
-    return Solved(active, np.zeros(0), sums.square)
+    return Solved(active, np.zeros(0), sums.square, 0.0)
 
 
 def _dependent(scaled: Array) -> int:
@@ -166,7 +171,9 @@ def _dependent(scaled: Array) -> int:
     return int(np.flatnonzero(involved)[-1])
 
 
-def regression_at(fit: Fit, candidates: Sequence[Effect], base_effects: Sequence[str]) -> Regression:
+def regression_at(
+    fit: Fit, candidates: Sequence[Effect], base_effects: Sequence[str]
+) -> Regression:
     """Linearise the readings at a fit, over its own parameters and all candidates.
 
     Parameters

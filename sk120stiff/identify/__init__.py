@@ -9,7 +9,7 @@ from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.profile import profile_intervals
 from sk120stiff.identify.report import fit_report
 from sk120stiff.identify.saturated import choose_noise
-from sk120stiff.identify.solving import solve
+from sk120stiff.identify.solving import solve, solve_near
 from sk120stiff.identify.weak import weak_directions
 
 __all__ = [
@@ -26,5 +26,6 @@ __all__ = [
     "lack_of_fit",
     "profile_intervals",
     "solve",
+    "solve_near",
     "weak_directions",
 ]

@@ -114,8 +114,18 @@ def pose_noise(
     return PoseNoise(noise, rss, freedom, fixed - freedom * np.log(max(rss, 1e-300) / freedom))
 
 
-def choose_noise(measurements: Measurements, situation: Situation) -> tuple[NoiseModel, list[str]]:
+def choose_noise(
+    measurements: Measurements, situation: Situation, *, doubt: bool = True
+) -> tuple[NoiseModel, list[str]]:
     """The noise model that the data's description and the readings themselves ask for.
+
+    Parameters
+    ----------
+    measurements, situation
+        The readings.
+    doubt
+        Let the scatter overrule a stated σ, or add a part that grows with the displacement where
+        none is stated.
 
     Returns
     -------
@@ -123,6 +133,8 @@ def choose_noise(measurements: Measurements, situation: Situation) -> tuple[Nois
         The model, and what was decided beyond the description, in sentences.
     """
     offered = candidates(measurements)
+    if not doubt:
+        offered = [noise for noise in offered if noise.growth == offered[0].growth]
     reasons: list[str] = []
     if len({noise.zero for noise in offered}) > 1:
         plain = [noise for noise in offered if noise.growth == offered[0].growth]
@@ -140,6 +152,8 @@ def choose_noise(measurements: Measurements, situation: Situation) -> tuple[Nois
         reasons.append(
             f"The scatter grows with the displacement: {best.noise.growth * 100:.2g} % of it."
         )
+    if best.noise.stated and not doubt:
+        return best.noise, reasons
     return _scaled(best, reasons), reasons
 
 

@@ -1,0 +1,98 @@
+"""Which of the chosen effects may be named, beside which alternatives, on what evidence."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
+from sk120stiff.explain.confirm import confirm
+from sk120stiff.explain.explanation import Evidence, Finding
+from sk120stiff.explain.regression import Regression
+from sk120stiff.explain.search import Scored, gains, score_set
+from sk120stiff.explain.settling import Attempt
+
+MARGIN = 6.0  # difference of scores below which two names cannot be told apart
+CONTENDERS = 24  # rivals looked at for every effect
+
+
+def findings_of(found: Attempt, *, seed: int) -> tuple[list[Finding], list[str]]:
+    """Findings in the order of their weight, and ids of effects that other poses do not confirm."""
+    findings: list[Finding] = []
+    doubted: list[str] = []
+    for effect in by_weight(found.regression, found.chosen):
+        finding = _finding(found, effect, seed)
+        if finding.evidence.confirmation.holds:
+            findings.append(finding)
+        else:
+            doubted.append(finding.effect.id)
+    return findings, doubted
+
+
+def _finding(found: Attempt, effect: int, seed: int) -> Finding:
+    regression = found.regression
+    with_it = found.scored
+    rest = tuple(e for e in found.chosen if e != effect)
+    without = score_set(regression, regression.sums(), rest)
+    chosen = regression.candidates[effect]
+    rivals = _rivals(regression, rest, effect)
+    exact = _aliases(found, effect, with_it, rivals)
+    same = [
+        e
+        for e, model in rivals
+        if model.score - with_it.score < MARGIN or regression.candidates[e].id in exact
+    ]
+    others = [(e, model.score) for e, model in rivals if e not in same]
+    runner_up = min(others, key=lambda pair: pair[1], default=None)
+    names = [regression.candidates[e].id for e in same]
+    return Finding(
+        effect=chosen,
+        alternatives=tuple(dict.fromkeys([*names, *exact])),
+        exact=exact,
+        evidence=Evidence(
+            score_gain=without.score - with_it.score,
+            misfit_gain=without.solved.rss - with_it.solved.rss,
+            runner_up=None if runner_up is None else regression.candidates[runner_up[0]].id,
+            runner_up_gap=np.inf if runner_up is None else runner_up[1] - with_it.score,
+            confirmation=confirm(regression, found.chosen, effect, same, seed=seed),
+        ),
+    )
+
+
+def _aliases(
+    found: Attempt, effect: int, with_it: Scored, rivals: list[tuple[int, Scored]]
+) -> tuple[str, ...]:
+    """Names that no readings of this kind could tell from the effect."""
+    regression, situation = found.regression, found.final.problem.situation
+    chosen = regression.candidates[effect]
+    close = [
+        regression.candidates[e]
+        for e, model in rivals
+        if model.solved.rss - with_it.solved.rss < 2.0 * MARGIN
+    ]
+    always = exact_aliases(
+        found.final.model,
+        chosen,
+        close,
+        point=situation.point,
+        tied=with_it.variants[with_it.effects.index(effect)] > 0,
+    )
+    return always + aliases_by_design(chosen, regression.candidates, situation)
+
+
+def by_weight(regression: Regression, model: tuple[int, ...]) -> list[int]:
+    """Order in which a greedy observer would add the effects of a model."""
+    sums = regression.sums()
+    order: list[int] = []
+    while len(order) < len(model):
+        left = [e for e in model if e not in order]
+        order.append(min(left, key=lambda e: score_set(regression, sums, (*order, e)).solved.rss))
+    return order
+
+
+def _rivals(regression: Regression, rest: tuple[int, ...], effect: int) -> list[tuple[int, Scored]]:
+    """The other candidates that promise most in the place of one effect, with their models."""
+    sums = regression.sums()
+    promise = gains(regression, sums, score_set(regression, sums, rest).solved)
+    order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:CONTENDERS]
+    found = [(e, score_set(regression, sums, (*rest, e))) for e in order]
+    return [(e, model) for e, model in found if model.plausible]

@@ -1,0 +1,157 @@
+"""One attempt at an answer: under one noise model, linearise, search and refit until it settles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.explain.outliers import outlying_rows
+from sk120stiff.explain.regression import Index, Regression, regression_at
+from sk120stiff.explain.search import Scored, beam_search, score_set
+from sk120stiff.identify import Fit, Problem, fit, solve
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model
+
+ROUNDS = 4  # of linearising, searching and refitting
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """A base model, the model that the search settled on, and everything to judge it by.
+
+    Attributes
+    ----------
+    base, final
+        Fits of the base model and of the model with the chosen effects.
+    regression
+        Readings linearised at `final`.
+    chosen
+        Candidates in `final`.
+    aside
+        Rows (of the readings given) that were set aside as outliers.
+    candidates
+        All effects considered.
+    total
+        Score of the whole, noise model included; attempts under other noise models compare by it.
+    """
+
+    base: Fit
+    final: Fit
+    regression: Regression
+    chosen: tuple[int, ...]
+    aside: Index
+    candidates: tuple[Effect, ...]
+    total: float
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The chosen effects."""
+        return tuple(self.regression.candidates[e] for e in self.chosen)
+
+    @property
+    def scored(self) -> Scored:
+        """The chosen model in the regression."""
+        return score_set(self.regression, self.regression.sums(), self.chosen)
+
+
+def attempt(
+    model: Model,
+    measurements: Measurements,
+    noise: NoiseModel,
+    candidates: Sequence[Effect],
+    *,
+    max_effects: int,
+) -> Attempt:
+    """Settle on a set of effects under one noise model.
+
+    Parameters
+    ----------
+    model
+        The base model.
+    measurements
+        Readings in use.
+    noise
+        Their noise.
+    candidates
+        Effects that may be missing.
+    max_effects
+        Largest number of them to add.
+    """
+    base = fit(model, measurements, noise=noise)
+    ids = tuple(effect.id for effect in model.effects)
+    regression = regression_at(base, candidates, ids)
+    whole = base.problem.whitener.logdet
+    aside = outlying_rows(regression, base.problem.whitener)
+    if len(aside):
+        keep = np.ones(measurements.n_readings, dtype=bool)
+        keep[aside] = False
+        base = fit(model, measurements.select(keep), noise=noise)
+        regression = regression_at(base, candidates, ids)
+    final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
+    score = score_set(regression, regression.sums(), chosen).score
+    axes = np.log(3.0 * measurements.n_readings)
+    return Attempt(
+        base=base,
+        final=final,
+        regression=regression,
+        chosen=chosen,
+        aside=aside,
+        candidates=tuple(candidates),
+        total=score + whole + 3.0 * axes * len(aside) + 2.0 * axes * (noise.growth > 0.0),
+    )
+
+
+def with_effects(found: Attempt, effects: Sequence[Effect]) -> Attempt:
+    """The same attempt with other effects chosen, refitted and linearised anew."""
+    ids = tuple(effect.id for effect in found.base.model.effects)
+    final = refit(found.base, effects)
+    regression = regression_at(final, found.candidates, ids)
+    chosen = positions(regression, effects)
+    return Attempt(
+        base=found.base,
+        final=final,
+        regression=regression,
+        chosen=chosen,
+        aside=found.aside,
+        candidates=found.candidates,
+        total=np.nan,
+    )
+
+
+def refit(base: Fit, effects: Sequence[Effect]) -> Fit:
+    """The base model with effects added, fitted at exact equilibrium to the same readings."""
+    if not effects:
+        return base
+    model = base.model
+    for effect in effects:
+        model = model + effect
+    return solve(Problem(model, base.problem.measurements, base.problem.noise))
+
+
+def positions(regression: Regression, effects: Sequence[Effect]) -> tuple[int, ...]:
+    """Places of effects among the candidates, ascending."""
+    where = {effect.id: k for k, effect in enumerate(regression.candidates)}
+    return tuple(sorted(where[effect.id] for effect in effects))
+
+
+def _settle(
+    base: Fit,
+    regression: Regression,
+    candidates: Sequence[Effect],
+    ids: Sequence[str],
+    max_effects: int,
+) -> tuple[Fit, Regression, tuple[int, ...]]:
+    """Linearise, search, refit exactly, until the search confirms the model it was made at."""
+    final, chosen = base, ()
+    for _ in range(ROUNDS):
+        best = beam_search(regression, max_effects=max_effects)[0]
+        effects = [regression.candidates[e] for e in best.effects]
+        if {e.id for e in effects} == {regression.candidates[e].id for e in chosen}:
+            break
+        final = refit(base, effects)
+        regression = regression_at(final, candidates, ids)
+        chosen = positions(regression, effects)
+    return final, regression, chosen

@@ -1,0 +1,81 @@
+"""How the user steers the search: what may be missing, and what is taken for granted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sk120stiff.effects import BY_NAME, Effect, all_effects, situation_of
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+
+
+@dataclass(frozen=True)
+class Options:
+    """How the user steers the search.
+
+    Attributes
+    ----------
+    only, exclude
+        Effects (``name`` or ``name:where``) to which the search is limited, or which it leaves out.
+    assume
+        Effects that are in the model from the start.
+    max_effects
+        Largest number of named effects.
+    seed
+        Of folds and resampling.
+    """
+
+    only: tuple[str, ...] = ()
+    exclude: tuple[str, ...] = ()
+    assume: tuple[str, ...] = ()
+    max_effects: int = 4
+    seed: int = 0
+
+
+def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Model:
+    """The model with the effects that the user takes for granted, to be fitted with it."""
+    for wanted in assumed:
+        found = [e for e in all_effects(model.robot, poses=used.poses) if _matches(e, wanted)]
+        if not found:
+            raise _unknown(wanted, model)
+        for effect in found:
+            if effect.id not in {present.id for present in model.effects}:
+                model = model + effect
+    return model
+
+
+def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Effect, ...]:
+    """Effects of the catalogue that the readings could show and the user does not exclude."""
+    situation = situation_of(model.robot, used)
+    present = {effect.id for effect in model.effects}
+    everything = all_effects(model.robot, poses=used.poses, timed=used.time is not None)
+    for wanted in (*wish.only, *wish.exclude):
+        if not any(_matches(effect, wanted) for effect in everything):
+            raise _unknown(wanted, model)
+    return tuple(
+        effect
+        for effect in everything
+        if effect.id not in present
+        and effect.applies_to(situation)
+        and not any(_matches(effect, wanted) for wanted in wish.exclude)
+        and (not wish.only or any(_matches(effect, wanted) for wanted in wish.only))
+    )
+
+
+def _matches(effect: Effect, wanted: str) -> bool:
+    return wanted in (effect.name, effect.id)
+
+
+def _unknown(wanted: str, model: Model) -> InputError:
+    name, _, where = wanted.partition(":")
+    if name in BY_NAME:
+        places = BY_NAME[name].places(model.robot)
+        return InputError(
+            f"the effect {name!r} cannot act at {where!r} on {model.robot.name}",
+            remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
+        )
+    return InputError(
+        f"there is no effect {wanted!r}", remedy=f"Effects are: {', '.join(BY_NAME)}."
+    )

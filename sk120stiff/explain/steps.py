@@ -1,0 +1,60 @@
+"""The gap with every effect that joins the model, on fitted and on held-out poses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.explain.confirm import pose_folds
+from sk120stiff.explain.explanation import Step
+from sk120stiff.explain.settling import refit
+from sk120stiff.identify import Fit, Problem, solve_near
+from sk120stiff.measurements import Measurements
+
+
+def gap_steps(
+    base: Fit, effects: Sequence[Effect], holdout: Measurements | None, *, seed: int
+) -> tuple[Step, ...]:
+    """The base model, then one effect more at each step.
+
+    Parameters
+    ----------
+    base
+        Fit of the base model.
+    effects
+        In the order in which they were added.
+    holdout
+        Readings of other poses; without them poses are left out of the fit in turn.
+    seed
+        Of the folds.
+    """
+    steps = []
+    for count in range(len(effects) + 1):
+        found = refit(base, effects[:count])
+        label = "joint_springs" if not count else f"+ {effects[count - 1].id}"
+        held = _on_poses_left_out(found, seed) if holdout is None else _on_file(found, holdout)
+        steps.append(Step(label, found.rms, held))
+    return tuple(steps)
+
+
+def _on_file(found: Fit, holdout: Measurements) -> float:
+    """Gap on a hold-out file, per axis [m]."""
+    other = Problem(found.model, holdout.masked(), found.problem.noise)
+    gap = other.measured - found.model.predict(other.situation)
+    return float(np.sqrt(np.mean(gap**2)))
+
+
+def _on_poses_left_out(found: Fit, seed: int) -> float:
+    """Gap on poses left out of the fit in turn, per axis [m]."""
+    measurements, noise = found.problem.measurements, found.problem.noise
+    folds = pose_folds(len(measurements.poses), np.random.default_rng(seed))
+    fold = folds[measurements.pose_index]
+    squares = 0.0
+    for k in np.unique(fold):
+        train = Problem(found.model, measurements.select(fold != k), noise)
+        part = solve_near(train, found.x)
+        test = Problem(part.model, measurements.select(fold == k), noise)
+        squares += float(((test.measured - part.model.predict(test.situation)) ** 2).sum())
+    return float(np.sqrt(squares / (3 * measurements.n_readings)))
