@@ -47,11 +47,11 @@ def exact_aliases(
         values[list(group)] = values[list(group)].mean()
     signature = X[:, owner == effect.id] @ values
     base = X[:, np.isin(owner, list(present - {effect.id}))]
-    reference = np.linalg.norm(_without(base, signature))
+    reference = max(float(np.linalg.norm(_without(base, signature))), 1e-300)
     found = []
     for other in others:
         both = np.hstack([base, X[:, owner == other.id]])
-        if np.linalg.norm(_without(both, signature)) <= SAME * max(reference, 1e-300):
+        if np.linalg.norm(_without(both, signature)) <= SAME * reference:
             found.append(other.id)
     return tuple(found)
 

@@ -40,9 +40,8 @@ class Confirmation:
     @property
     def holds(self) -> bool:
         """The name may be given."""
-        return (
-            self.folds_improved >= 0.75 * self.folds and self.gain > 0.0 and self.frequency >= 0.7
-        )
+        often = self.folds_improved >= 0.75 * self.folds and self.frequency >= 0.7
+        return often and self.gain > 0.0
 
 
 def confirm(

@@ -1,13 +1,12 @@
-"""What follows from an answer: what these readings could not have shown, and what to measure next."""
+"""What follows from an answer: what the readings could not have shown, what to measure next."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import Effect, effect
+from sk120stiff.effects import effect
 from sk120stiff.explain.explanation import Detectable, Explanation
 from sk120stiff.explain.localise import localise
 from sk120stiff.explain.regression import Regression
@@ -19,9 +18,7 @@ SEEN = 4.6  # √λ at which a one-parameter effect is named in four of five cas
 READINGS_TO_MEASURE = 10
 
 
-def completed(
-    answer: Explanation, regression: Regression, candidates: Sequence[Effect], *, seed: int
-) -> Explanation:
+def completed(answer: Explanation, regression: Regression, *, seed: int) -> Explanation:
     """The answer with where the gap lives, detectable sizes, what is hidden, the next poses."""
     smallest, invisible = detectable(answer, regression)
     found = localise(answer.base)

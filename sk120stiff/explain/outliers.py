@@ -19,8 +19,8 @@ def outlying_rows(regression: Regression, whitener: Whitener) -> NDArray[np.intp
 
     The catalogue is fitted with every parameter drawn towards zero by its plausible range, which is
     flexible enough for any cause like those in it. A reading stands out if a shift of one of its
-    axes would still take more than `LIMIT` standard errors (`NEXT`, once one was found). The worst is taken out first, and the
-    rest judged again.
+    axes would still take more than `LIMIT` standard errors (`NEXT`, once one was found). The worst
+    is taken out first, and the rest judged again.
     """
     X, y = regression.X, regression.y
     prior = 3.0 / np.maximum(regression.plausible, 1e-300)

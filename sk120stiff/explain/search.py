@@ -1,8 +1,8 @@
 """Which set of effects explains the gap best: a beam search over models of the catalogue.
 
-Models are scored by the extended Bayesian information criterion (Chen & Chen 2008): the misfit, plus
-ln R for every parameter that moves, plus twice the logarithm of the number of candidates for every
-effect, which pays for having looked at so many.
+Models are scored by the extended Bayesian information criterion (Chen & Chen 2008): the misfit,
+plus ln R for every parameter that moves, plus twice the logarithm of the number of candidates for
+every effect, which pays for having looked at so many.
 """
 
 from __future__ import annotations

@@ -145,7 +145,8 @@ def _settle(
     max_effects: int,
 ) -> tuple[Fit, Regression, tuple[int, ...]]:
     """Linearise, search, refit exactly, until the search confirms the model it was made at."""
-    final, chosen = base, ()
+    final = base
+    chosen: tuple[int, ...] = ()
     for _ in range(ROUNDS):
         best = beam_search(regression, max_effects=max_effects)[0]
         effects = [regression.candidates[e] for e in best.effects]

@@ -52,7 +52,7 @@ def explain(
         The base model itself cannot be fitted.
     """
     wish = options or Options()
-    tell = progress or (lambda phrase, share: None)
+    tell = progress or _silent
     tell("searching the catalogue", 0.05)
     found, reasons = _best_attempt(model, measurements.masked(), wish)
     left = _adequacy(found)
@@ -123,6 +123,11 @@ def _best_attempt(
     return (second, other_reasons) if second.total < plain.total else (plain, reasons)
 
 
+def _silent(phrase: str, share: float) -> None:
+    """No one wants to know."""
+    del phrase, share
+
+
 def _adequacy(found: Attempt) -> Adequacy:
     return adequacy(found.final, found.regression, found.scored.solved.columns)
 
@@ -133,4 +138,4 @@ def _too_much(left: Adequacy) -> bool:
 
 
 def _finished(found: Attempt, answer: Explanation, wish: Options) -> Explanation:
-    return completed(answer, found.regression, found.candidates, seed=wish.seed)
+    return completed(answer, found.regression, seed=wish.seed)
