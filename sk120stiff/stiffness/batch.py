@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness.equilibrium import Weight
 from sk120stiff.stiffness.lanes.folding import Fold, fold
 
 logger = logging.getLogger(__name__)
@@ -113,6 +114,7 @@ def stiffness_batch(
     frame: str | None = None,
     point: ArrayLike | None = None,
     virtual: ArrayLike | None = None,
+    weight: Weight | None = None,
     want: Collection[str] = ("position", "compliance", "values", "stiffness_class"),
     threads: int | None = None,
 ) -> StiffnessBatch:
@@ -136,6 +138,9 @@ def stiffness_batch(
         (3,) in that frame [m]; its origin by default.
     virtual
         (n_v,) where the virtual joints stand [rad or m]; zero by default.
+    weight
+        Lets the arm sag under its own weight before the load comes; all results hold at the pose
+        that it sags to, and are NaN where the springs cannot hold the weight.
     want
         What to compute, of `QUANTITIES`.
     threads
@@ -151,7 +156,7 @@ def stiffness_batch(
     if at.shape != (3,) or not np.isfinite(at).all():
         raise InputError("the point is not three finite numbers", remedy="Give x, y, z in metres.")
     still = np.zeros(len(mechanism.virtual)) if virtual is None else np.asarray(virtual, float)
-    folded = fold(mechanism, np.asarray(springs, dtype=float), at, still)
+    folded = fold(mechanism, np.asarray(springs, dtype=float), at, still, weight)
     return run_folded(folded, a, wrench, want, threads=threads)
 
 
@@ -195,7 +200,7 @@ def available_cores() -> int:
 
 def _poses(a: ArrayLike, folded: Fold) -> Array:
     poses = np.ascontiguousarray(a, dtype=float)
-    n = folded.pose_map.shape[1]
+    n = folded.actuated
     if poses.ndim != 2 or poses.shape[1] != n:
         raise InputError(
             f"poses of shape {poses.shape} given, but this mechanism has {n} actuated coordinates",
@@ -207,7 +212,7 @@ def _poses(a: ArrayLike, folded: Fold) -> Array:
             "a joint coordinate is not a finite number",
             where=f"pose {int(np.flatnonzero(~np.isfinite(poses).all(axis=1))[0])}",
         )
-    turning = (np.abs(folded.pose_map) @ largest)[folded.slides == 0.0]
+    turning = (np.abs(folded.pose_map[:, :n]) @ largest)[folded.slides == 0.0]
     if turning.max(initial=0.0) > LARGEST_ANGLE:
         raise InputError(
             f"a joint angle of {turning.max():.3g} rad is beyond {LARGEST_ANGLE:.0e}",
@@ -238,7 +243,7 @@ def _run(
     folded: Fold, poses: Array, loads: Array, want: frozenset[str], threads: int
 ) -> dict[str, NDArray[np.generic]]:
     """Fill the wanted arrays, in pieces shared out to threads."""
-    count, quantity, n, s = len(poses), len(loads), folded.coordinates, len(folded.soft)
+    count, quantity, n, s = len(poses), len(loads), len(folded.rest), len(folded.soft)
     shapes: dict[str, tuple[int, ...]] = {
         "position": (count, 3),
         "rotation": (count, 3, 3),

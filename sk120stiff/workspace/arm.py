@@ -7,16 +7,17 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import LinearElastic, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
-from sk120stiff.robot import Mechanism
+from sk120stiff.robot import LinearCoupling, Mechanism
 from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness import Weight, symmetric_part
 from sk120stiff.stiffness.batch import StiffnessBatch, run_folded
 from sk120stiff.stiffness.lanes.folding import Fold, fold
-from sk120stiff.workspace.varying import varying_batch
+from sk120stiff.workspace.slow import slow_batch
 
 PROBES = 16  # random poses at which the compliance is compared
 
@@ -61,8 +62,11 @@ class ElasticArm:
         (n_z,) by which the unloaded coordinates differ from the commanded ones [rad or m].
     point
         (3,) in the frame [m].
-    varying
-        The model, where its compliance changes with the pose; `springs` then hold at one pose only.
+    weight
+        Gravity and the compliance by which the arm sags; None where nothing weighs.
+    slow
+        The model, where the compiled kernel does not follow it: its compliance changes with the
+        pose, is not positive in all directions, or a closed loop couples joints.
     """
 
     name: str
@@ -74,7 +78,8 @@ class ElasticArm:
     springs: Array
     shift: Array
     point: Array
-    varying: Model | None = None
+    weight: Weight | None = None
+    slow: Model | None = None
 
     @property
     def n(self) -> int:
@@ -83,7 +88,15 @@ class ElasticArm:
 
     @cached_property
     def _folded(self) -> Fold:
-        return fold(self.mechanism, self.springs, self.point, self.shift[self.n :])
+        virtual = self.shift[self.n :]
+        return fold(self.mechanism, self.springs, self.point, virtual, self.weight)
+
+    @cached_property
+    def _rigid(self) -> Fold | None:
+        if not isinstance(self.mechanism.elastic or self.mechanism.coupling, LinearCoupling):
+            return None
+        unit = np.ones(self.mechanism.n)
+        return fold(self.mechanism, unit, self.point, self.shift[self.n :])
 
     def batch(
         self,
@@ -95,17 +108,32 @@ class ElasticArm:
     ) -> StiffnessBatch:
         """`stiffness_batch` of this arm at commanded coordinates (N, n)."""
         poses = np.asarray(a, dtype=float)
-        if self.varying is not None:
-            return varying_batch(self.varying, poses, wrench, want, self.point)
+        if self.slow is not None:
+            return slow_batch(self.slow, poses, wrench, want, self.point)
         return run_folded(self._folded, poses + self.shift[: self.n], wrench, want, threads=threads)
 
     def kinematics(self, a: Array) -> Kinematics:
-        """Where the point is, and how the actuated joints move it, at coordinates (N, n)."""
+        """Where the point is before it sags, and how the actuated joints move it, at (N, n)."""
+        if self._rigid is None:
+            z = np.concatenate([a, np.zeros((len(a), self.mechanism.n - self.n))], axis=1)
+            screws = self.mechanism.screws(z + self.shift, self.point)
+            return Kinematics(screws.position, screws.rotation, screws.jacobian[..., : self.n])
         want = ("position", "rotation", "jacobian")
-        found = run_folded(self._folded, a + self.shift[: self.n], np.zeros(6), want)
+        found = run_folded(self._rigid, a + self.shift[: self.n], np.zeros(6), want)
         return Kinematics(
             found.of("position"), found.of("rotation"), found.of("jacobian")[..., : self.n]
         )
+
+    @property
+    def has_loops(self) -> bool:
+        """Do closed loops couple joints otherwise than linearly?"""
+        return self._rigid is None
+
+    def closes(self, a: Array) -> NDArray[np.bool_]:
+        """(N,) can the closed loops be closed at coordinates (N, n)?"""
+        if self.slow is None:
+            return np.ones(len(a), dtype=bool)
+        return np.asarray(self.slow.robot.closes(a), dtype=bool)
 
     def within_limits(self, a: Array) -> Array:
         """(N,) are all joints (N, n) within their limits?"""
@@ -139,21 +167,54 @@ def elastic_arm(
     lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
     upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
     probes = np.random.default_rng(0).uniform(lower, upper, (PROBES, robot.n))
-    rest = physical.solve(situation_of_load(robot, probes, np.zeros(6))).rest
-    compliance = np.broadcast_to(rest.compliance, (PROBES, *rest.compliance.shape[-2:]))
-    constant = np.allclose(compliance, compliance[0], rtol=1e-12, atol=0.0)
+    probes[~robot.closes(probes)] = 0.0
+    compliance, sag, shift = _compliances(physical, probes)
+    mechanism = physical.assembly.mechanism
+    springs = _springs(compliance[0], robot.name)
+    followed = (
+        isinstance(mechanism.elastic or mechanism.coupling, LinearCoupling)
+        and springs is not None
+        and all(np.allclose(part, part[0], rtol=1e-12, atol=0.0) for part in (compliance, sag))
+    )
+    weighs = mechanism.chain.weighs and sag.any()
     return ElasticArm(
         name=robot.name,
         joints=robot.actuated,
         slides=robot.prismatic,
         lower=robot.lower,
         upper=robot.upper,
-        mechanism=physical.assembly.mechanism,
-        springs=_springs(compliance[0], robot.name),
-        shift=rest.z[0] - np.concatenate([probes[0], np.zeros(rest.z.shape[-1] - robot.n)]),
+        mechanism=mechanism,
+        springs=np.zeros((0, 0)) if springs is None else springs,
+        shift=shift,
         point=at,
-        varying=None if constant else physical,
+        weight=Weight(robot.gravity_in_base, sag[0]) if weighs else None,
+        slow=None if followed else physical,
     )
+
+
+def _compliances(physical: Model, poses: Array) -> tuple[Array, Array, Array]:
+    """Compliance under small loads and under the weight, (N, n, n) each, and (n,) the shift."""
+
+    def of(model: Model) -> Array:
+        situation = situation_of_load(model.robot, poses, np.zeros(6))
+        found = model.solve(situation).rest.compliance
+        return np.broadcast_to(found, (len(poses), *found.shape[-2:]))
+
+    # Only what is linear carries the weight; the rest is a law about the load.
+    linear = replace(
+        physical,
+        parameters=tuple(
+            parameter
+            if isinstance(parameter.effect, LinearElastic)
+            else replace(parameter, value=0.0)
+            for parameter in physical.parameters
+        ),
+    )
+    start = physical.assembly.start(
+        situation_of_load(physical.robot, poses[:1], np.zeros(6)), physical.values
+    )[0]
+    start[: physical.robot.n] -= poses[0]
+    return of(physical), of(linear), start
 
 
 def _seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
@@ -166,8 +227,11 @@ def _seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
     return replace(model, robot=replace(robot, tool_frame=frame)), point
 
 
-def _springs(compliance: Array, name: str) -> Array:
-    """(n, n) stiffness of a compliance, infinite on the diagonal where nothing yields."""
+def _springs(compliance: Array, name: str) -> Array | None:
+    """(n, n) stiffness of a compliance, infinite on the diagonal where nothing yields.
+
+    None where the compliance of what yields is singular or negative in some direction.
+    """
     soft = np.flatnonzero(compliance.any(axis=0))
     if not len(soft):
         raise InputError(
@@ -175,7 +239,10 @@ def _springs(compliance: Array, name: str) -> Array:
             where=name,
             remedy="Give a model with joint_springs or another elastic effect.",
         )
+    part = symmetric_part(compliance[np.ix_(soft, soft)])
+    values = np.linalg.eigvalsh(part)
+    if values[0] <= 1e-12 * values[-1]:
+        return None
     springs = np.diag(np.where(compliance.any(axis=0), 0.0, np.inf))
-    inverse = np.linalg.inv(compliance[np.ix_(soft, soft)])
-    springs[np.ix_(soft, soft)] = 0.5 * (inverse + inverse.T)
+    springs[np.ix_(soft, soft)] = symmetric_part(np.asarray(np.linalg.inv(part), dtype=float))
     return springs

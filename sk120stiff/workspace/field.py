@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.errors import InputError
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import CLASSES
 from sk120stiff.workspace.arm import ElasticArm
@@ -16,14 +17,15 @@ from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 
 Numbers = NDArray[Any]
 
-#: Why a point of a grid over positions has values or not.
+#: Why a point has values or not.
 STATUS = (
     "reached",
     "out of reach",
     "within reach, but not with this orientation",
     "only beyond the joint limits",
+    "a closed loop cannot be closed",
 )
-REACHED, OUT_OF_REACH, WRONG_ORIENTATION, BEYOND_LIMITS = range(4)
+REACHED, OUT_OF_REACH, WRONG_ORIENTATION, BEYOND_LIMITS, OPEN_LOOP = range(5)
 UNKNOWN_CLASS = 255  # class of a point that was not reached
 
 
@@ -110,7 +112,9 @@ class JointGrid:
         a = np.tile(self.rest, (end - begin, 1))
         columns = [arm.joints.index(axis.name) for axis in self.grid.axes]
         a[:, columns] = self.grid.points(begin, end)
-        return a, np.zeros(len(a), dtype=np.uint8)
+        closes = arm.closes(a)
+        a[~closes] = a[closes][:1] if closes.any() else 0.0  # not looked at, but it must close
+        return a, np.where(closes, REACHED, OPEN_LOOP).astype(np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +147,12 @@ class PositionGrid:
 
     def poses(self, arm: ElasticArm, begin: int, end: int) -> tuple[Array, NDArray[np.uint8]]:
         """See `Poses`."""
+        if arm.has_loops:
+            raise InputError(
+                "postures of an arm with closed loops are not searched",
+                where=arm.name,
+                remedy="Give a grid over joints.",
+            )
         task = Task(self._positions(begin, end), self.axis, self.rotation)
         starts = self._starts(arm)
         best = np.tile(self.rest, (task.count, 1))
@@ -225,8 +235,9 @@ class MapJob:
                 ("joint", self.arm.joints),
             )  # fmt: skip
             chosen += [STATUS_VARIABLE, joints]
-        elif self.with_position:
-            chosen.append(POSITION)
+        else:
+            chosen += [STATUS_VARIABLE] if self.arm.has_loops else []
+            chosen += [POSITION] if self.with_position else []
         return tuple(chosen)
 
     @property
@@ -261,9 +272,8 @@ class MapJob:
         if self.with_directions:
             answers["softest_direction"] = _along(values.argmin(axis=-1), found.of("directions"))
             answers["stiffest_direction"] = _along(values.argmax(axis=-1), found.of("directions"))
-        if self.points.cartesian:
-            answers |= {"status": status, "joints": a}
-        elif self.with_position:
+        answers |= {"status": status, "joints": a}
+        if self.with_position:
             answers["position"] = found.of("position")
         lost = status != REACHED
         for variable in self.variables:

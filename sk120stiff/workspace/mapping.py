@@ -117,7 +117,7 @@ def write_map(
 
 
 def _chunk_points(job: MapJob) -> int:
-    if job.points.cartesian or job.arm.varying is not None:
+    if job.points.cartesian or job.arm.slow is not None:
         return SLOW_POINTS
     return max(SLOW_POINTS, FAST_POINTS // len(job.loads))
 

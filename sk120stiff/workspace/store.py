@@ -213,16 +213,19 @@ class MapStore:
 
         arm, points = self.job.arm, self.job.points
         chain = arm.mechanism.chain
+        motion = arm.mechanism.coupling.motion(points.rest)
         parts: list[object] = [
             VERSION, arm.joints, arm.lower, arm.upper, arm.springs, arm.shift, arm.point,
             chain.placements, chain.axes, chain.revolute, chain.coordinates,
-            arm.mechanism.coupling.motion(np.zeros(arm.n)).q,
-            arm.mechanism.coupling.motion(np.zeros(arm.n)).first,
+            motion.q, motion.first,
             [(axis.name, axis.values) for axis in points.grid.axes], points.rest,
             *(getattr(points, name, None) for name in ("axis", "rotation", "movable", "starts")),
             self.job.loads, [variable.name for variable in self.job.variables],
             self.chunks.chunk_shape,
-            arm.varying.values if arm.varying else None,
+            arm.slow.values if arm.slow else None,
+            (arm.weight.gravity, arm.weight.compliance, chain.masses, chain.centres)
+            if arm.weight
+            else None,
         ]  # fmt: skip
         digest = hashlib.sha256()
         for part in parts:

@@ -21,6 +21,7 @@ from sk120stiff.stiffness.lanes.compliance import (
 from sk120stiff.stiffness.lanes.eigen import PD, ZERO, classify, eigen, jacobi
 from sk120stiff.stiffness.lanes.folding import Fold
 from sk120stiff.stiffness.lanes.layout import (
+    CHANGE,
     EIGENVALUE,
     EIGENVECTOR,
     FREE,
@@ -32,11 +33,17 @@ from sk120stiff.stiffness.lanes.layout import (
     TENSOR,
     at,
 )
-from sk120stiff.stiffness.lanes.motion import columns_of_J, sweep
+from sk120stiff.stiffness.lanes.motion import (
+    bend_by_weight,
+    columns_of_J,
+    place_joints,
+    turn_levers,
+)
 
 # Above this determinant (of K scaled to a unit diagonal) the factorisation without exchanges is
 # accurate, and definiteness is beyond doubt if the diagonal itself spans less than `SPAN`.
 SURE, SPAN = 1e-6, 1e-4
+BENDS, REST = 60, 1e-14  # steps towards rest under the weight, and where they end [rad or m]
 
 
 class Outputs(NamedTuple):
@@ -74,15 +81,16 @@ def work(fold: Fold, a: Array, loads: Array, begin: int, end: int, out: Outputs)
     loads
         (Q, 1, 6) loads at every pose, or (1, N, 6) one for each.
     """
-    m, n_a, s = fold.kind.shape[0], fold.pose_map.shape[1], fold.soft.shape[0]
-    triangle, below = s * (s + 1) // 2, s * (s - 1) // 2
-    axes, levers = FREE, FREE + 3 * m
-    pose = levers + 3 * m
-    columns = pose + n_a
-    K_C = columns + 3 * fold.coordinates
-    skew = K_C + triangle
-    L = skew + below
-    y = L + triangle
+    m, n, s = fold.kind.shape[0], fold.rest.shape[0], fold.soft.shape[0]
+    weighs = fold.mass.max() > 0.0
+    axes, levers, moments, torques = FREE, FREE + 3 * m, FREE + 6 * m, FREE + 9 * m
+    pose = torques + m
+    unbent = pose + n
+    columns = unbent + n
+    K_C = columns + 3 * n
+    skew = K_C + s * (s + 1) // 2
+    L = skew + s * (s - 1) // 2
+    y = L + s * (s + 1) // 2
     x = np.zeros((y + 3 * s) * LANES)
     A, B = np.empty((s, s)), np.empty((s, max(s, 3)))
     principal = out.values.size + out.directions.size > 0
@@ -90,11 +98,22 @@ def work(fold: Fold, a: Array, loads: Array, begin: int, end: int, out: Outputs)
     stability = out.K_C.size + out.complementary_class.size + out.critical.size > 0
     for first in range(begin, end, LANES):
         count = min(LANES, end - first)
-        for i in range(n_a):
-            row = at(pose + i)
+        for i in range(n):
+            row, straight = at(pose + i), at(unbent + i)
             for k in range(LANES):
-                x[row + k] = a[first + min(k, count - 1), i]
-        sweep(x, fold, pose, axes, levers)
+                z = a[first + min(k, count - 1), i] if i < fold.actuated else fold.rest[i]
+                x[row + k] = x[straight + k] = z
+        place_joints(x, fold, pose, axes, levers, moments, weighs)
+        if weighs:
+            for _ in range(BENDS):
+                change = bend_by_weight(x, fold, pose, axes, levers, moments, torques, unbent)
+                place_joints(x, fold, pose, axes, levers, moments, weighs)
+                if change <= REST:
+                    break
+            for k in range(LANES):
+                if not x[CHANGE * LANES + k] <= REST:  # the springs cannot hold the weight
+                    x[POSITION * LANES + k] = np.nan
+        turn_levers(x, fold, axes, levers)
         columns_of_J(x, fold, levers, columns)
         _store_motion(x, fold, first, count, axes, levers, columns, out)
         for load in range(loads.shape[0]):
@@ -163,7 +182,7 @@ def _store_motion(
                 row = (TENSOR + 3 * i + j) * LANES
                 for k in range(LANES):
                     x[row + k] = 0.0
-                for z in range(fold.pose_map.shape[1]):
+                for z in range(fold.actuated):
                     f, g = at(columns + 3 * z + i), at(columns + 3 * z + j)
                     for k in range(LANES):
                         x[row + k] += x[f + k] * x[g + k]

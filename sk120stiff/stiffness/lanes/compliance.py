@@ -6,8 +6,9 @@ import numpy as np
 
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.kernel import part
-from sk120stiff.stiffness.lanes.folding import Fold, Indices
+from sk120stiff.stiffness.lanes.folding import Fold
 from sk120stiff.stiffness.lanes.layout import FACTOR, INVERSE, LANES, LOAD, SAFE, TENSOR, TURNED, at
+from sk120stiff.stiffness.lanes.pairs import Indices
 
 
 @part

@@ -8,7 +8,7 @@ from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.kernel import part
 from sk120stiff.stiffness.lanes.layout import EIGENVALUE, EIGENVECTOR, LANES, TENSOR
 
-PD, PSD, ND, NSD, ID = range(5)  # indices into `principal.CLASSES`
+PD, PSD, ND, NSD, ID, UNKNOWN = 0, 1, 2, 3, 4, 255  # indices into `principal.CLASSES`
 ZERO = 1e-12  # share of the largest below which an eigenvalue counts as zero, as in `principal`
 SWEEPS = 30  # Jacobi's method needs about six
 
@@ -152,6 +152,8 @@ def classify(A: Array) -> int:
     for i in range(s):
         for j in range(s):
             size += A[i, j] * A[i, j]
+    if math.isnan(size):
+        return UNKNOWN
     size = 10.0 * ZERO * math.sqrt(size)
     for i in range(s):
         for j in range(i):

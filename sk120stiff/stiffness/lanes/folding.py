@@ -8,17 +8,16 @@ approximated, and no common normal of nearly parallel axes is needed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot import LinearCoupling, Mechanism
 from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness.equilibrium import Weight
+from sk120stiff.stiffness.lanes.pairs import Indices, contributions
 
-Indices = NDArray[np.int64]
 VARIABLE, CONSTANT, NONE = 0, 1, 2  # does the turn about a joint's z depend on the pose?
 
 
@@ -36,7 +35,9 @@ class Fold(NamedTuple):
     tilt
         (m, 2) cosine and sine of the turn about x before each joint.
     pose_map, value
-        (m, n_a) and (m,): joint values q = pose_map a + value.
+        (m, n) and (m,): joint values q = pose_map z + value.
+    actuated, rest
+        Number of coordinates that motors drive, and (n,) where the others stand [rad or m].
     offset
         (m,) constant angle beside each joint's value [rad].
     slides
@@ -45,8 +46,11 @@ class Fold(NamedTuple):
         (m,) VARIABLE, CONSTANT or NONE, and (m, 2) cosine and sine where constant.
     column_joint, column_coordinate, column_factor
         Entries of the map from coordinates to joints, q = Σ factor · z.
-    coordinates
-        Number of coordinates n, actuated ones first, virtual ones after them.
+    mass, centre
+        (m,) mass that each joint carries [kg], and (m, 3) its centre in the folded frame [m].
+    gravity, sag
+        (3,) acceleration [m/s²] and (s, s) compliance of the soft coordinates under the weight;
+        all zero where nothing weighs.
     soft
         (s,) coordinates with a finite spring.
     springs
@@ -70,6 +74,8 @@ class Fold(NamedTuple):
     tilt: Array
     pose_map: Array
     value: Array
+    actuated: int
+    rest: Array
     offset: Array
     slides: Array
     kind: Indices
@@ -77,7 +83,10 @@ class Fold(NamedTuple):
     column_joint: Indices
     column_coordinate: Indices
     column_factor: Array
-    coordinates: int
+    mass: Array
+    centre: Array
+    gravity: Array
+    sag: Array
     soft: Indices
     springs: Array
     whitener: Array
@@ -87,7 +96,13 @@ class Fold(NamedTuple):
     factor: Array
 
 
-def fold(mechanism: Mechanism, springs: Array, point: Array, virtual: Array) -> Fold:
+def fold(
+    mechanism: Mechanism,
+    springs: Array,
+    point: Array,
+    virtual: Array,
+    weight: Weight | None = None,
+) -> Fold:
     """Fold a mechanism with springs for the kernel.
 
     Parameters
@@ -101,41 +116,58 @@ def fold(mechanism: Mechanism, springs: Array, point: Array, virtual: Array) -> 
         (3,) the point in the end frame [m].
     virtual
         (n_v,) where the virtual joints stand [rad or m].
+    weight
+        Lets the arm sag before the load comes; only soft coordinates do.
 
     Raises
     ------
     InputError
         The coupling is not linear, or the springs are no positive definite stiffness.
     """
-    coupling = mechanism.coupling
+    coupling = mechanism.elastic or mechanism.coupling
     if not isinstance(coupling, LinearCoupling):
         raise InputError(
             "the batch kernel takes linear couplings q = A a + b only",
             remedy="Use the functions of sk120stiff.stiffness, which take any coupling.",
         )
-    soft, K_theta = _soft(springs, mechanism.n)
-    to_joints, pose_map, value = _maps(mechanism, coupling, virtual)
-    start, shift, final, tilt, offset = _frames(mechanism, point)
-    moves = (pose_map != 0.0).any(axis=1) | (value != 0.0)
-    slides = ~mechanism.chain.revolute
-    kind = np.where(moves & ~slides, VARIABLE, np.where(offset != 0.0, CONSTANT, NONE))
+    chain = mechanism.chain
+    n, n_a = mechanism.n, mechanism.coupling.n
+    soft, K_theta = _soft(springs, n)
+    to_joints, value = coupling.A[chain.coordinates], coupling.b[chain.coordinates]
+    rest = np.concatenate([np.zeros(n_a), virtual])
+    weighs = weight is not None and chain.weighs
+    sag, gravity = np.zeros((len(soft), len(soft))), np.zeros(3)
+    if weight is not None and weighs:
+        sag, gravity = weight.compliance[np.ix_(soft, soft)], weight.gravity
+    varies = np.arange(n) < n_a
+    varies[soft] |= weighs
+    frames = _frames(mechanism, point)
+    moves = (to_joints[:, varies] != 0.0).any(axis=1) | (to_joints @ rest + value != 0.0)
+    kind = np.where(
+        moves & chain.revolute, VARIABLE, np.where(frames.offset != 0.0, CONSTANT, NONE)
+    )
     joints, coordinates = np.nonzero(to_joints)
-    pair, pair_end, row, factor = _pairs(to_joints[:, soft])
+    pair, pair_end, row, factor = contributions(to_joints[:, soft])
     return Fold(
-        start=start,
-        shift=shift,
-        final=final,
-        tilt=tilt,
-        pose_map=pose_map,
-        value=value,
-        offset=offset,
-        slides=slides.astype(float),
+        start=frames.start,
+        shift=frames.shift,
+        final=frames.final,
+        tilt=frames.tilt,
+        pose_map=np.ascontiguousarray(to_joints),
+        value=np.ascontiguousarray(value),
+        actuated=n_a,
+        rest=rest,
+        offset=frames.offset,
+        slides=(~chain.revolute).astype(float),
         kind=kind.astype(np.int64),
-        constant=np.stack([np.cos(offset), np.sin(offset)], axis=1),
+        constant=np.stack([np.cos(frames.offset), np.sin(frames.offset)], axis=1),
         column_joint=joints.astype(np.int64),
         column_coordinate=coordinates.astype(np.int64),
         column_factor=to_joints[joints, coordinates],
-        coordinates=mechanism.n,
+        mass=chain.masses if weighs else np.zeros(chain.m),
+        centre=frames.centre,
+        gravity=np.asarray(gravity, dtype=float),
+        sag=np.ascontiguousarray(sag),
         soft=soft,
         springs=K_theta[np.tril_indices(len(soft))],
         whitener=np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(K_theta))),
@@ -144,6 +176,15 @@ def fold(mechanism: Mechanism, springs: Array, point: Array, virtual: Array) -> 
         row=row,
         factor=factor,
     )
+
+
+class _Frames(NamedTuple):
+    start: Array
+    shift: Array
+    final: Array
+    tilt: Array
+    offset: Array
+    centre: Array
 
 
 def _soft(springs: Array, n: int) -> tuple[Indices, Array]:
@@ -169,24 +210,12 @@ def _soft(springs: Array, n: int) -> tuple[Indices, Array]:
     return soft, K_theta
 
 
-def _maps(
-    mechanism: Mechanism, coupling: LinearCoupling, virtual: Array
-) -> tuple[Array, Array, Array]:
-    """(m, n) factors of the chain joints by all coordinates; (m, n_a) and (m,) of the pose."""
-    total, actuated = coupling.A.shape
-    wide = np.zeros((total + len(mechanism.virtual), mechanism.n))
-    wide[:total, :actuated] = coupling.A
-    wide[total:, actuated:] = np.eye(len(mechanism.virtual))
-    at_rest = np.concatenate([coupling.b, virtual])
-    pick = mechanism.chain.coordinates
-    return wide[pick], np.ascontiguousarray(wide[pick][:, :actuated]), at_rest[pick]
-
-
-def _frames(mechanism: Mechanism, point: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """start, shift, final, tilt and offset of `Fold`."""
+def _frames(mechanism: Mechanism, point: Array) -> _Frames:
+    """start, shift, final, tilt, offset and centre of `Fold`."""
     chain = mechanism.chain
     m = chain.m
     shift, tilt, offset = np.empty((m + 1, 3)), np.empty((m, 2)), np.zeros(m)
+    centre = chain.centres.copy()
     start = np.eye(3)
     before = np.eye(3)  # turns the frame after the previous joint so that its axis is z
     for k in range(m):
@@ -194,21 +223,26 @@ def _frames(mechanism: Mechanism, point: Array) -> tuple[Array, Array, Array, Ar
         rotation = before.T @ chain.placements[k, :3, :3] @ upright
         shift[k] = before.T @ chain.placements[k, :3, 3]
         before = upright
+        centre[k] = upright.T @ centre[k]
         if k == 0:
             tilt[0] = (1.0, 0.0)
             start = rotation
+            shift[0] = start.T @ shift[0]
             continue
         theta, tilt[k], phi = _split(rotation)
         offset[k - 1] += theta
         offset[k] += phi
-        c, s = np.cos(theta), np.sin(theta)
-        x, y, z = shift[k]
-        shift[k] = (c * x + s * y, c * y - s * x, z)
+        shift[k] = _turned_back(shift[k], theta)
+        centre[k - 1] = _turned_back(centre[k - 1], theta)
     shift[m] = before.T @ (chain.placements[m, :3, 3] + chain.placements[m, :3, :3] @ point)
-    if m:
-        shift[0] = start.T @ shift[0]
     final = np.ascontiguousarray(before.T @ chain.placements[m, :3, :3])
-    return start.T.reshape(9).copy(), shift, final, tilt, offset
+    return _Frames(start.T.reshape(9).copy(), shift, final, tilt, offset, centre)
+
+
+def _turned_back(vector: Array, theta: float) -> Array:
+    """Rz(θ)ᵀ v."""
+    c, s = np.cos(theta), np.sin(theta)
+    return np.array([c * vector[0] + s * vector[1], c * vector[1] - s * vector[0], vector[2]])
 
 
 def _rotation_to(axis: Array) -> Array:
@@ -233,45 +267,3 @@ def _split(rotation: Array) -> tuple[float, tuple[float, float], float]:
     )
     turn = back @ rotation
     return theta, (c, s), float(np.arctan2(turn[1, 0], turn[0, 0]))
-
-
-def _pairs(to_joints: Array) -> tuple[Indices, Indices, Indices, Array]:
-    """Which pair of joints adds to which element of K_C, for (m, s) factors of soft coordinates."""
-    pairs: list[tuple[int, int]] = []
-    ends: list[int] = []
-    adds: list[tuple[int, float, int, float]] = []
-    for first, second in _joint_pairs(to_joints):
-        before = len(adds)
-        adds.extend(_additions(to_joints[first], to_joints[second], same=first == second))
-        if len(adds) > before:
-            pairs.append((first, second))
-            ends.append(len(adds))
-    table = np.array(adds, dtype=float).reshape(-1, 4)
-    pair = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-    rows = table[:, [0, 2]].astype(np.int64)
-    return pair, np.array(ends, dtype=np.int64), rows, table[:, [1, 3]].copy()
-
-
-def _joint_pairs(to_joints: Array) -> Iterator[tuple[int, int]]:
-    moved = np.flatnonzero((to_joints != 0.0).any(axis=1)).tolist()
-    return ((first, second) for k, first in enumerate(moved) for second in moved[k:])
-
-
-def _additions(
-    first: Array, second: Array, *, same: bool
-) -> Iterator[tuple[int, float, int, float]]:
-    """Aᵀ K A for one symmetric pair of elements of K: (row, factor, skew row, skew factor)."""
-    for i in np.flatnonzero(first).tolist():
-        for j in np.flatnonzero(second).tolist():
-            value = float(first[i] * second[j])
-            high, low = max(i, j), min(i, j)
-            row = high * (high + 1) // 2 + low
-            if same:
-                if i >= j:
-                    yield row, value, -1, 0.0
-            elif i == j:
-                yield row, 2.0 * value, -1, 0.0
-            else:
-                skew = high * (high - 1) // 2 + low
-                # K[second, first] carries + half of the moment's part, K[first, second] minus that.
-                yield row, value, skew, value if j > i else -value

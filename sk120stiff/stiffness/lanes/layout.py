@@ -19,7 +19,8 @@ EIGENVECTOR = 39  # 9 rows
 SAFE = 48  # how far K_θ − K_C is from losing definiteness
 INVERSE = 49  # 1 / pivot
 FACTOR = 50
-FREE = 51  # rows whose number depends on the robot begin here
+CHANGE = 51  # of a coordinate in the last step
+FREE = 52  # rows whose number depends on the robot begin here
 
 
 @part

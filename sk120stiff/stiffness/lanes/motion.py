@@ -7,7 +7,17 @@ import math
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.kernel import part
 from sk120stiff.stiffness.lanes.folding import CONSTANT, NONE, Fold
-from sk120stiff.stiffness.lanes.layout import COSINE, LANES, POSITION, ROTATION, SINE, VALUE, at
+from sk120stiff.stiffness.lanes.layout import (
+    CHANGE,
+    COSINE,
+    LANES,
+    POSITION,
+    ROTATION,
+    SINE,
+    TURNED,
+    VALUE,
+    at,
+)
 
 # π/2 in three parts, the first two short enough that n times them is exact.
 _QUARTER_1, _QUARTER_2, _QUARTER_3 = (
@@ -44,11 +54,14 @@ def sine_cosine(x: Array, offset: float) -> None:
 
 
 @part
-def sweep(x: Array, fold: Fold, pose: int, axes: int, levers: int) -> None:
-    """Joint axes w_k (rows `axes`) and v_k = w_k × (point − origin_k) (rows `levers`).
+def place_joints(
+    x: Array, fold: Fold, pose: int, axes: int, levers: int, moments: int, weighs: bool
+) -> None:
+    """Joint axes (rows `axes`), joint origins (rows `levers`), and the position of the point.
 
     Frames are chosen so that every joint turns or slides along its z, and the way to the next is a
-    shift and a turn about x: only two columns of the rotation change at a time.
+    shift and a turn about x: only two columns of the rotation change at a time. Rows `moments`
+    become mass times centre of what each joint carries.
     """
     m = fold.kind.shape[0]
     for i in range(9):
@@ -83,32 +96,47 @@ def sweep(x: Array, fold: Fold, pose: int, axes: int, levers: int) -> None:
                 x[(POSITION + i) * LANES + k] = p
                 x[w + k] = along
                 x[o + k] = p
-        if fold.kind[joint] == NONE:
-            continue
         if fold.kind[joint] == CONSTANT:
             c, s = fold.constant[joint, 0], fold.constant[joint, 1]
             for k in range(LANES):
                 x[COSINE * LANES + k] = c
                 x[SINE * LANES + k] = s
-        else:
+        elif fold.kind[joint] != NONE:
             sine_cosine(x, fold.offset[joint])
-        for i in range(3):
+        for i in range(3 if fold.kind[joint] != NONE else 0):
             for k in range(LANES):
                 cq, sq = x[COSINE * LANES + k], x[SINE * LANES + k]
                 rx, ry = x[(ROTATION + i) * LANES + k], x[(ROTATION + 3 + i) * LANES + k]
                 x[(ROTATION + i) * LANES + k] = cq * rx + sq * ry
                 x[(ROTATION + 3 + i) * LANES + k] = cq * ry - sq * rx
-    tx, ty, tz = fold.shift[m, 0], fold.shift[m, 1], fold.shift[m, 2]
+        if weighs:
+            mass = fold.mass[joint]
+            _go(x, fold.centre[joint, 0], fold.centre[joint, 1], fold.centre[joint, 2])
+            to = at(moments + 3 * joint)
+            for k in range(3 * LANES):
+                x[to + k] = mass * x[TURNED * LANES + k]
+    _go(x, fold.shift[m, 0], fold.shift[m, 1], fold.shift[m, 2])
+    for k in range(3 * LANES):
+        x[POSITION * LANES + k] = x[TURNED * LANES + k]
+
+
+@part
+def _go(x: Array, tx: float, ty: float, tz: float) -> None:
+    """Rows TURNED = position + rotation · t."""
     for i in range(3):
         for k in range(LANES):
             rx, ry = x[(ROTATION + i) * LANES + k], x[(ROTATION + 3 + i) * LANES + k]
-            x[(POSITION + i) * LANES + k] += (
-                rx * tx + ry * ty + x[(ROTATION + 6 + i) * LANES + k] * tz
-            )
-    for joint in range(m):
+            moved = rx * tx + ry * ty + x[(ROTATION + 6 + i) * LANES + k] * tz
+            x[(TURNED + i) * LANES + k] = x[(POSITION + i) * LANES + k] + moved
+
+
+@part
+def turn_levers(x: Array, fold: Fold, axes: int, levers: int) -> None:
+    """Rows `levers` from joint origins to v_k = w_k × (point − origin_k); a slide has v = w."""
+    for joint in range(fold.kind.shape[0]):
         w, o = at(axes + 3 * joint), at(levers + 3 * joint)
-        turns = 1.0 - fold.slides[joint]
         slides = fold.slides[joint]
+        turns = 1.0 - slides
         for k in range(LANES):
             wx, wy, wz = x[w + k], x[w + LANES + k], x[w + 2 * LANES + k]
             rx = x[POSITION * LANES + k] - x[o + k]
@@ -121,10 +149,62 @@ def sweep(x: Array, fold: Fold, pose: int, axes: int, levers: int) -> None:
 
 
 @part
+def bend_by_weight(
+    x: Array, fold: Fold, pose: int, axes: int, levers: int, moments: int, torques: int, unbent: int
+) -> float:
+    """Move the soft coordinates to z₀ + C τ(z) with the weight's torques τ; the largest change.
+
+    Rows `torques` are one per joint; rows `unbent` hold z₀.
+    """
+    gx, gy, gz = fold.gravity[0], fold.gravity[1], fold.gravity[2]
+    for k in range(3 * LANES):
+        x[TURNED * LANES + k] = 0.0
+    total = 0.0
+    for joint in range(fold.mass.shape[0] - 1, -1, -1):
+        total += fold.mass[joint]
+        w, o, own = at(axes + 3 * joint), at(levers + 3 * joint), at(moments + 3 * joint)
+        to, slides = at(torques + joint), fold.slides[joint]
+        for k in range(3 * LANES):
+            x[TURNED * LANES + k] += x[own + k]
+        for k in range(LANES):
+            wx, wy, wz = x[w + k], x[w + LANES + k], x[w + 2 * LANES + k]
+            rx = x[TURNED * LANES + k] - total * x[o + k]
+            ry = x[(TURNED + 1) * LANES + k] - total * x[o + LANES + k]
+            rz = x[(TURNED + 2) * LANES + k] - total * x[o + 2 * LANES + k]
+            turned = gx * (wy * rz - wz * ry) + gy * (wz * rx - wx * rz) + gz * (wx * ry - wy * rx)
+            pushed = total * (gx * wx + gy * wy + gz * wz)
+            x[to + k] = turned + slides * (pushed - turned)
+    s = fold.soft.shape[0]
+    largest = 0.0
+    for k in range(LANES):
+        x[CHANGE * LANES + k] = 0.0
+    for i in range(s):
+        z, straight = at(pose + fold.soft[i]), at(unbent + fold.soft[i])
+        for k in range(LANES):
+            x[VALUE * LANES + k] = x[straight + k]
+        for j in range(s):
+            if fold.sag[i, j] == 0.0:
+                continue
+            for joint in range(fold.mass.shape[0]):
+                factor = fold.sag[i, j] * fold.pose_map[joint, fold.soft[j]]
+                if factor != 0.0:
+                    tau = at(torques + joint)
+                    for k in range(LANES):
+                        x[VALUE * LANES + k] += factor * x[tau + k]
+        for k in range(LANES):
+            step = abs(x[VALUE * LANES + k] - x[z + k])
+            x[CHANGE * LANES + k] = max(x[CHANGE * LANES + k], step)
+            x[z + k] = x[VALUE * LANES + k]
+    for k in range(LANES):
+        largest = max(largest, x[CHANGE * LANES + k])
+    return largest
+
+
+@part
 def columns_of_J(x: Array, fold: Fold, levers: int, columns: int) -> None:
     """Linear part of every column of J, 3 rows each."""
     start = at(columns)
-    for k in range(3 * fold.coordinates * LANES):
+    for k in range(3 * fold.rest.shape[0] * LANES):
         x[start + k] = 0.0
     for entry in range(fold.column_joint.shape[0]):
         v = at(levers + 3 * fold.column_joint[entry])

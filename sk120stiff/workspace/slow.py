@@ -1,7 +1,8 @@
-"""The quantities of `stiffness_batch` for a model whose compliance changes with the pose.
+"""The quantities of `stiffness_batch` for a model that the compiled kernel does not follow.
 
-A rod of a linkage or a gravity compensator makes the springs another at every pose. The compiled
-kernel does not follow that; here the same formulas run on NumPy arrays, some fifty times slower.
+A rod of a linkage or a gravity compensator makes the springs another at every pose, and a closed
+loop that is no parallelogram couples joints in a way that is not linear. Here the same formulas run
+on NumPy arrays, some fifty times slower.
 """
 
 from __future__ import annotations
@@ -13,25 +14,25 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.effects import situation_of_load
-from sk120stiff.errors import Refusal
 from sk120stiff.model import Model
 from sk120stiff.robot import Screws
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import (
     StiffnessBatch,
-    cartesian_compliance,
     complementary_stiffness,
     definiteness,
     principal_stiffness,
+    spring_matrix,
     symmetric_part,
 )
 
 Numbers = NDArray[Any]
 
+ZERO = 1e-12  # share of the largest below which a compliance or an eigenvalue counts as zero
 BLOCK = 4096  # poses worked on together
 
 
-def varying_batch(
+def slow_batch(
     model: Model, a: Array, wrench: ArrayLike, want: Collection[str], point: Array
 ) -> StiffnessBatch:
     """`stiffness_batch` of a model at commanded coordinates (N, n), its compliance at each pose.
@@ -78,7 +79,7 @@ def _quantities(
     screws: Screws, compliance: Array, load: Array, soft: Numbers, want: Collection[str], n_a: int
 ) -> dict[str, Any]:
     """Everything that is wanted at some poses under one load each."""
-    K_theta = np.asarray(np.linalg.inv(compliance[:, soft[:, None], soft]), dtype=float)
+    C = symmetric_part(compliance[:, soft[:, None], soft])
     K_C = complementary_stiffness(screws, load)[:, soft[:, None], soft]
     J = screws.linear_jacobian
     answers: dict[str, Any] = {
@@ -92,28 +93,40 @@ def _quantities(
         smallest = singular[:, 2] if n_a > 2 else np.zeros(len(J))
         answers["condition"] = smallest / singular[:, 0]
     if {"compliance", "values", "directions"} & set(want):
-        answers["compliance"] = _compliance(J[..., soft], K_theta - K_C)
+        answers["compliance"] = _compliance(J[..., soft], C, K_C)
         principal = principal_stiffness(answers["compliance"])
         answers["values"], answers["directions"] = principal.values, principal.directions
-    if "stiffness_class" in want:
-        answers["stiffness_class"] = definiteness(K_theta - K_C).astype(np.uint8)
-    if "complementary_class" in want:
-        answers["complementary_class"] = definiteness(K_C).astype(np.uint8)
-    if "critical" in want:
-        inward = np.linalg.inv(np.linalg.cholesky(symmetric_part(K_theta)))
-        scaled = inward @ symmetric_part(K_C) @ np.swapaxes(inward, -1, -2)
-        values = np.linalg.eigvalsh(scaled)
-        softens = values[:, -1] > 1e-12 * np.abs(values).max(axis=-1)
-        answers["critical"] = np.where(softens, 1.0 / np.where(softens, values[:, -1], 1.0), np.inf)
+    if {"stiffness_class", "complementary_class", "critical"} & set(want):
+        answers |= _stability(C, symmetric_part(K_C))
     return answers
 
 
-def _compliance(J: Array, stiffness: Array) -> Array:
-    """J K⁻¹ Jᵀ, NaN where K is singular."""
-    try:
-        return cartesian_compliance(J, stiffness)
-    except Refusal:
-        regular = np.abs(np.linalg.det(stiffness)) > 0.0
-        found = np.full((len(J), 3, 3), np.nan)
-        found[regular] = cartesian_compliance(J[regular], stiffness[regular])
-        return found
+def _compliance(J: Array, C: Array, K_C: Array) -> Array:
+    """J (I − C K_C)⁻¹ C Jᵀ, which needs no inverse of C; NaN where the load is critical."""
+    newton = np.eye(C.shape[-1]) - C @ K_C
+    regular = np.abs(np.linalg.det(newton)) > 0.0
+    newton = np.where(regular[:, None, None], newton, np.nan)
+    return np.asarray(J @ np.linalg.solve(newton, C @ np.swapaxes(J, -1, -2)))
+
+
+def _stability(C: Array, K_C: Array) -> dict[str, Any]:
+    """Classes and critical factors, in the directions that yield at all."""
+    compliances, directions = np.linalg.eigh(C)
+    size = np.abs(compliances).max(axis=-1, keepdims=True)
+    yields = np.abs(compliances) > ZERO * size
+    of_K = np.empty(len(C), dtype=np.uint8)
+    of_K_C, critical = np.empty(len(C), dtype=np.uint8), np.full(len(C), np.inf)
+    for pattern in np.unique(yields, axis=0):
+        here = np.flatnonzero((yields == pattern).all(axis=-1))
+        V = directions[here][..., pattern]
+        c = compliances[here][:, pattern]
+        within = np.swapaxes(V, -1, -2) @ K_C[here] @ V
+        of_K[here] = definiteness(spring_matrix(1.0 / c) - within)
+        of_K_C[here] = definiteness(within)
+        # A negative spring is unstable before any load comes: its factor is zero.
+        root = np.sqrt(np.abs(c))
+        values = np.linalg.eigvalsh(root[..., :, None] * within * root[..., None, :])
+        softens = values[:, -1] > ZERO * np.abs(values).max(axis=-1)
+        factor = np.where(softens, 1.0 / np.where(softens, values[:, -1], 1.0), np.inf)
+        critical[here] = np.where((c > 0.0).all(axis=-1), factor, 0.0)
+    return {"stiffness_class": of_K, "complementary_class": of_K_C, "critical": critical}

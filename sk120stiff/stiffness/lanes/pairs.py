@@ -1,0 +1,60 @@
+"""Which pair of joints adds to which element of K_C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot.coupling import Array
+
+Indices = NDArray[np.int64]
+
+
+def contributions(to_joints: Array) -> tuple[Indices, Indices, Indices, Array]:
+    """The pairs, their stretches, rows and factors of `Fold`.
+
+    Parameters
+    ----------
+    to_joints
+        (m, s) factors of the soft coordinates.
+    """
+    pairs: list[tuple[int, int]] = []
+    ends: list[int] = []
+    adds: list[tuple[int, float, int, float]] = []
+    for first, second in _joint_pairs(to_joints):
+        before = len(adds)
+        adds.extend(_additions(to_joints[first], to_joints[second], same=first == second))
+        if len(adds) > before:
+            pairs.append((first, second))
+            ends.append(len(adds))
+    table = np.array(adds, dtype=float).reshape(-1, 4)
+    pair = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    rows = table[:, [0, 2]].astype(np.int64)
+    return pair, np.array(ends, dtype=np.int64), rows, table[:, [1, 3]].copy()
+
+
+def _joint_pairs(to_joints: Array) -> Iterator[tuple[int, int]]:
+    moved = np.flatnonzero((to_joints != 0.0).any(axis=1)).tolist()
+    return ((first, second) for k, first in enumerate(moved) for second in moved[k:])
+
+
+def _additions(
+    first: Array, second: Array, *, same: bool
+) -> Iterator[tuple[int, float, int, float]]:
+    """Aᵀ K A for one symmetric pair of elements of K: (row, factor, skew row, skew factor)."""
+    for i in np.flatnonzero(first).tolist():
+        for j in np.flatnonzero(second).tolist():
+            value = float(first[i] * second[j])
+            high, low = max(i, j), min(i, j)
+            row = high * (high + 1) // 2 + low
+            if same:
+                if i >= j:
+                    yield row, value, -1, 0.0
+            elif i == j:
+                yield row, 2.0 * value, -1, 0.0
+            else:
+                skew = high * (high - 1) // 2 + low
+                # K[second, first] carries + half of the moment's part, K[first, second] minus that.
+                yield row, value, skew, value if j > i else -value
