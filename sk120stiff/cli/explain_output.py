@@ -15,18 +15,12 @@ from sk120stiff.cli.predict import prediction_table
 from sk120stiff.cli.tables import table
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
-from sk120stiff.explain import Explanation, verdict_document
+from sk120stiff.explain import DOUBTFUL, Explanation, verdict_document
 from sk120stiff.files import write_atomically
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import write_model
 from sk120stiff.show.wording import with_error
 
-SAID = {
-    "none": "Model and data agree within the noise: nothing is missing.",
-    "named": "Something was missing, and it has a name.",
-    "ambiguous": "Something is missing; these readings cannot tell which of several names.",
-    "outside": "Something is missing that no effect of the catalogue explains.",
-}
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
 
@@ -157,7 +151,7 @@ def _plan(answer: Explanation, readings: Measurements) -> Measurements:
 
 def parts(answer: Explanation, out: Path, *, report: bool) -> list[object]:
     """The answer for people."""
-    shown: list[object] = [SAID[answer.verdict], *findings(answer)]
+    shown: list[object] = [said(answer), *findings(answer)]
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
     shown += answer.where[:TOLD]
@@ -170,6 +164,22 @@ def parts(answer: Explanation, out: Path, *, report: bool) -> list[object]:
         shown.append(f"Report: {out / 'report.html'}")
     shown.append(f"Results are in {out}.")
     return shown
+
+
+def said(answer: Explanation) -> str:
+    """The verdict as a sentence."""
+    if answer.verdict == "none" and answer.adequacy.probability < DOUBTFUL:
+        p = answer.adequacy.probability
+        return (
+            f"No effect can be named. What is left is a little more than the noise (p = {p:.2g}), "
+            "not enough to claim that something is missing."
+        )
+    return {
+        "none": "Model and data agree within the noise: nothing is missing that they could show.",
+        "named": "Something was missing, and it has a name.",
+        "ambiguous": "Something is missing; these readings cannot tell which of several names.",
+        "outside": "Something is missing that no effect of the catalogue explains.",
+    }[answer.verdict]
 
 
 def findings(answer: Explanation) -> list[str]:

@@ -26,6 +26,7 @@ COMMANDS = {
     "map": "Stiffness over the workspace: minimum, maximum, directions, stability under loads.",
     "paper": "The 2005 paper's tables, figures, claims: ours beside theirs.",
     "view": "The robot, its ellipsoids and its gaps, live in the browser.",
+    "demo": "The main job on the paper's measured data, with a report.",
 }
 
 

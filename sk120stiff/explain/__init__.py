@@ -2,6 +2,7 @@
 
 from sk120stiff.explain.document import noise_floor, verdict_document
 from sk120stiff.explain.explanation import (
+    DOUBTFUL,
     Detectable,
     Evidence,
     Explanation,
@@ -16,6 +17,7 @@ from sk120stiff.explain.where_words import where_sentences
 from sk120stiff.explain.workflow import explain
 
 __all__ = [
+    "DOUBTFUL",
     "Detectable",
     "Evidence",
     "Explanation",

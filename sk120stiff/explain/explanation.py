@@ -14,6 +14,7 @@ from sk120stiff.measurements import NoiseModel
 from sk120stiff.robot.coupling import Array
 
 Verdict = Literal["none", "named", "ambiguous", "outside"]
+DOUBTFUL = 0.05  # below this probability of what is left, "none" is said with a doubt
 
 
 @dataclass(frozen=True)

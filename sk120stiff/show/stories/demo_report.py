@@ -1,2 +1,353 @@
-"""placeholder"""
-def demo_report() -> None: ...
+"""The report of `demo`: the paper's measured data from springs to what three poses can tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.explain import Explanation, Localisation
+from sk120stiff.explain.swallowed import WHOLE, Swallowed
+from sk120stiff.identify import Fit
+from sk120stiff.model import Model
+from sk120stiff.show.figures import (
+    Estimate,
+    LoadCurve,
+    force_deflection,
+    gap_per_pose,
+    parameter_forest,
+)
+from sk120stiff.show.report import (
+    Block,
+    Code,
+    Items,
+    KeyFigure,
+    KeyFigures,
+    Note,
+    Picture,
+    Report,
+    SceneFrame,
+    Section,
+    Table,
+)
+from sk120stiff.show.stories.evidence_section import evidence_section
+from sk120stiff.show.stories.gap_section import on_the_arm, pose_rms, steps_table
+from sk120stiff.show.stories.limits_section import blind_section
+from sk120stiff.show.stories.stiffness_section import stiffness_section
+from sk120stiff.show.stories.verdicts import lead_of
+from sk120stiff.show.stories.where_section import where_section
+from sk120stiff.show.wording import chance, counted, listed, number, percent, um, with_error
+
+PAPER, OURS = "paper's springs", "identified"
+NAMEABLE = 5.0  # √λ at which an effect can usually be named
+WORTH_LISTING = 2e-6  # m rms at its usual size
+
+
+@dataclass(frozen=True, eq=False)
+class Demo:
+    """What the demo has computed.
+
+    Attributes
+    ----------
+    paper
+        The model with the springs that the paper gives.
+    found, other
+        Springs identified by the trust-region and by the Levenberg–Marquardt algorithm.
+    answer
+        What `explain` says of the same readings.
+    hidden
+        Other effects at their usual size against the identified springs.
+    """
+
+    paper: Model
+    found: Fit
+    other: Fit
+    answer: Explanation
+    hidden: Sequence[Swallowed]
+
+    @property
+    def models(self) -> dict[str, Model]:
+        """Before and after identification."""
+        return {PAPER: self.paper, OURS: self.found.model}
+
+    def rms(self, model: Model) -> float:
+        """Gap of a model on the readings, rms per axis [m]."""
+        problem = self.found.problem
+        gap = problem.measured - model.predict(problem.situation)
+        return float(np.sqrt(np.mean(gap**2)))
+
+    @property
+    def noise(self) -> float | None:
+        """Rms that the scatter within poses makes [m]; None where nothing tells."""
+        found = self.answer.details.get("localisation")
+        known = isinstance(found, Localisation) and found.noise_from != "gap"
+        return found.noise if isinstance(found, Localisation) and known else None
+
+    @property
+    def chance(self) -> float | None:
+        """Probability that the scatter within poses makes the gap that is left."""
+        found = self.answer.details.get("localisation")
+        return found.probability if isinstance(found, Localisation) else None
+
+
+def demo_report(
+    demo: Demo,
+    *,
+    scene: str = "",
+    scene_link: str = "",
+    reproducibility: Mapping[str, str] | None = None,
+) -> Report:
+    """Tell the demo as a report.
+
+    Parameters
+    ----------
+    demo
+        What was computed.
+    scene, scene_link
+        Text of the scene's page, and its address beside the report.
+    reproducibility
+        Name → text, shown last.
+    """
+    situation = demo.found.problem.situation
+    counts = f"{counted(situation.count, 'reading')} at {counted(len(situation.poses), 'pose')}"
+    return Report(
+        title="How stiff is a Motoman SK120, and what is missing from its model?",
+        subtitle=f"Measured deflections of Table II of the 2005 paper, {counts}",
+        lead=demo_lead(demo),
+        sections=[
+            _answer(demo),
+            _first_act(demo),
+            _second_act(demo),
+            stiffness_section(demo.found),
+            *([_in_space(demo, scene, scene_link)] if scene else []),
+            _third_act(demo),
+            _three_poses(demo),
+            _onwards(),
+        ],
+        reproducibility=reproducibility or {},
+    )
+
+
+def demo_lead(demo: Demo) -> str:
+    """The demo in three sentences."""
+    before, after = demo.rms(demo.paper), demo.rms(demo.found.model)
+    said = (
+        f"The springs that the paper gives miss its measured deflections by {um(before)} µm rms "
+        f"per axis; springs identified from these readings miss them by {um(after)} µm. "
+    )
+    if demo.answer.verdict != "none":
+        return said + lead_of(demo.answer)
+    poses = counted(len(demo.found.problem.situation.poses), "pose")
+    if demo.noise is None or demo.chance is None:
+        return said + f"With {poses} nothing can be named as missing."
+    return said + (
+        f"The scatter within poses accounts for {um(demo.noise)} µm. Whether the rest is real, and "
+        f"what it is, {poses} cannot tell: no effect of the catalogue earns its name here."
+    )
+
+
+def _answer(demo: Demo) -> Section:
+    before, after = demo.rms(demo.paper), demo.rms(demo.found.model)
+    figures = [
+        KeyFigure("gap, paper's springs", um(before), "µm", "rms per axis"),
+        KeyFigure("gap, identified", um(after), "µm", f"{percent(1.0 - after / before)} closed"),
+    ]
+    if demo.noise is not None:
+        figures.append(KeyFigure("scatter", um(demo.noise), "µm", "within poses, no model needed"))
+    figures.append(KeyFigure("verdict", demo.answer.verdict, "", "of explain"))
+    acts = [
+        "The paper's springs are put to its measured deflections.",
+        "The springs are identified again, with their uncertainty.",
+        "The whole catalogue of effects is asked what is missing, and what these readings could "
+        "show at all.",
+    ]
+    return Section("The answer", [KeyFigures(figures), Items(acts, ordered=True)])
+
+
+def _first_act(demo: Demo) -> Section:
+    return Section(
+        "1. The paper's springs on its data",
+        [
+            "The paper identified three joint springs and holds the wrist rigid. Its Table II "
+            "lists deflections that a laser tracker measured; their signs were brought into one "
+            "frame, as the robot's SOURCES file tells.",
+            per_pose_table(demo),
+            Picture(
+                force_deflection(_curves(demo)),
+                alt="Three panels, one for each pose: measured deflections against the load, with "
+                "the lines of both models; markers and lines nearly coincide.",
+                caption="Displacement against the load: readings (markers), the paper's springs "
+                "and the identified ones (lines). At this scale every model looks right; the gap "
+                "is what counts.",
+            ),
+        ],
+    )
+
+
+def per_pose_table(demo: Demo) -> Table:
+    """Gap of both models at every pose."""
+    found = demo.found
+    poses = found.problem.situation.poses
+    before, after = (pose_rms(found, model) for model in demo.models.values())
+    rows: list[tuple[object, ...]] = [
+        (f"pose {label}", 1e6 * b, 1e6 * a)
+        for label, b, a in zip(poses, before, after, strict=True)
+    ]
+    rows.append(("all", 1e6 * demo.rms(demo.paper), 1e6 * demo.rms(found.model)))
+    return Table(["", PAPER, OURS], rows, "Gap rms per axis.", ["", "µm", "µm"], digits=3)
+
+
+def _curves(demo: Demo) -> list[LoadCurve]:
+    situation = demo.found.problem.situation
+    measured = demo.found.problem.measured
+    size = np.linalg.norm(situation.wrench[:, :3], axis=1)
+    predicted = {name: model.predict(situation) for name, model in demo.models.items()}
+    curves = []
+    for k, label in enumerate(situation.poses):
+        rows = np.flatnonzero(situation.pose == k)
+        rows = rows[np.argsort(size[rows])]
+        models = {name: values[rows] for name, values in predicted.items()}
+        curves.append(LoadCurve(f"pose {label}", size[rows], measured[rows], models=models))
+    return curves
+
+
+def _second_act(demo: Demo) -> Section:
+    found = demo.found
+    paper = {p.name: p for p in demo.paper.parameters}
+    gaps = {name: pose_rms(found, model) for name, model in demo.models.items()}
+    apart = max(
+        abs(a.value / b.value - 1.0)
+        for a, b in zip(found.parameters, demo.other.parameters, strict=True)
+    )
+    agree = f"agree to {number(apart, 1)} of the values" if apart > 1e-15 else "agree to all digits"
+    rows = []
+    for p, (low, high) in zip(found.parameters, found.intervals(), strict=True):
+        given = paper[p.name].public_value
+        change = percent(p.public_value / given - 1.0).replace("-", "−")
+        rows.append((p.effect.where, number(given, 5), with_error(p.public_value, p.public_std),
+                     number(low), number(high), change))  # fmt: skip
+    estimates = [
+        Estimate(p.effect.where, p.public_value, p.public_std, "N·m/rad",
+                 paper[p.name].public_value)
+        for p in found.parameters
+    ]  # fmt: skip
+    ratios = "; ".join(f"{e.name} {number(e.value / (e.reference or 1), 3)}" for e in estimates)
+    floor = demo.noise
+    return Section(
+        "2. Springs identified from these readings",
+        [
+            "Least squares at exact equilibrium, with the zero reading that five rows of a pose "
+            "share in the covariance. The trust-region and the Levenberg–Marquardt algorithm "
+            f"{agree}.",
+            Table(
+                ["spring", "paper", "identified ± standard error", "95 % from", "to", "change"],
+                rows,
+                "Joint springs in N·m/rad.",
+            ),
+            Picture(
+                parameter_forest(estimates, reference_name="paper's value"),
+                alt=f"Identified springs as multiples of the paper's: {ratios}",
+                caption="Identified springs as multiples of the paper's (orange).",
+            ),
+            Picture(
+                gap_per_pose([f"pose {p}" for p in found.problem.situation.poses], gaps,
+                             noise_floor=floor),
+                alt="Bars of the gap at every pose: "
+                + "; ".join(f"{n} {listed([um(float(v)) for v in g])} µm" for n, g in gaps.items()),
+                caption="The gap of every pose, before and after."
+                + (" Dashed: what the scatter within poses makes." if floor is not None else ""),
+            ),
+            on_the_arm(found, demo.models),
+        ],
+    )  # fmt: skip
+
+
+def _in_space(demo: Demo, scene: str, link: str) -> Section:
+    poses = counted(len(demo.found.problem.situation.poses), "pose")
+    title = f"The SK120 at its {poses}, with ellipsoids and gap vectors"
+    return Section(
+        "The arm in three dimensions",
+        [
+            "Choose a pose and a load; ellipsoids of stiffness and compliance, with and without "
+            "K_C, follow the arm.",
+            SceneFrame(scene, title, "", link),
+        ],
+    )
+
+
+def _third_act(demo: Demo) -> Section:
+    answer = demo.answer
+    first = answer.steps[0]
+    blocks: list[Block] = [
+        f"`explain` tried every effect of the catalogue. Its verdict: **{answer.verdict}**.",
+        steps_table(answer),
+        f"With one pose left out in turn, the springs of the other two predict it to "
+        f"{um(first.heldout_rms)} µm; fitted to all they reach {um(first.fit_rms)} µm.",
+    ]
+    if answer.verdict == "none" and demo.noise is not None and demo.chance is not None:
+        blocks.append(
+            Note(
+                f"The springs leave {um(first.fit_rms)} µm where the scatter within poses makes "
+                f"{um(demo.noise)} µm (p = {chance(demo.chance)}). Something may well be missing. "
+                "But a name must predict poses that it has not seen, and be told from its rivals; "
+                f"with {counted(len(demo.found.problem.situation.poses), 'pose')} none is.",
+                "caution",
+                "What 'none' means here",
+            )
+        )
+    where, evidence = where_section(answer), evidence_section(answer)
+    blocks += [Section(where.title, where.blocks), Section(evidence.title, evidence.blocks)]
+    return Section("3. What is missing?", blocks)
+
+
+def _three_poses(demo: Demo) -> Section:
+    ranked = sorted(demo.hidden, key=lambda s: -s.shows)
+    rows = [
+        (s.effect.id, 1e6 * s.shows, percent(s.share), 1e6 * s.remains, s.visible)
+        for s in ranked
+        if s.shows >= WORTH_LISTING
+    ]
+    whole = [s.effect.id for s in ranked if s.share >= WHOLE]
+    able = [s for s in ranked if s.visible >= NAMEABLE]
+    blocks: list[Block] = [
+        "Springs that are refitted beside a missing effect cover it up. The table takes every "
+        "effect at its usual size and tells what three springs would leave of it on these "
+        f"readings. {len(able)} of {len(ranked)} would leave {NAMEABLE:.0f} noise standard "
+        "deviations or more, about what a name needs.",
+        Table(
+            ["effect", "moves the point", "springs take", "is left", "√λ"],
+            rows,
+            f"Effects that move the point by {um(WORTH_LISTING)} µm or more, rms per axis. √λ: "
+            "what is left, in noise standard deviations over all readings.",
+            ["", "µm", "", "µm", ""],
+            digits=3,
+        ),
+    ]
+    if whole:
+        blocks.append(
+            Note(
+                f"{listed([f'`{name}`' for name in whole])}: swallowed whole. Force, displacement "
+                "and springs enter as one product: a force sensor that reads 2 % too low looks "
+                "exactly like springs that are 2 % softer. No further poses change that; a "
+                "calibrated weight does.",
+                "note",
+                "Springs or sensor",
+            )
+        )
+    blind = blind_section(demo.answer)
+    return Section("What three poses can tell", [*blocks, Section(blind.title, blind.blocks)])
+
+
+def _onwards() -> Section:
+    return Section(
+        "The same with your robot",
+        [
+            Code(
+                "sk120stiff identify readings.csv --out model.yaml\n"
+                "sk120stiff explain readings.csv --out explained\n"
+                "sk120stiff paper --out paper",
+                "Your readings, and all tables and figures of the paper beside ours",
+            )
+        ],
+    )

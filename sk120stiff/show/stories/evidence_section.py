@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from sk120stiff.explain import Explanation, Finding
+from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
 from sk120stiff.show.report import Block, Note, Section, Table
@@ -123,7 +123,7 @@ def _nothing(answer: Explanation) -> list[Block]:
         "alone and together, with the springs refitted beside them. None improves the model by "
         "more than chance, on the fitted poses and on poses left out.",
     ]
-    if left.tests and left.probability < 0.05:
+    if left.tests and left.probability < DOUBTFUL:
         blocks.append(
             Note(
                 f"The tests of what is left give p = {left.probability:.2g}. That is not enough to "

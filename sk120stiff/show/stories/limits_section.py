@@ -7,10 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sk120stiff.effects import all_effects
 from sk120stiff.explain import Detectable, Explanation, noise_floor
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import Block, Items, Note, Section, Table
-from sk120stiff.show.wording import counted, number, percent, um, unit_of
+from sk120stiff.show.wording import counted, number, um, unit_of
 
 
 def left_section(answer: Explanation, readings: Measurements) -> Section:
@@ -66,7 +67,7 @@ def blind_section(answer: Explanation) -> Section:
         blocks.append(
             Table(
                 ["effect", "would have shown"],
-                _sizes(visible),
+                _sizes(answer, visible),
                 "Smallest size that would have been named in four of five cases: a stiffness at "
                 "or below the value given, anything else at or above it.",
             )
@@ -83,11 +84,14 @@ def _grouped(names: Sequence[str]) -> list[str]:
     return [f"`{name}` at {', '.join(where)}" for name, where in places.items()]
 
 
-def _sizes(visible: Sequence[Detectable]) -> list[tuple[str, str]]:
+def _sizes(answer: Explanation, visible: Sequence[Detectable]) -> list[tuple[str, str]]:
+    """One row for each effect, whatever dots its place and its parameters have in their names."""
+    situation = answer.base.problem.situation
+    known = [e.id for e in all_effects(answer.base.model.robot, poses=situation.poses, timed=True)]
     by_effect: dict[str, list[Detectable]] = defaultdict(list)
     for item in visible:
-        effect, _, _ = item.name.rpartition(".")
-        by_effect[effect].append(item)
+        ids = [name for name in known if item.name.startswith(f"{name}.")]
+        by_effect[max(ids, key=len, default=item.name.rpartition(".")[0])].append(item)
     return [(effect, _written(items)) for effect, items in by_effect.items()]
 
 
@@ -128,10 +132,3 @@ def next_section(answer: Explanation, link: str) -> Section | None:
             ),
         ],
     )
-
-
-def share_seen(answer: Explanation) -> str:
-    """How much of the catalogue these readings could show."""
-    effects = {item.name.rpartition(".")[0] for item in answer.smallest_detectable}
-    seen = len(effects) - len(answer.not_observable)
-    return f"{seen} of {len(effects)} ({percent(seen / max(len(effects), 1))})"

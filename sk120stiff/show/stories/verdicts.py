@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sk120stiff.effects import effect
-from sk120stiff.explain import Explanation, Finding, noise_floor
+from sk120stiff.explain import DOUBTFUL, Explanation, Finding, noise_floor
 from sk120stiff.show.wording import counted, listed, um
 
 
@@ -26,6 +26,12 @@ def lead_of(answer: Explanation) -> str:
 
 def _none(answer: Explanation) -> str:
     step = answer.steps[0]
+    if answer.adequacy.probability < DOUBTFUL:
+        return (
+            f"No effect can be named. The model misses the readings by {um(step.fit_rms)} µm rms "
+            f"per axis, a little more than the noise alone makes ({um(noise_of(answer))} µm); "
+            "that is not enough to claim that something is missing."
+        )
     return (
         f"Nothing is missing that these readings could show. The model misses them by "
         f"{um(step.fit_rms)} µm rms per axis; the noise alone makes "
@@ -56,7 +62,7 @@ def _outside(answer: Explanation) -> str:
     return (
         f"Something is missing, and no effect of the catalogue explains it. The model misses the "
         f"readings by {um(step.fit_rms)} µm rms per axis; the noise alone makes "
-        f"{um(noise_floor_of_noise(answer))} µm. Where it lives is told below."
+        f"{um(noise_of(answer))} µm. Where it lives is told below."
     )
 
 
@@ -71,7 +77,7 @@ def shrinks(answer: Explanation) -> str:
     )
 
 
-def noise_floor_of_noise(answer: Explanation) -> float:
+def noise_of(answer: Explanation) -> float:
     """What the noise makes as far as anything but the gap tells [m]."""
     found = answer.details.get("localisation")
     return float(found.noise) if found is not None else noise_floor(answer.final)
