@@ -5,11 +5,11 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-import time
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
+from tornado.iostream import StreamClosedError
 from tornado.web import HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from sk120stiff.show.live.server import LiveServer
 
 MAX_PAGES = 32  # open at the same time
-SHORTEST = 0.004  # seconds between two answers to one page: a flood is slowed, not served
+PAUSE = 0.002  # seconds after an answer in which other pages have their turn
 PATIENCE = 50  # refused requests after which a page is cut off
+FLOOD = 5000  # overtaken requests after which a page is cut off; ours never overtakes itself
 
 _log = logging.getLogger("sk120stiff.live")
 _HEADERS = {
@@ -92,7 +93,9 @@ class SocketHandler(WebSocketHandler):
         """Called by tornado for each connection."""
         self.server = server
         self.refused = 0
-        self.answered = 0.0
+        self.overtaken = 0
+        self.newest: str | bytes | None = None
+        self.work: asyncio.Task[None] | None = None
 
     def prepare(self) -> None:
         """Refuse requests that name another host."""
@@ -111,15 +114,25 @@ class SocketHandler(WebSocketHandler):
             return
         self.server.sockets.add(self)
 
-    async def on_message(self, message: str | bytes) -> None:
-        """Answer one request; the next is not read before."""
-        pause = self.answered + SHORTEST - time.monotonic()
-        await asyncio.sleep(max(0.0, pause))
-        self.answered = time.monotonic()
-        with suppress(WebSocketClosedError):
-            await self.write_message(self._answer(message))
-        if self.refused >= PATIENCE:
-            self.close(1008, "too many requests that cannot be read")
+    def on_message(self, message: str | bytes) -> None:
+        """Keep the newest request; one that it overtakes is never computed."""
+        if self.newest is not None:
+            self.overtaken += 1
+            if self.overtaken >= FLOOD:
+                self.close(1008, "too many requests")
+        self.newest = message
+        if self.work is None or self.work.done():
+            self.work = asyncio.create_task(self._answer_all())
+
+    async def _answer_all(self) -> None:
+        with suppress(WebSocketClosedError, StreamClosedError):
+            while self.newest is not None:
+                message, self.newest = self.newest, None
+                await self.write_message(self._answer(message))
+                if self.refused >= PATIENCE:
+                    self.close(1008, "too many requests that cannot be read")
+                    return
+                await asyncio.sleep(PAUSE)
 
     def _answer(self, message: str | bytes) -> str:
         try:
@@ -136,5 +149,8 @@ class SocketHandler(WebSocketHandler):
             return json.dumps({"id": number, "error": "this picture could not be computed"})
 
     def on_close(self) -> None:
-        """Forget the page."""
+        """Forget the page and what it still asks for."""
         self.server.sockets.discard(self)
+        self.newest = None
+        if self.work is not None:
+            self.work.cancel()

@@ -140,6 +140,7 @@ SK.makeActors = (stage, scene) => {
   }
   const render = viewer.render.bind(viewer), spot = new THREE.Vector3();
   viewer.render = () => {
+    if (!SK.drawn) return; // nothing has its place yet: no shader is worth compiling
     render();
     const width = stage.pane.clientWidth, height = stage.pane.clientHeight;
     const boxes = [];
