@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sk120stiff.effects import Effect, Situation
+from sk120stiff.effects import Effect
 from sk120stiff.model import Model
 from sk120stiff.plan import random_pool
 from sk120stiff.robot.coupling import Array
 
+TWINS = {"lost_motion": "friction_hysteresis", "friction_hysteresis": "lost_motion"}
 SAME = 1e-3  # share of the signature that may differ
 
 
@@ -57,18 +58,30 @@ def exact_aliases(
 
 
 def aliases_by_design(
-    effect: Effect, candidates: Sequence[Effect], situation: Situation
+    effect: Effect, others: Sequence[Effect], signature: Array, columns: Sequence[Array]
 ) -> tuple[str, ...]:
     """Names that this kind of experiment, not the arm, makes one.
 
-    Where loads only grow, friction is lost motion with the other sign. Where all loads of the
-    experiment point one way and only grow, what goes with the load goes with the order too.
+    Where loads only grow and no torque turns round, friction is lost motion with the other sign.
+
+    Parameters
+    ----------
+    effect, others
+        The named effect and its contenders.
+    signature
+        (R,) whitened column of the effect.
+    columns
+        (R, p) whitened columns of each contender.
     """
-    twins = {"lost_motion": "friction_hysteresis", "friction_hysteresis": "lost_motion"}
-    if effect.name not in twins or (situation.branch < 0.0).any():
-        return ()
-    twin = f"{twins[effect.name]}:{effect.where}"
-    return tuple(other.id for other in candidates if other.id == twin)
+    twin = TWINS.get(effect.name)
+    found = []
+    for other, own in zip(others, columns, strict=True):
+        if other.name != twin or other.where != effect.where:
+            continue
+        cosine = signature @ own[:, 0] / (np.linalg.norm(signature) * np.linalg.norm(own[:, 0]))
+        if abs(cosine) > 1.0 - SAME:
+            found.append(other.id)
+    return tuple(found)
 
 
 def _without(columns: Array, y: Array) -> Array:

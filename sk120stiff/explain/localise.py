@@ -31,6 +31,7 @@ from sk120stiff.robot.coupling import Array
 
 SHOWN = 8  # suspects that are worked out for figures
 FEWEST_POSES = 8  # for a trend over poses
+INDISTINCT = 0.02  # share of a direction below which a picture takes it for the springs' own
 SEEN_AT_ALL = 1e-6  # share of a column that must remain, else the model's own parameters do it
 
 
@@ -276,7 +277,7 @@ def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: 
     both = np.hstack([look.derivative, S])
     white = problem.whitener.apply(both.reshape(problem.situation.count, 3, -1))
     norms = np.maximum(np.linalg.norm(white, axis=0), 1e-300)
-    values = np.linalg.lstsq(white / norms, look.white, rcond=1e-8)[0] / norms
+    values = np.linalg.lstsq(white / norms, look.white, rcond=INDISTINCT)[0] / norms
     own = values[look.derivative.shape[1] :]
     signature = (S @ own).reshape(-1, 3)
     covered = (look.derivative @ values[: look.derivative.shape[1]]).reshape(-1, 3)

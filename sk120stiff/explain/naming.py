@@ -76,7 +76,14 @@ def _aliases(
         point=situation.point,
         tied=with_it.variants[with_it.effects.index(effect)] > 0,
     )
-    return always + aliases_by_design(chosen, regression.candidates, situation)
+    X = regression.X
+    here = aliases_by_design(
+        chosen,
+        regression.candidates,
+        X[:, regression.columns[effect][0]],
+        [X[:, own] for own in regression.columns],
+    )
+    return always + here
 
 
 def by_weight(regression: Regression, model: tuple[int, ...]) -> list[int]:

@@ -9,7 +9,7 @@ that thousands of models cost no more than a blink. What wins is refitted at exa
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -88,9 +88,15 @@ class Regression:
         return gram, moment, square, count
 
     def sums(self, weights: Array | None = None) -> Sums:
-        """Sums over poses, each counted `weights` (g,) times."""
+        """Sums over poses, each counted `weights` (g,) times, or all of them once."""
+        return self._all if weights is None else self._weighted(weights)
+
+    @cached_property
+    def _all(self) -> Sums:
+        return self._weighted(np.ones(self.poses))
+
+    def _weighted(self, w: Array) -> Sums:
         gram, moment, square, count = self.by_pose
-        w = np.ones(self.poses) if weights is None else weights
         return Sums(np.tensordot(w, gram, axes=1), w @ moment, float(w @ square), float(w @ count))
 
 
@@ -102,6 +108,61 @@ class Sums:
     moment: Array
     square: float
     count: float
+    _marginals: dict[tuple[bytes, float], Marginal] = field(default_factory=dict)
+
+    def marginal(self, members: Index, size: float) -> Marginal:
+        """The sums with columns integrated out whose values are draws of one size τ.
+
+        With y = X v + Z u + noise and u ~ N(0, τ²), Z u joins the noise.
+        """
+        key = (members.tobytes(), size)
+        if key not in self._marginals:
+            inner = self.gram[np.ix_(members, members)] + np.eye(len(members)) / size**2
+            factor: Array = np.asarray(np.linalg.cholesky(inner), dtype=float)
+            half = np.linalg.solve(factor, self.gram[members])
+            right = np.linalg.solve(factor, self.moment[members])
+            sums = Sums(
+                self.gram - half.T @ half,
+                self.moment - half.T @ right,
+                self.square - float(right @ right),
+                self.count,
+            )
+            price = 2.0 * float(np.log(np.diag(factor)).sum() + len(members) * np.log(size))
+            self._marginals[key] = Marginal(sums, price, members, factor)
+        return self._marginals[key]
+
+
+@dataclass(frozen=True, eq=False)
+class Marginal:
+    """Sums without columns that were integrated out.
+
+    Attributes
+    ----------
+    sums
+        What is left for the other columns.
+    price
+        ln det(1 + τ² ZᵀZ), what the freedom of the draws costs.
+    members
+        The columns.
+    factor
+        Cholesky factor of ZᵀZ + 1/τ².
+    """
+
+    sums: Sums
+    price: float
+    members: Index
+    factor: Array
+
+    def joined(self, whole: Sums, rest: Solved) -> Solved:
+        """The solution of the other columns with the most likely draws beside it."""
+        right = whole.moment[self.members]
+        right = right - whole.gram[np.ix_(self.members, rest.columns)] @ rest.values
+        draws = np.linalg.solve(self.factor.T, np.linalg.solve(self.factor, right))
+        return Solved(
+            np.concatenate([rest.columns, self.members]),
+            np.concatenate([rest.values, draws]),
+            rest.rss,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,14 +177,11 @@ class Solved:
         Their values in typical sizes.
     rss
         Residual sum of squares.
-    logdet
-        Logarithm of the determinant of the information matrix of the values.
     """
 
     columns: Index
     values: Array
     rss: float
-    logdet: float
 
 
 def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) -> Solved:
@@ -158,10 +216,9 @@ def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) ->
         size = values * scale
         forbidden = (values < 0.0) & (lower[active] == 0.0)
         if not forbidden.any():
-            rss = max(sums.square - float(half @ half), 0.0)
-            return Solved(active, values, rss, 2.0 * float(np.log(np.diag(factor) * scale).sum()))
+            return Solved(active, values, max(sums.square - float(half @ half), 0.0))
         active = np.delete(active, int(np.argmin(np.where(forbidden, size, np.inf))))
-    return Solved(active, np.zeros(0), sums.square, 0.0)
+    return Solved(active, np.zeros(0), sums.square)
 
 
 def _dependent(scaled: Array) -> int:

@@ -85,25 +85,20 @@ def _with_draws(
 ) -> tuple[Solved, float]:
     """Best solution and score over the common size of exchangeable parameters.
 
-    Such parameters pay by their marginal likelihood, ln det(1 + τ² S) with S their information
-    beside all other columns, and one parameter for their size τ.
+    Such parameters pay by their marginal likelihood, and one parameter for their size τ.
     """
     members = np.concatenate([regression.columns[e] for e in drawn])
     others = np.setdiff1d(columns, members)
-    rest = solve_columns(sums, others, regression.lower, regression.plausible)
     n = max(sums.count, 2.0)
     looked = 2.0 * np.log(max(len(regression.candidates), 1))
     best: tuple[Solved, float] | None = None
     for size in DRAWN_SIZES:
-        width = regression.plausible.copy()
-        width[members] = size
-        solved = solve_columns(sums, columns, regression.lower, width)
-        own = np.isin(solved.columns, members)
-        price = solved.logdet - rest.logdet + 2.0 * float(own.sum()) * np.log(size)
-        score = _misfit(regression, n, solved.rss) + price + effects * looked
-        score += (len(solved.columns) - own.sum() + len(drawn)) * np.log(n)
+        left = sums.marginal(members, size)
+        rest = solve_columns(left.sums, others, regression.lower, regression.plausible)
+        score = _misfit(regression, n, rest.rss) + left.price + effects * looked
+        score += (len(rest.columns) + len(drawn)) * np.log(n)
         if best is None or score < best[1]:
-            best = (solved, float(score))
+            best = (left.joined(sums, rest), float(score))
     if best is None:
         raise ValueError("no sizes to try")
     return best

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
 from sk120stiff.explain.outliers import outlying_rows
 from sk120stiff.explain.regression import Index, Regression, regression_at
 from sk120stiff.explain.search import Scored, beam_search, score_set
@@ -148,11 +149,23 @@ def _settle(
     final = base
     chosen: tuple[int, ...] = ()
     for _ in range(ROUNDS):
-        best = beam_search(regression, max_effects=max_effects)[0]
-        effects = [regression.candidates[e] for e in best.effects]
-        if {e.id for e in effects} == {regression.candidates[e].id for e in chosen}:
+        ranked = beam_search(regression, max_effects=max_effects)
+        if ranked[0].effects == chosen:
             break
-        final = refit(base, effects)
+        effects, final = _first_that_fits(base, regression, ranked)
         regression = regression_at(final, candidates, ids)
         chosen = positions(regression, effects)
     return final, regression, chosen
+
+
+def _first_that_fits(
+    base: Fit, regression: Regression, ranked: Sequence[Scored]
+) -> tuple[list[Effect], Fit]:
+    """The best model that can be fitted at exact equilibrium too."""
+    for model in ranked:
+        effects = [regression.candidates[e] for e in model.effects]
+        try:
+            return effects, refit(base, effects)
+        except Refusal:
+            continue
+    return [], base

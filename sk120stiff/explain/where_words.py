@@ -198,7 +198,7 @@ def _series(found: Localisation) -> Iterator[str]:
 
 def _um(metres: float) -> str:
     microns = 1e6 * metres
-    return f"{microns:.0f} µm" if microns >= 100.0 else f"{microns:.3g} µm"
+    return f"{microns:.0f} µm" if microns >= 99.95 else f"{microns:#.3g} µm"
 
 
 def _percent(share: float) -> str:
