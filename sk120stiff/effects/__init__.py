@@ -1,6 +1,8 @@
 """Physical causes by name: each says how it enters, what it is described by, where it can act."""
 
+from sk120stiff.effects.aliases import AliasClasses, alias_classes, generic_readings
 from sk120stiff.effects.base import (
+    Alias,
     Effect,
     Elastic,
     Elongation,
@@ -13,14 +15,19 @@ from sk120stiff.effects.base import (
     Switching,
 )
 from sk120stiff.effects.catalogue import BY_NAME, CATALOGUE, all_effects, effect
+from sk120stiff.effects.declared import declared_aliases
+from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.effects.situation import Situation, situation_of, situation_of_load
 
 __all__ = [
     "BY_NAME",
     "CATALOGUE",
+    "Alias",
+    "AliasClasses",
     "Effect",
     "Elastic",
     "Elongation",
+    "FirstOrder",
     "Geometric",
     "LinearElastic",
     "LoadError",
@@ -29,8 +36,11 @@ __all__ = [
     "ReadingError",
     "Situation",
     "Switching",
+    "alias_classes",
     "all_effects",
+    "declared_aliases",
     "effect",
+    "generic_readings",
     "situation_of",
     "situation_of_load",
 ]

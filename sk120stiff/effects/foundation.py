@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.base import ONE_WAY, Alias, LinearElastic, ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.coupling import Array
@@ -23,6 +23,7 @@ class BaseRocking(LinearElastic):
     """
 
     name: ClassVar[str] = "base_rocking"
+    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -65,6 +66,7 @@ class BaseSliding(LinearElastic):
     """The base shifts along the axes of the base frame."""
 
     name: ClassVar[str] = "base_sliding"
+    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -93,6 +95,13 @@ class BaseSliding(LinearElastic):
         return tuple(
             VirtualJoint(f"{self.id}.{label}", -1, np.eye(4), np.eye(3)[k], revolute=False)
             for k, label in enumerate("xyz")
+        )
+
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
+        """A shift that grows with the load grows with the order where the load does."""
+        return tuple(
+            Alias(f"{self.id}.stiffness_{k}", f"reading_drift:tracker.rate_{k}", ONE_WAY)
+            for k in "xyz"
         )
 
     def patterns(self, situation: Situation) -> Array:

@@ -9,6 +9,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.effects.base import (
+    LOADS_GROW,
+    Alias,
     Elastic,
     Elongation,
     Options,
@@ -156,6 +158,16 @@ class FrictionHysteresis(GearEffect, Switching):
     def sentence(self) -> str:
         """What happens."""
         return f"Friction in {self.where} makes loading and unloading differ."
+
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
+        """Of an arm without weight: lost motion with the other sign, until a load is taken off.
+
+        What the weight presses against a gear's flank never crosses the play at small loads.
+        """
+        if robot.total_mass > 0.0:
+            return ()
+        own = f"{self.id}.half_width"
+        return (Alias(own, own.replace(self.name, LostMotion.name), LOADS_GROW),)
 
     def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
         """See `Elastic.elongation`."""

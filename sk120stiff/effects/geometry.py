@@ -83,11 +83,6 @@ class ToolOffset(Geometric):
             for label, axis in zip("xyz", np.eye(3), strict=True)
         )
 
-    def aliases(self, robot: Robot) -> tuple[str, ...]:
-        """A tool that is longer is a last link that is longer."""
-        last = arm_links(robot)[-1] if arm_links(robot) else None
-        return (f"link_length:{last.link}",) if last else ()
-
 
 @dataclass(frozen=True)
 class LinkLength(Geometric):

@@ -10,7 +10,6 @@ import numpy as np
 from sk120stiff.effects.base import LinearElastic, Options, ParameterSpec, compliance, scale_of
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.anatomy import arm_joints
 from sk120stiff.robot.coupling import Array
 
 
@@ -23,6 +22,7 @@ class JointSprings(LinearElastic):
 
     slides: bool = False
     name: ClassVar[str] = "joint_springs"
+    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -55,13 +55,3 @@ class JointSprings(LinearElastic):
     def patterns(self, situation: Situation) -> Array:
         """e = c τ."""
         return np.ones((1, 1, 1))
-
-    def aliases(self, robot: Robot) -> tuple[str, ...]:
-        """A joint-4 spring and the twist of a straight forearm are one; see `link_torsion`."""
-        found = []
-        for before, after in zip(arm_joints(robot), arm_joints(robot)[1:], strict=False):
-            if after.name == self.where and after.revolute and before.length > 0.0:
-                axis = robot.mechanism().chain.placements[after.index][:3, :3] @ after.axis
-                if np.linalg.norm(np.cross(axis, before.along)) < 1e-9 * before.length:
-                    found.append(f"link_torsion:{before.link}")
-        return tuple(found)

@@ -22,6 +22,7 @@ class JointTilt(LinearElastic):
     """
 
     name: ClassVar[str] = "joint_tilt"
+    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

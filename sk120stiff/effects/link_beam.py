@@ -12,10 +12,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic, ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on
+from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, sample_poses
 from sk120stiff.robot.coupling import Array
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
@@ -38,6 +38,8 @@ def gauss_points(taper: float) -> tuple[Array, Array]:
     root = np.sqrt(half**2 + spread)
     near, far = half - root, half + root
     return mean + np.array([near, far]), np.array([far, -near]) / (far - near)
+
+
 SHAFT = np.deg2rad(15.0)  # largest angle between a link and the axis of the shaft that it is
 
 
@@ -87,6 +89,24 @@ class LinkBending(LinearElastic):
             for label, axis in (("in_plane", third), ("out_of_plane", across))
         )
 
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
+        """A link of a parallelogram that bends in its plane shifts what the rod holds upright.
+
+        So does the drive of that link: the direction is the same wherever the beam bends.
+        """
+        joints = self.virtual_joints(robot)
+        bends = [robot.n + k for k, joint in enumerate(joints) if joint.name.endswith(".in_plane")]
+        z = np.zeros((12, robot.n + len(joints)))
+        z[:, : robot.n] = sample_poses(robot, 12)
+        twists = robot.mechanism().with_virtual_joints(joints).screws(z).jacobian  # (12, 6, n_z)
+        columns = twists.reshape(-1, z.shape[1])
+        columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+        alike = np.abs(columns[:, bends].T @ columns[:, : robot.n]) > 1.0 - 1e-12
+        return tuple(
+            Alias(f"{self.id}.EI[in_plane]", f"{SPRINGS}:{robot.actuated[j]}.stiffness")
+            for j in np.flatnonzero(alike.all(axis=0))
+        )
+
     def patterns(self, situation: Situation) -> Array:
         """Every slice of the beam yields by its share of the flexibility."""
         length = arm_joint(situation.robot, self.where).length
@@ -99,6 +119,7 @@ class LinkTorsion(LinearElastic):
     """A shaft of torsional stiffness GJ along the link."""
 
     name: ClassVar[str] = "link_torsion"
+    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

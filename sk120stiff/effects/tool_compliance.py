@@ -21,6 +21,7 @@ class ToolCompliance(LinearElastic):
     """
 
     name: ClassVar[str] = "tool_compliance"
+    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.loops import LoopCoupling
 from sk120stiff.robot.robot import Robot
 
+_SAMPLES: WeakKeyDictionary[Robot, dict[tuple[int, int], Array]] = WeakKeyDictionary()
 SHORTEST_LINK = 1e-3  # m; what is shorter has no length to bend along
 
 
@@ -102,6 +104,8 @@ def arm_length(robot: Robot) -> float:
 def sample_poses(robot: Robot, count: int, seed: int = 0) -> Array:
     """(count, n) random coordinates within limits and two rad or metres of a natural pose.
 
+    The same question to the same robot has the same answer, and is worked out once.
+
     That is the start of a robot with closed loops, else zero or the middle of limits without it.
 
     Raises
@@ -109,7 +113,13 @@ def sample_poses(robot: Robot, count: int, seed: int = 0) -> Array:
     Refusal
         The loops can hardly be closed anywhere near their start.
     """
-    rng = np.random.default_rng(seed)
+    known = _SAMPLES.setdefault(robot, {})
+    if (count, seed) not in known:
+        known[count, seed] = _drawn(robot, count, np.random.default_rng(seed))
+    return known[count, seed].copy()
+
+
+def _drawn(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     low, high = np.maximum(robot.lower, -1e6), np.minimum(robot.upper, 1e6)
     middle = np.clip(0.0, low, high)
     if isinstance(robot.coupling, LoopCoupling):

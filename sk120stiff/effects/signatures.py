@@ -1,0 +1,125 @@
+"""What each parameter does to the readings, to first order and per unit: its signature.
+
+With J and τ = J_Fᵀ W at the unloaded pose and C the compliance of the joint springs, a reading is
+d = J C τ, and its derivatives are
+
+==================  ====================================================================
+elastic effects     J ∂e/∂p(τ)
+load errors         J C J_Fᵀ ∂W/∂p
+geometric effects   (∂J/∂z_k) C τ + J C K_C[:, k], with ∂²x/∂z² in place of ∂J/∂z
+reading errors      ∂d_read/∂p(d)
+==================  ====================================================================
+
+Nothing of second order is in them, so two effects that are one to first order come out as exactly
+one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from sk120stiff.effects.base import Effect, Elastic, Geometric, LoadError, ReadingError
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Mechanism
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness import complementary_stiffness
+
+
+class FirstOrder:
+    """Signatures of effects in a set of readings, around joint springs.
+
+    Parameters
+    ----------
+    situation
+        N readings.
+    effects
+        Effects whose signatures will be asked for.
+    springs
+        Compliance of each actuated joint that yields [rad/(N·m) or m/N].
+    """
+
+    def __init__(
+        self, situation: Situation, effects: Sequence[Effect], springs: Mapping[str, float]
+    ) -> None:
+        robot = situation.robot
+        virtual = [
+            joint
+            for effect in effects
+            if isinstance(effect, Elastic | Geometric)
+            for joint in effect.virtual_joints(robot)
+        ]
+        rigid = robot.mechanism()
+        self.situation = situation
+        self._mechanism: Mechanism = rigid.with_virtual_joints(virtual) if virtual else rigid
+        names = [*robot.actuated, *(joint.name for joint in virtual)]
+        self._place = {name: k for k, name in enumerate(names)}
+        z = np.zeros((situation.count, self._mechanism.n))
+        z[:, : robot.n] = situation.a
+        self._seen = self._mechanism.screws(z, situation.point)
+        self._pushed = self._seen.at(situation.force_point)
+        self._J = self._seen.linear_jacobian  # (N, 3, n_z)
+        self._torques = self._pushed.torques(situation.wrench)  # (N, n_z)
+        self._c = np.zeros(self._mechanism.n)
+        for name, value in springs.items():
+            self._c[self._place[name]] = value
+        self._stretch = self._c * self._torques
+
+    @property
+    def displacement(self) -> Array:
+        """(N, 3) what is read without the effects, base axes [m]."""
+        return np.asarray(np.einsum("nij,nj->ni", self._J, self._stretch))
+
+    def of(self, effect: Effect) -> Array:
+        """(N, 3, P) derivative of the readings by the effect's internal parameter values."""
+        if isinstance(effect, Elastic):
+            columns = self._elastic(effect)
+        elif isinstance(effect, Geometric):
+            columns = self._geometric(effect)
+        elif isinstance(effect, LoadError):
+            columns = self._load_error(effect)
+        elif isinstance(effect, ReadingError):
+            columns = effect.columns(self.displacement, self.situation)
+        else:
+            raise TypeError(f"{effect.id} enters in no known way")
+        return np.asarray(np.swapaxes(self.situation.reading_axes, -1, -2) @ columns)
+
+    def of_coordinate(self, name: str) -> Array:
+        """(N, 3) signature of a compliance of one coordinate alone, j (jᵀ W)."""
+        k = self._place[name]
+        own = self._J[:, :, k] * self._torques[:, k, None]
+        axes = np.swapaxes(self.situation.reading_axes, -1, -2)
+        return np.asarray(np.einsum("nij,nj->ni", axes, own))
+
+    def _elastic(self, effect: Elastic) -> Array:
+        index = self._index(effect.coordinates(self.situation.robot))
+        nothing = np.zeros(len(effect.parameters))
+        found = effect.elongation(self._torques[:, index], self.situation, nothing)
+        return np.asarray(self._J[:, :, index] @ found.by_parameter)
+
+    def _geometric(self, effect: Geometric) -> Array:
+        return self._wrong_start[:, :, self._index(effect.coordinates(self.situation.robot))]
+
+    @cached_property
+    def _wrong_start(self) -> Array:
+        """(N, 3, n_z) derivative of the displacement by the unloaded coordinates."""
+        K_C = complementary_stiffness(self._pushed, self.situation.wrench)
+        bent = [
+            complementary_stiffness(self._seen, unit) @ self._stretch[..., None]
+            for unit in np.eye(6)[:3]
+        ]
+        return np.stack(bent, axis=1)[..., 0] + self._J @ (self._c[:, None] * K_C)
+
+    def _load_error(self, effect: LoadError) -> Array:
+        rotation = self.situation.rotation
+        turn = np.zeros((len(rotation), 6, 6))
+        turn[:, :3, :3] = turn[:, 3:, 3:] = rotation
+        reported = np.einsum("nji,nj->ni", turn, self.situation.wrench)
+        errors = turn @ effect.columns(reported, self.situation)  # (N, 6, P) base axes
+        yielding = self._c[:, None] * np.swapaxes(self._pushed.jacobian, -1, -2)
+        return np.asarray(self._J @ yielding @ errors)
+
+    def _index(self, names: Sequence[str]) -> list[int]:
+        return [self._place[name] for name in names]
