@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("svg", "png", "pdf")
 _numbers = count(1)
+_PIXELS_PER_INCH = 105.0  # on a page; a figure as wide as the text then fills it
 
 
 def save_figure(figure: Figure, path: str | os.PathLike[str], *, dpi: int = 200) -> Path:
@@ -53,6 +54,8 @@ def inline_svg(figure: Figure, alt: str) -> str:
     svg = re.sub(r"url\(#", f"url(#{prefix}", svg)
     opening, rest = svg.split(">", 1)
     opening = re.sub(r'\s(width|height)="[^"]*"', "", opening)
+    widest = _PIXELS_PER_INCH * figure.get_figwidth()
+    opening += f' style="max-width: {widest:.0f}px"'  # a narrow figure is not blown up
     return f'{opening} role="img" aria-label="{escape(alt, quote=True)}">{rest}'
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 def um(metres: float) -> str:
     """A length in micrometres: three digits, none after the point from 100 on."""
     microns = 1e6 * metres
-    return f"{microns:.0f}" if abs(microns) >= 100.0 else f"{microns:.3g}"
+    return f"{microns:.0f}" if abs(microns) >= 99.95 else f"{microns:#.3g}"
 
 
 def percent(share: float) -> str:
@@ -46,7 +46,11 @@ def number(value: float, digits: int = 4) -> str:
     if value and not 1e-3 <= abs(value) < 1e5:
         mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         return f"{float(mantissa):g}·10{raised(int(exponent))}".replace("-", "−")
-    return f"{value:.{digits}g}".replace("-", "−")
+    if not value:
+        return "0"
+    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    text = f"{value:.{places}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", "−")
 
 
 def raised(exponent: int) -> str:

@@ -251,8 +251,7 @@ def _second_act(demo: Demo) -> Section:
                 caption="Identified springs as multiples of the paper's (orange).",
             ),
             Picture(
-                gap_per_pose([f"pose {p}" for p in found.problem.situation.poses], gaps,
-                             noise_floor=floor),
+                gap_per_pose(found.problem.situation.poses, gaps, noise_floor=floor),
                 alt="Bars of the gap at every pose: "
                 + "; ".join(f"{n} {listed([um(float(v)) for v in g])} µm" for n, g in gaps.items()),
                 caption="The gap of every pose, before and after."
@@ -297,17 +296,19 @@ def _third_act(demo: Demo) -> Section:
             )
         )
     where, evidence = where_section(answer), evidence_section(answer)
-    blocks += [Section(where.title, where.blocks), Section(evidence.title, evidence.blocks)]
+    told = evidence.blocks if answer.findings else evidence.blocks[:1]
+    blocks += [Section(where.title, where.blocks), Section(evidence.title, told)]
     return Section("3. What is missing?", blocks)
 
 
 def _three_poses(demo: Demo) -> Section:
     ranked = sorted(demo.hidden, key=lambda s: -s.shows)
     rows = [
-        (s.effect.id, 1e6 * s.shows, percent(s.share), 1e6 * s.remains, s.visible)
+        (s.effect.id, 1e6 * s.shows, percent(s.share), round(1e6 * s.remains, 3),
+         round(s.visible, 1))
         for s in ranked
         if s.shows >= WORTH_LISTING
-    ]
+    ]  # fmt: skip
     whole = [s.effect.id for s in ranked if s.share >= WHOLE]
     able = [s for s in ranked if s.visible >= NAMEABLE]
     blocks: list[Block] = [
@@ -316,7 +317,7 @@ def _three_poses(demo: Demo) -> Section:
         f"readings. {len(able)} of {len(ranked)} would leave {NAMEABLE:.0f} noise standard "
         "deviations or more, about what a name needs.",
         Table(
-            ["effect", "moves the point", "springs take", "is left", "√λ"],
+            ["effect", "moves", "springs take", "left", "√λ"],
             rows,
             f"Effects that move the point by {um(WORTH_LISTING)} µm or more, rms per axis. √λ: "
             "what is left, in noise standard deviations over all readings.",

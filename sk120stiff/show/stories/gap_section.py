@@ -56,15 +56,16 @@ def steps_table(answer: Explanation) -> Table:
             step.label,
             1e6 * step.fit_rms,
             1e6 * step.heldout_rms,
-            None if step is first else percent(1.0 - step.heldout_rms / first.heldout_rms),
+            "–" if step is first else percent(1.0 - step.heldout_rms / first.heldout_rms),
         )
         for step in answer.steps
     ]
+    width = 4 if len(rows) > 1 else 3  # a first step alone closes nothing
     return Table(
-        ["model", "fitted", "held out", "closed, held out"],
-        rows,
+        ["model", "fitted", "held out", "closed, held out"][:width],
+        [row[:width] for row in rows],
         "Gap rms per axis; every step is refitted at exact equilibrium.",
-        units=["", "µm", "µm", ""],
+        units=["", "µm", "µm", ""][:width],
         digits=3,
     )
 

@@ -27,7 +27,7 @@ def where_section(answer: Explanation) -> Section:
 
 def _evidence(found: Localisation) -> list[Block]:
     blocks: list[Block] = []
-    figure = suspect_panels(found) if found.real else None
+    figure = suspect_panels(found) if found.strongest is not None else None
     if figure is not None:
         best = found.suspects[0]
         blocks.append(
