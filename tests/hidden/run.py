@@ -86,14 +86,14 @@ def answer(folder: Path, name: str, runner: Separate) -> None:
     code, seconds = runner.call(
         target / "stdout.json", target / "stderr.txt",
         ["explain", str(case / "train.csv"), "--holdout", str(case / "holdout.csv"),
-         "--out", str(target), "--json", *extra],
+         "--no-report", "--out", str(target), "--json", *extra],
     )  # fmt: skip
     predicted = None
     if (target / "model.yaml").exists():
         predicted, _ = runner.call(
             target / "predict.json", target / "predict_stderr.txt",
             ["predict", str(target / "model.yaml"), str(folder / "sealed" / name / "sealed.csv"),
-             "--out", str(target / "predicted.csv"), "--json"],
+             "--no-report", "--out", str(target / "predicted.csv"), "--json"],
         )  # fmt: skip
     run = {"exit": code, "seconds": round(seconds, 2), "predict_exit": predicted}
     (target / "run.json").write_text(json.dumps(run), encoding="utf-8")
