@@ -6,10 +6,18 @@ from sk120stiff.workspace.finished import LoadSummary, MapCheck, open_map, summa
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
 from sk120stiff.workspace.mapping import MapReport, write_map
+from sk120stiff.workspace.posture import (
+    BestPosture,
+    PathTask,
+    Placement,
+    best_posture,
+    path_points,
+)
 
 __all__ = [
     "STATUS",
     "Axis",
+    "BestPosture",
     "ElasticArm",
     "Grid",
     "JointGrid",
@@ -17,12 +25,16 @@ __all__ = [
     "MapCheck",
     "MapJob",
     "MapReport",
+    "PathTask",
+    "Placement",
     "PositionGrid",
     "Reached",
     "Task",
+    "best_posture",
     "elastic_arm",
     "open_map",
     "parse_axes",
+    "path_points",
     "solve_inverse",
     "starting_poses",
     "summarise_map",

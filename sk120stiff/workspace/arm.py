@@ -135,9 +135,9 @@ class ElasticArm:
             return np.ones(len(a), dtype=bool)
         return np.asarray(self.slow.robot.closes(a), dtype=bool)
 
-    def within_limits(self, a: Array) -> Array:
+    def within_limits(self, a: Array) -> NDArray[np.bool_]:
         """(N,) are all joints (N, n) within their limits?"""
-        return np.asarray(((a >= self.lower) & (a <= self.upper)).all(axis=-1))
+        return np.asarray(((a >= self.lower) & (a <= self.upper)).all(axis=-1), dtype=bool)
 
 
 def elastic_arm(

@@ -1,0 +1,379 @@
+"""The best posture for a task: stiffest in a direction, or least deflected under a load.
+
+A task leaves freedom: rotation about the tool's axis, another branch of the arm, more joints than
+needed, the place of the part. Many postures at once are let wander through that freedom: each is
+put back on the task by inverse kinematics after a random step, followed along the path, judged, and
+kept where it is better. Steps grow while they succeed and shrink while they do not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff.errors import InputError, Refusal
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness import StiffnessBatch
+from sk120stiff.workspace.arm import ElasticArm
+from sk120stiff.workspace.inverse import Task, rotation_of, solve_inverse, starting_poses
+
+FIRST_STEP, LAST_STEP = 0.5, 1e-6  # rad: radius of the random steps
+GROW, SHRINK = 1.6, 0.6
+
+
+@dataclass(frozen=True, eq=False)
+class PathTask:
+    """N points that the tool passes, with what acts on it there, in base axes.
+
+    Attributes
+    ----------
+    position
+        (N, 3) of the arm's point [m].
+    axis
+        (N, 3) or (3,) direction of the tool's z axis, rotation about it free; or None.
+    rotation
+        (N, 3, 3) or (3, 3) orientation of the tool; or None.
+    wrench
+        (N, 6) or (6,) load at the point [N, N·m].
+    direction
+        (N, 3) or (3,) unit direction that matters; None for all.
+    """
+
+    position: Array
+    axis: Array | None = None
+    rotation: Array | None = None
+    wrench: Array = field(default_factory=lambda: np.zeros(6))
+    direction: Array | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of points N."""
+        return len(self.position)
+
+    def each(self) -> PathTask:
+        """The same with one axis, rotation, wrench and direction for every point."""
+
+        def spread(x: Array | None, *shape: int) -> Array | None:
+            return None if x is None else np.broadcast_to(x, (self.count, *shape))
+
+        wrench = np.broadcast_to(self.wrench, (self.count, 6))
+        return PathTask(
+            np.asarray(self.position, dtype=float).reshape(-1, 3),
+            spread(self.axis, 3),
+            spread(self.rotation, 3, 3),
+            wrench,
+            spread(self.direction, 3),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """How the part, and the path with it, may be moved.
+
+    Attributes
+    ----------
+    origin
+        (3,) point of the part about which it turns, base axes [m].
+    lower, upper
+        (6,) bounds of x, y, z [m] and roll, pitch, yaw [rad] by which it is moved; equal ones are
+        fixed.
+    """
+
+    origin: Array
+    lower: Array
+    upper: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BestPosture:
+    """The best posture that was found, and how much there was to gain.
+
+    Attributes
+    ----------
+    a
+        (N, n) joint coordinates along the path [rad or m].
+    placement
+        (6,) how the part was moved.
+    objective
+        The worst compliance [m/N] or deflection [m] along the path: the smaller the better.
+    per_point
+        (N,) the same at every point.
+    condition
+        (N,) smallest over largest singular value of the position Jacobian.
+    limit_margin
+        Smallest distance of any joint from its limits [rad or m].
+    admissible
+        (k,) objectives of the postures that were met at random in the beginning: what choosing
+        blindly would give.
+    """
+
+    a: Array
+    placement: Array
+    objective: float
+    per_point: Array
+    condition: Array
+    limit_margin: float
+    admissible: Array
+
+
+def best_posture(
+    arm: ElasticArm,
+    path: PathTask,
+    *,
+    minimise: str = "compliance",
+    placement: Placement | None = None,
+    limit_margin: float = 0.0,
+    singularity_margin: float = 0.02,
+    largest_step: float = 0.5,
+    starts: int = 256,
+    kept: int = 16,
+    children: int = 8,
+    rounds: int = 60,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> BestPosture:
+    """Search the posture that serves a path best; the worst point of the path counts.
+
+    Parameters
+    ----------
+    arm
+        The arm and its stiffness.
+    path
+        Points, orientations, loads.
+    minimise
+        ``compliance``: displacement along `path.direction` per force along it (in the softest
+        direction if there is none), so the stiffness is maximised. ``deflection``: displacement
+        under `path.wrench`, along `path.direction` or its length.
+    placement
+        Where the part may be put; it stays where it is by default.
+    limit_margin
+        Distance that joints must keep from their limits [rad or m].
+    singularity_margin
+        Smallest allowed `condition`.
+    largest_step
+        Largest change of a joint from one point to the next [rad or m]; more is another branch.
+    starts, kept, children, rounds
+        Effort: random postures in the beginning, those that go on, steps of each in a round.
+    seed
+        Of the random numbers.
+
+    Raises
+    ------
+    InputError
+        Nothing to minimise, or shapes that do not fit.
+    Refusal
+        No posture passes the path within limits and margins.
+    """
+    if minimise not in ("compliance", "deflection"):
+        raise InputError(f"{minimise!r} cannot be minimised", remedy="compliance or deflection.")
+    if minimise == "deflection" and not np.any(path.wrench):
+        raise InputError("nothing deflects without a load", remedy="Give a wrench.")
+    if arm.slow is not None and np.any(np.asarray(path.wrench)[..., 3:]):
+        raise InputError(
+            "moments are not followed for a model whose compliance changes with the pose",
+            where=arm.name,
+            remedy="Give a force alone.",
+        )
+    judge = _Judge(
+        replace(arm, lower=arm.lower + limit_margin, upper=arm.upper - limit_margin),
+        path.each(),
+        minimise,
+        placement,
+        singularity_margin,
+        largest_step,
+    )
+    rng = np.random.default_rng(seed)
+    rest = np.clip(np.zeros(arm.n), judge.arm.lower, judge.arm.upper)
+    a = starting_poses(judge.arm, starts, rest)
+    moved = rng.uniform(judge.lower, judge.upper, (len(a), 6))
+    moved[0] = np.clip(0.0, judge.lower, judge.upper)
+    first = judge(a, moved)
+    if not np.isfinite(first.objective).any():
+        raise Refusal(
+            f"none of {starts} postures passes all {path.count} points within limits and margins",
+            remedy="Check that the points are reachable (sk120stiff map), lower the margins, or "
+            "leave more freedom.",
+        )
+    pool = first.best(kept)
+    admissible = np.sort(first.objective[np.isfinite(first.objective)])
+    radius = np.full(len(pool.objective), FIRST_STEP)
+    for done in range(rounds):
+        noise = rng.normal(size=(children, len(radius), arm.n + 6)) * radius[:, None]
+        trial = judge(
+            (pool.path[:, 0] + noise[..., : arm.n]).reshape(-1, arm.n),
+            judge.inside(pool.placement + noise[..., arm.n :] * judge.span).reshape(-1, 6),
+        )
+        better = pool.improve(trial, children)
+        pool = better.pool
+        radius = np.clip(radius * np.where(better.improved, GROW, SHRINK), LAST_STEP, FIRST_STEP)
+        if progress:
+            progress(done + 1, rounds)
+    return judge.report(pool, admissible)
+
+
+@dataclass(frozen=True, eq=False)
+class _Pool:
+    """k postures followed along the path: (k, N, n), (k, 6) and (k,)."""
+
+    path: Array
+    placement: Array
+    objective: Array
+
+    def best(self, count: int) -> _Pool:
+        order = np.argsort(self.objective)[:count]
+        order = order[np.isfinite(self.objective[order])]
+        return _Pool(self.path[order], self.placement[order], self.objective[order])
+
+    def improve(self, trial: _Pool, children: int) -> _Improved:
+        """Each posture or the best of its children, which stand one after the other in `trial`."""
+        k = len(self.objective)
+        objectives = trial.objective.reshape(children, k)
+        best = np.argmin(objectives, axis=0)
+        pick = best * k + np.arange(k)
+        improved = trial.objective[pick] < self.objective
+        return _Improved(
+            _Pool(
+                np.where(improved[:, None, None], trial.path[pick], self.path),
+                np.where(improved[:, None], trial.placement[pick], self.placement),
+                np.where(improved, trial.objective[pick], self.objective),
+            ),
+            improved,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Improved:
+    pool: _Pool
+    improved: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    """Puts postures on the task, follows the path, and says how good they are."""
+
+    arm: ElasticArm
+    path: PathTask
+    minimise: str
+    place: Placement | None
+    singularity_margin: float
+    largest_step: float
+
+    @property
+    def lower(self) -> Array:
+        return np.zeros(6) if self.place is None else np.asarray(self.place.lower, dtype=float)
+
+    @property
+    def upper(self) -> Array:
+        return np.zeros(6) if self.place is None else np.asarray(self.place.upper, dtype=float)
+
+    @property
+    def span(self) -> Array:
+        return self.upper - self.lower
+
+    def inside(self, placement: Array) -> Array:
+        return np.clip(placement, self.lower, self.upper)
+
+    def __call__(self, starts: Array, placement: Array) -> _Pool:
+        count = len(starts)
+        followed = np.empty((count, self.path.count, self.arm.n))
+        objective = np.zeros(count)
+        alive = np.arange(count)
+        before = starts
+        for point in range(self.path.count):
+            turn, shift = self._moves(placement[alive])
+            reached = solve_inverse(self.arm, self._task(point, turn, shift), before[alive])
+            ok = reached.found & self.arm.within_limits(reached.a)
+            if point:
+                jump = np.abs(reached.a - before[alive]).max(axis=1)
+                ok &= jump <= self.largest_step
+            followed[alive, point] = reached.a
+            before = followed[:, point]
+            objective[alive[~ok]] = np.inf
+            alive = alive[ok]
+            if not len(alive):
+                break
+            cost, condition = self._cost(followed[alive, point], point, turn[ok])
+            lost = (condition < self.singularity_margin) | ~np.isfinite(cost)
+            objective[alive] = np.where(lost, np.inf, np.maximum(objective[alive], cost))
+            alive = alive[~lost]
+            if not len(alive):
+                break
+        return _Pool(followed, placement, objective)
+
+    def _moves(self, placement: Array) -> tuple[Array, Array]:
+        """(k, 3, 3) rotations and (k, 3) shifts of the part."""
+        turns = np.stack([rotation_of(*row) for row in placement[:, 3:]])
+        return turns, placement[:, :3]
+
+    def _task(self, point: int, turn: Array, shift: Array) -> Task:
+        path = self.path
+        origin = np.zeros(3) if self.place is None else np.asarray(self.place.origin, dtype=float)
+        position = turn @ (path.position[point] - origin) + origin + shift
+        return Task(
+            position,
+            None if path.axis is None else turn @ path.axis[point],
+            None if path.rotation is None else turn @ path.rotation[point],
+        )
+
+    def _cost(self, a: Array, point: int, turn: Array) -> tuple[Array, Array]:
+        """Compliance or deflection, and conditioning, of postures at one point of the path."""
+        load = self.path.wrench[point]
+        loads = np.concatenate([turn @ load[:3], turn @ load[3:]], axis=1)
+        want = ["condition", "stiffness_class", "compliance", "values"]
+        want += ["jacobian", "K_C"] if load[3:].any() else []
+        found = self.arm.batch(a, loads, want)
+        C = found.of("compliance")
+        if self.minimise == "compliance":
+            if self.path.direction is None:
+                cost = 1.0 / found.of("values")[:, 0]
+            else:
+                d = turn @ self.path.direction[point]
+                cost = np.einsum("ki,kij,kj->k", d, C, d)
+        else:
+            displaced = np.einsum("kij,kj->ki", C, loads[:, :3])
+            if load[3:].any():
+                displaced = displaced + self._turned_by_moment(found, loads[:, 3:])
+            if self.path.direction is None:
+                cost = np.linalg.norm(displaced, axis=1)
+            else:
+                d = turn @ self.path.direction[point]
+                cost = np.abs((d * displaced).sum(-1))
+        stable = found.of("stiffness_class") == 0
+        return np.where(stable, cost, np.inf), found.of("condition")
+
+    def _turned_by_moment(self, found: StiffnessBatch, moment: Array) -> Array:
+        """(k, 3) displacement of the point by the moment: J_v (K_θ − K_C)⁻¹ J_wᵀ M."""
+        soft = found.soft
+        J = found.of("jacobian")[..., soft]
+        K = self.arm.springs[np.ix_(soft, soft)] - found.of("K_C")
+        torque = np.swapaxes(J[:, 3:], -1, -2) @ moment[..., None]
+        return np.asarray((J[:, :3] @ np.linalg.solve(K, torque))[..., 0])
+
+    def report(self, pool: _Pool, admissible: Array) -> BestPosture:
+        best = int(np.argmin(pool.objective))
+        a, placement = pool.path[best], pool.placement[best]
+        turn, _ = self._moves(placement[None])
+        costs, conditions = zip(
+            *(self._cost(a[k : k + 1], k, turn) for k in range(self.path.count)), strict=True
+        )
+        distance = np.minimum(a - self.arm.lower, self.arm.upper - a)
+        return BestPosture(
+            a=a,
+            placement=placement,
+            objective=float(pool.objective[best]),
+            per_point=np.concatenate(costs),
+            condition=np.concatenate(conditions),
+            limit_margin=float(distance.min()),
+            admissible=admissible,
+        )
+
+
+def path_points(start: ArrayLike, end: ArrayLike, count: int) -> Array:
+    """(count, 3) points on a straight line [m]."""
+    fraction = np.linspace(0.0, 1.0, count)[:, None]
+    return (
+        np.asarray(start, dtype=float) * (1.0 - fraction) + np.asarray(end, dtype=float) * fraction
+    )
