@@ -9,12 +9,13 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.robust import robust_noise, solve_robustly
-from sk120stiff.identify.saturated import choose_noise
+from sk120stiff.identify.saturated import STRONG, choose_noise
 from sk120stiff.identify.solvers import Method
 from sk120stiff.identify.solving import solve
-from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import Model
 
+AGREES = 0.01  # probability of a larger misfit down to which a model agrees with stated noise
 FEWEST = 2  # readings; one alone leaves nothing to judge a fit by
 
 
@@ -58,8 +59,37 @@ def fit(
         reasons = tuple(said)
         if robust:
             noise, reasons = robust_noise(used, noise, reasons)
+        else:
+            found = solve(Problem(model, used, noise), method=method)
+            return _checked(_reconsidered(found, reasons, method), measurements)
     problem = Problem(model, used, noise)
     found = solve_robustly(problem, method=method) if robust else solve(problem, method=method)
+    return _checked(replace(found, reasons=reasons), measurements)
+
+
+def _reconsidered(found: Fit, reasons: tuple[str, ...], method: Method) -> Fit:
+    """The fit under the plain noise as described, unless its gaps ask for more than that too.
+
+    What a model explains (a jump in a gear, say) may look like noise as long as no model is there.
+    The gaps of a fitted model hold all the noise, so noise cannot be larger than they are.
+    """
+    problem = found.problem
+    noise = problem.noise
+    plain = next(n for n in candidates(problem.measurements) if n.zero == noise.zero)
+    if plain.growth == noise.growth and (plain.sigma == noise.sigma or not noise.stated):
+        return replace(found, reasons=reasons)
+    other = solve(Problem(problem.model, problem.measurements, plain), method=method)
+    if plain.stated and other.lack_of_fit is not None:
+        enough = other.lack_of_fit > AGREES
+    else:
+        enough = 2.0 * (found.log_likelihood - other.log_likelihood) < STRONG
+    if not enough:
+        return replace(found, reasons=reasons)
+    kept = tuple(reason for reason in reasons if "zero readings" in reason)
+    return replace(other, reasons=kept)
+
+
+def _checked(found: Fit, measurements: Measurements) -> Fit:
     if not found.estimated and not found.at_bound.any():
         raise Refusal(
             "these readings show none of the free parameters",
@@ -67,7 +97,7 @@ def fit(
             remedy=f"Free are: {', '.join(p.name for p in found.parameters)}. Measure poses and "
             "loads that put torque on them.",
         )
-    return replace(found, reasons=reasons)
+    return found
 
 
 def _refuse_unusable(model: Model, measurements: Measurements) -> None:
