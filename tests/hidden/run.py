@@ -93,7 +93,7 @@ def answer(folder: Path, name: str, runner: Separate) -> None:
         predicted, _ = runner.call(
             target / "predict.json", target / "predict_stderr.txt",
             ["predict", str(target / "model.yaml"), str(folder / "sealed" / name / "sealed.csv"),
-             "--no-report", "--out", str(target / "predicted.csv"), "--json"],
+             "--out", str(target / "predicted.csv"), "--json"],
         )  # fmt: skip
     run = {"exit": code, "seconds": round(seconds, 2), "predict_exit": predicted}
     (target / "run.json").write_text(json.dumps(run), encoding="utf-8")
