@@ -110,10 +110,12 @@ def _cell(value: object, digits: int) -> str:
         return "–" if math.isnan(number) else ("∞" if number > 0 else "−∞")
     if isinstance(value, int):
         return str(value).replace("-", "−")
-    text = f"{number:.{digits}g}"
+    if number == 0.0:
+        return "0"
+    text = f"{number:#.{digits}g}".removesuffix(".")  # 18.0 beside 18.2: all digits are meant
     if "e" in text:
         mantissa, exponent = text.split("e")
-        text = f"{mantissa}·10{_superscript(int(exponent))}"
+        text = f"{mantissa.removesuffix('.')}·10{_superscript(int(exponent))}"
     return text.replace("-", "−")
 
 
