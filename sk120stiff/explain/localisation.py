@@ -152,7 +152,8 @@ class Localisation:
     suspects
         All that it may go with, the strongest first.
     beside
-        The same for what remains once the strongest has been allowed for; empty without one.
+        The same for what remains once the strongest has been allowed for, shares still of the
+        whole; empty without a strongest one.
     clocked, branched
         Whether the readings tell their order or time, and have both branches.
     """

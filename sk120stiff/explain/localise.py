@@ -202,7 +202,8 @@ def _lineup(look: _Look) -> _Lineup:
 def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion, int]]:
     """Suspects with their places in the line-up, the strongest first.
 
-    `known` (3N, k) is an orthonormal basis of what is in the model already.
+    `known` (3N, k) is an orthonormal basis of what is in the model already. Shares are of what
+    exceeds the noise when nothing is known but the model's own parameters.
     """
     beyond = lineup.white - known @ (known.T @ lineup.white)
     length, left = np.linalg.norm(lineup.white, axis=0), np.linalg.norm(beyond, axis=0)
@@ -216,7 +217,7 @@ def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion,
         rank = basis.shape[1]
         if 0 < rank < freedom:
             T = float(((basis.T @ white) ** 2).sum()) / look.within.scale
-            found.append((_suspicion(suspect, T, rank, total, freedom, look.within), k))
+            found.append((_suspicion(suspect, T, rank, total, freedom, look), k))
     corrected = holm([suspicion.probability for suspicion, _ in found])
     return sorted(
         ((replace(s, probability=p), k) for (s, k), p in zip(found, corrected, strict=True)),
@@ -241,15 +242,17 @@ def _suspicions(look: _Look) -> tuple[tuple[Suspicion, ...], tuple[Suspicion, ..
 
 
 def _suspicion(
-    suspect: Suspect, T: float, rank: int, total: float, freedom: int, within: WithinPoses
+    suspect: Suspect, T: float, rank: int, total: float, freedom: int, look: _Look
 ) -> Suspicion:
     """The statistic with its probability, not yet corrected for the number of looks."""
+    within = look.within
     if within.freedom:
         p = within.tail(T * within.scale, rank)
     else:  # nothing tells the noise but what the suspect itself leaves
         rest = max(total - T, 1e-300) / (freedom - rank)
         p = float(stats.f.sf(T / rank / rest, rank, freedom - rank))
-    excess = max(total - freedom, T - rank, 1e-300)
+    first = float(look.white @ look.white) / within.scale
+    excess = max(first - (len(look.white) - look.inside.shape[1]), T - rank, 1e-300)
     return Suspicion(
         family=suspect.family,
         name=suspect.name,

@@ -128,16 +128,10 @@ def _places(situation: Situation) -> Iterator[Suspect]:
     yield _turning("place", name, situation, base, world[..., 2:])
     yield _pushing("place", "the force that pushes the base", situation, world)
     screws = situation.nominal
+    yield from _drives(situation)
     for joint in arm_joints(robot):
-        axis = screws.axes[:, joint.index]
         at = screws.origins[:, joint.index]
         frames = _frames(situation, joint)
-        if joint.actuated is not None and joint.revolute:
-            name = f"the torque about the axis of {joint.name}"
-            yield _turning("place", name, situation, at, axis[..., None])
-        elif joint.actuated is not None:
-            name = f"the force along the slide {joint.name}"
-            yield _pushing("place", name, situation, axis[..., None])
         tilts = np.stack(joint.tilt_axes(), axis=-1)
         across = _rotation(situation, joint) @ tilts
         name = f"the moment that {joint.name} carries across its axis"
@@ -153,6 +147,21 @@ def _places(situation: Situation) -> Iterator[Suspect]:
     yield _pushing("place", "the force that the tool carries", situation, situation.rotation)
 
 
+def _drives(situation: Situation) -> Iterator[Suspect]:
+    """Drives that yield in proportion to their torque; those with a spring are the model's own."""
+    J = situation.nominal.linear_jacobian
+    load = situation.nominal.at(situation.force_point).torques(situation.wrench)
+    for i, joint in enumerate(situation.robot.actuated):
+        what, unit = _effort(situation, i)
+        columns = (J[:, :, i] * load[:, i, None])[..., None]
+        label = f"{what} of {joint} [{unit}]"
+        yield Suspect("place", f"the {what} of {joint}", columns, load[:, i], label)
+
+
+def _effort(situation: Situation, joint: int) -> tuple[str, str]:
+    return ("force", "N") if situation.robot.prismatic[joint] else ("torque", "N·m")
+
+
 def _laws(situation: Situation) -> Iterator[Suspect]:
     """A drive whose law is not a straight line, or two drives that a linkage ties together."""
     J = situation.nominal.linear_jacobian  # (N, 3, n)
@@ -163,8 +172,8 @@ def _laws(situation: Situation) -> Iterator[Suspect]:
     names = situation.robot.actuated
     for i, joint in enumerate(names):
         tau, push = torque[:, i], J[:, :, i]
-        what = "force" if situation.robot.prismatic[i] else "torque"
-        label = f"{what} of {joint} [{'N' if what == 'force' else 'N·m'}]"
+        what, unit = _effort(situation, i)
+        label = f"{what} of {joint} [{unit}]"
         largest = max(float(np.abs(tau).max(initial=0.0)), 1e-300)
         size = np.linalg.norm(push, axis=1, keepdims=True)
         along = push / np.where(size > 0.0, size, 1.0)
@@ -181,7 +190,8 @@ def _laws(situation: Situation) -> Iterator[Suspect]:
     for i, k in combinations(range(len(names)), 2):
         column = J[:, :, i] * load[:, k, None] + J[:, :, k] * load[:, i, None]
         name = f"the torques of {names[i]} and {names[k]}, each moving the other joint"
-        label = f"torque of {names[i]} [N·m]"
+        what, unit = _effort(situation, i)
+        label = f"{what} of {names[i]} [{unit}]"
         yield Suspect("linkage", name, column[..., None], load[:, i], label)
 
 

@@ -8,6 +8,8 @@ from sk120stiff.explain.localisation import LEVEL, Localisation, Suspicion
 
 CLOSE = 6.0  # evidence by which a suspect must lead, or others are named beside it
 WHOLE = 0.9  # share of the excess that leaves nothing worth a search
+LITTLE = 0.3  # share of the excess below which the strongest suspect is no explanation
+HARDLY = 0.02  # share of the excess that higher orders of the strongest suspect may leave
 WORTH_SAYING = 0.1
 MANY_POSES = 5  # more than this carry no longer a short list
 
@@ -70,6 +72,13 @@ def _strongest(found: Localisation) -> Iterator[str]:
             "axes, instruments, order."
         )
         return
+    if best.explained < LITTLE:
+        yield (
+            f"It goes closely with none of {len(found.suspects)} suspects: the strongest, "
+            f"{best.name}, takes away {_percent(best.explained)} of what exceeds the noise "
+            f"({chance(best.probability)})."
+        )
+        return
     degrees = "degree" if best.freedom == 1 else "degrees"
     yield (
         f"It goes most closely with {best.name}: that takes away {_percent(best.explained)} of "
@@ -85,10 +94,10 @@ def _strongest(found: Localisation) -> Iterator[str]:
         yield f"The next best in its place, {rest[0].name}, takes away {share}."
     yield from _as_place(found, [best, *close, *rest[:1]])
     second = found.beside[0] if found.beside else None
-    if second is not None and second.seen:
+    if second is not None and second.seen and second.explained > HARDLY:
         yield (
-            f"That is not all: what remains goes with {second.name} "
-            f"({_percent(second.explained)} of it)."
+            f"That is not all: what remains goes with {second.name}, which takes away another "
+            f"{_percent(second.explained)}."
         )
     elif best.explained > WHOLE:
         yield "Nothing else is needed beside it."
@@ -123,7 +132,7 @@ def _poses(found: Localisation) -> Iterator[str]:
         lead = f"It shows at {len(ranked)} of {len(found.poses)} poses"
         yield f"{lead}; the worst, {ranked[0].label}, has {worst}."
     elif top == 1:
-        yield f"Pose {ranked[0].label} alone carries {_percent(carried)} of it, with {worst}."
+        yield f"Pose {ranked[0].label} alone carries {_percent(min(carried, 1.0))} of it, with {worst}."
     else:
         named = _listed([pose.label for pose in ranked[:top]])
         yield (
@@ -141,7 +150,11 @@ def _loads(found: Localisation) -> Iterator[str]:
             f"{how}: {_um(low.rms)} rms at loads up to {low.high:.0f} N, {_um(high.rms)} from "
             f"{high.low:.0f} N on."
         )
-    seen = {o.name: o for o in found.orders if o.probability is not None and o.probability < LEVEL}
+    tested = {o.name: o for o in found.orders if o.probability is not None}
+    seen = {name: o for name, o in tested.items() if (o.probability or 0.0) < LEVEL}
+    if "linear" in seen and set(tested) == {"linear"}:
+        yield "No pose has readings enough to tell what is linear in the load from what is not."
+        return
     if "linear" in seen:
         line = f"Within a pose {_percent(seen['linear'].share)} of it is in proportion to the load"
         others = [o for o in (seen.get("constant"), seen.get("curved")) if o is not None]

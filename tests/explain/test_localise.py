@@ -1,0 +1,210 @@
+"""Where the gap lives: right place, right words, no false alarm, on data of the other generator."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from sk120stiff.explain import Localisation, localise, where_sentences
+from sk120stiff.explain.localise import holm
+from sk120stiff.measurements import Measurements, NoiseModel
+from tests.explain.readings import SIGMA, base_fit, hidden
+from tests.hidden.generator.causes_elastic import BaseRocking, ClosureCoupling, JointTilt
+from tests.hidden.generator.causes_joint import FrictionHysteresis, GearHardening, LostMotion
+from tests.hidden.generator.causes_sensor import ForceScale, ReadingDrift, ReadingRotation
+from tests.hidden.generator.world import Cause
+
+SHOULDER = "joint_2_l"
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What must be said of a cause: any of some suspects, and words of the sentences."""
+
+    cause: Cause
+    strongest: tuple[str, ...]
+    words: tuple[str, ...] = ()
+    schedule: str = "scattered"
+
+
+CASES = {
+    "rocking base": Expected(
+        BaseRocking("base_link", {"x": 2e-7, "y": 2e-7}),
+        ("the moment that tips the base", "the moment that joint_1_s carries across its axis"),
+        ("in proportion to the load, as with anything that yields",),
+        "ascending",
+    ),
+    "tilting shoulder": Expected(
+        JointTilt(SHOULDER, {"first": 4e-7, "second": 4e-7}),
+        ("the moment that joint_2_l carries across its axis",),
+        ("sideways, out of the arm's plane", "does not go with the order of the readings"),
+        "ascending",
+    ),
+    "stiffening gear": Expected(
+        GearHardening("joint_1_s", {"cubic": 0.8}, {"T": 700.0}),
+        ("the torque of joint_1_s, not in proportion to it",),
+        ("sideways, out of the arm's plane", "which no plain spring makes"),
+        "ascending",
+    ),
+    "play": Expected(
+        LostMotion(SHOULDER, {"half_width": 1.5e-4}),
+        ("the sign of the torque of joint_2_l",),
+    ),
+    "friction": Expected(
+        FrictionHysteresis("joint_1_s", {"half_width": 6e-5}),
+        ("loading or unloading of joint_1_s",),
+        (),
+        "up_down",
+    ),
+    "turned tracker": Expected(
+        ReadingRotation("tracker", {"x": 0.01, "y": -0.02, "z": 0.02}),
+        ("a misread displacement in reading axes",),
+    ),
+    "misread force": Expected(
+        ForceScale("sensor", {"x": 0.08, "y": -0.06, "z": 0.0}),
+        ("a misread load in tool axes",),
+    ),
+    "drift": Expected(
+        ReadingDrift("tracker", {"x": 8e-6, "y": -6e-6, "z": 9e-6}),
+        ("the order of the readings",),
+    ),
+    "linkage": Expected(
+        ClosureCoupling("joint_2_l,joint_3_u", {"compliance": 1e-7}),
+        ("the torques of joint_2_l and joint_3_u, each moving the other joint",),
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request: pytest.FixtureRequest) -> tuple[Expected, Localisation, Measurements]:
+    expected = CASES[request.param]
+    readings = hidden(expected.cause, schedule=expected.schedule)
+    return expected, localise(base_fit(readings)), readings
+
+
+def test_the_strongest_suspect_is_the_cause(case) -> None:
+    expected, found, _ = case
+    assert found.real
+    assert found.strongest is not None
+    assert found.strongest.name in expected.strongest
+    assert found.strongest.explained > 0.85
+    assert found.probability is not None and found.probability < 1e-6
+
+
+def test_sentences_name_it_with_numbers(case) -> None:
+    expected, found, _ = case
+    sentences = where_sentences(found)
+    text = " ".join(sentences)
+    assert f"The base model misses the readings by {1e6 * found.rms:#.3g} µm" in text
+    assert any(name in text for name in expected.strongest)
+    for words in expected.words:
+        assert words in text
+    assert all(sentence.endswith(".") and not sentence[0].islower() for sentence in sentences)
+
+
+def test_nothing_is_left_once_the_strongest_is_known(case) -> None:
+    _, found, _ = case
+    assert found.beside
+    assert found.beside[0].explained < 0.06
+
+
+def test_what_is_drawn_belongs_to_the_readings(case) -> None:
+    _, found, readings = case
+    drawn = [s for s in found.suspects if s.partial.size]
+    assert 1 <= len(drawn) <= 8
+    assert drawn[0] is found.strongest
+    for suspicion in drawn:
+        assert suspicion.abscissa.shape == suspicion.partial.shape == (readings.n_readings,)
+        assert np.isfinite(suspicion.partial).all()
+
+
+def test_shares_add_up(case) -> None:
+    _, found, readings = case
+    assert sum(pose.share for pose in found.poses) == pytest.approx(1.0)
+    assert {pose.label for pose in found.poses} == set(readings.poses)
+    assert sum(level.count for level in found.levels) == readings.n_readings
+    for axes in ("world", "arm plane", "forearm", "tool"):
+        assert sum(d.share for d in found.directions if d.axes == axes) == pytest.approx(1.0)
+    squares = sum(level.count * level.rms**2 for level in found.levels)
+    assert squares / readings.n_readings == pytest.approx(found.rms**2)
+
+
+def test_clean_readings_raise_no_alarm() -> None:
+    real = [localise(base_fit(hidden(seed=100 + k))).real for k in range(12)]
+    assert sum(real) <= 1  # two tests at one per cent each
+    text = " ".join(where_sentences(localise(base_fit(hidden(seed=100)))))
+    assert "no more than noise" in text
+    assert "Nothing stands out" in text
+
+
+def test_probabilities_of_clean_readings_are_those_of_chance() -> None:
+    found = [localise(base_fit(hidden(seed=200 + k, poses=8))) for k in range(25)]
+    total = [1.0 if f.probability is None else f.probability for f in found]
+    assert stats.kstest(total, "uniform", alternative="greater").pvalue > 1e-3
+    first = [f.suspects[0].probability for f in found]
+    assert np.mean(np.array(first) < 0.05) < 0.25
+
+
+def test_noise_is_found_where_it_is_not_stated() -> None:
+    cause = JointTilt(SHOULDER, {"first": 4e-7, "second": 4e-7})
+    stated = localise(base_fit(hidden(cause)))
+    found = localise(base_fit(hidden(cause, stated=False), noise=None))
+    assert (stated.noise_from, found.noise_from) == ("stated", "scatter")
+    assert found.noise == pytest.approx(np.sqrt(2.0) * SIGMA, rel=0.15)
+    assert found.strongest is not None
+    assert "as found from the scatter within poses" in where_sentences(found)[0]
+
+
+def test_few_readings_do_not_tell_the_noise() -> None:
+    readings = hidden(poses=3, loads=2, stated=False)
+    found = localise(base_fit(readings, noise=None))
+    assert found.noise_from == "gap"
+    assert found.probability is None
+    assert "Nothing tells how large the noise is" in where_sentences(found)[0]
+
+
+def test_a_single_bad_pose_is_pointed_at() -> None:
+    readings = hidden(schedule="ascending")
+    assert readings.displacement is not None
+    shifted = readings.displacement.copy()
+    shifted[[pose == "5" for pose in readings.pose]] += [1.5e-4, 0.0, 0.0]
+    found = localise(base_fit(replace(readings, displacement=shifted)))
+    worst = max(found.poses, key=lambda pose: pose.share)
+    assert worst.label == "5" and worst.share > 0.5
+    text = " ".join(where_sentences(found))
+    assert "Pose 5 alone carries" in text
+    assert "is constant" in text
+    assert "It goes closely with none" in text
+
+
+def test_twice_the_stated_noise_is_a_gap_that_goes_with_nothing() -> None:
+    found = localise(base_fit(hidden(), NoiseModel(SIGMA / 2.0, zero="shared")))
+    assert found.real
+    assert "2.0 times what the noise alone makes" in where_sentences(found)[0]
+    assert max(s.explained for s in found.suspects) < 0.2
+
+
+def test_two_causes_are_told_one_after_the_other() -> None:
+    causes = (
+        BaseRocking("base_link", {"x": 4e-8, "y": 2e-7}),
+        LostMotion("joint_3_u", {"half_width": 1e-4}),
+    )
+    found = localise(base_fit(hidden(*causes)))
+    named = {found.suspects[0].name, found.beside[0].name}
+    assert named == {
+        "the moment that tips the base",
+        "the sign of the torque of joint_3_u",
+    }
+    assert "That is not all" in " ".join(where_sentences(found))
+
+
+def test_readings_that_cannot_tell_the_order_in_the_load_do_not_claim_it() -> None:
+    found = localise(base_fit(hidden(CASES["tilting shoulder"].cause, loads=4)))
+    assert {o.name for o in found.orders if o.probability is not None} == {"linear"}
+    assert "No pose has readings enough" in " ".join(where_sentences(found))
+
+
+def test_holm() -> None:
+    assert holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
+    assert holm([0.5, 0.9]) == pytest.approx([1.0, 1.0])
