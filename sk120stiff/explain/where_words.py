@@ -132,7 +132,8 @@ def _poses(found: Localisation) -> Iterator[str]:
         lead = f"It shows at {len(ranked)} of {len(found.poses)} poses"
         yield f"{lead}; the worst, {ranked[0].label}, has {worst}."
     elif top == 1:
-        yield f"Pose {ranked[0].label} alone carries {_percent(min(carried, 1.0))} of it, with {worst}."
+        share = _percent(min(carried, 1.0))
+        yield f"Pose {ranked[0].label} alone carries {share} of it, with {worst}."
     else:
         named = _listed([pose.label for pose in ranked[:top]])
         yield (
