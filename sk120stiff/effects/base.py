@@ -339,7 +339,8 @@ class Misreading(Effect):
 
     def columns(self, x: Array, situation: Situation) -> Array:
         """(N, d, P) derivative of the output by the parameters, for inputs x (N, d)."""
-        return np.einsum("pij,nj->nip", self.generators, x) + self.offsets(situation)
+        proportional = np.einsum("pij,nj->nip", self.generators, x)
+        return np.asarray(proportional + self.offsets(situation))
 
     def matrix(self, values: Array) -> Array:
         """(d, d) derivative of the output by the input."""

@@ -185,4 +185,4 @@ def _since_zero(clock: Array | None, zero: Array | None, group: NDArray[np.int64
     first = {int(g): float(clock[group == g].min()) - interval for g in np.unique(group)}
     assumed = np.array([first[int(g)] for g in group])
     known = assumed if zero is None else np.where(np.isfinite(zero), zero, assumed)
-    return clock - known
+    return np.asarray(clock - known)

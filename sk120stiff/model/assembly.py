@@ -159,9 +159,7 @@ class Assembly:
         found = [index for _, part, index in self._elastic if values[part].any()]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.intp)
 
-    def _law(
-        self, situation: Situation, values: Array, onset: Array
-    ) -> tuple[ElasticLaw, Array]:
+    def _law(self, situation: Situation, values: Array, onset: Array) -> tuple[ElasticLaw, Array]:
         """Elongation of all coordinates under the load, and the compliance of what is linear.
 
         What does not change with the coordinates is evaluated only once.
@@ -289,7 +287,7 @@ class Solution:
     def displacement(self) -> Array:
         """(N, 3) predicted readings in the axes of the measurements [m]."""
         axes = np.swapaxes(self.situation.reading_axes, -1, -2)
-        return np.einsum("nij,nj->ni", axes, self.readings.value)
+        return np.asarray(np.einsum("nij,nj->ni", axes, self.readings.value))
 
 
 def _misread(

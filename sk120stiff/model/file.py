@@ -69,7 +69,7 @@ def model_text(model: Model) -> str:
         ],
         "provenance": dict(model.provenance),
     }
-    return yaml.safe_dump(document, sort_keys=False, allow_unicode=True, width=100)
+    return str(yaml.safe_dump(document, sort_keys=False, allow_unicode=True, width=100))
 
 
 def write_model(model: Model, path: str | os.PathLike[str]) -> Path:

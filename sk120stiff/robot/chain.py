@@ -121,12 +121,12 @@ class Chain:
                 coordinates.append(int(self.coordinates[body]))
                 masses.append(float(self.masses[body]))
                 centres.append(self.centres[body])
-            back = np.eye(4)
+            back: Array = np.eye(4)
             for k, joint in enumerate(virtual):
                 if joint.body != body:
                     continue
                 placements.append(back @ joint.placement)
-                back = np.linalg.inv(joint.placement)
+                back = np.asarray(np.linalg.inv(joint.placement), dtype=float)
                 names.append(joint.name)
                 axes.append(joint.axis)
                 revolute.append(joint.revolute)

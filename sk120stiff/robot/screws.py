@@ -48,7 +48,8 @@ class Screws:
     @cached_property
     def position(self) -> Array:
         """(..., 3) position of the point in the base frame [m]."""
-        return self.frame_position + np.einsum("...ij,...j->...i", self.rotation, self.point)
+        turned = np.einsum("...ij,...j->...i", self.rotation, self.point)
+        return np.asarray(self.frame_position + turned)
 
     @cached_property
     def angular(self) -> Array:
@@ -74,12 +75,12 @@ class Screws:
     @cached_property
     def linear_jacobian(self) -> Array:
         """(..., 3, n) the upper half of `jacobian`, without computing the lower one."""
-        return np.swapaxes(self.linear, -1, -2) @ self.first
+        return np.asarray(np.swapaxes(self.linear, -1, -2) @ self.first)
 
     def joint_torques(self, wrench: Array) -> Array:
         """(..., m) torque of a wrench (..., 6) about every chain joint, Jᵀ W [N·m or N]."""
         force, moment = wrench[..., None, :3], wrench[..., None, 3:]
-        return (self.linear * force).sum(-1) + (self.angular * moment).sum(-1)
+        return np.asarray((self.linear * force).sum(-1) + (self.angular * moment).sum(-1))
 
     def torques(self, wrench: Array) -> Array:
         """(..., n) generalised forces of a wrench (..., 6) on the coordinates [N·m or N]."""

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot.chain import Chain
@@ -51,12 +52,12 @@ class Tree:
     @cached_property
     def axes(self) -> Array:
         """(m, 3) unit joint axes in the joint frames."""
-        return self._local_twists[:, :3] + self._local_twists[:, 3:]
+        return np.asarray(self._local_twists[:, :3] + self._local_twists[:, 3:])
 
     @cached_property
-    def revolute(self) -> np.ndarray:
+    def revolute(self) -> NDArray[np.bool_]:
         """(m,) true where the joint turns."""
-        return np.linalg.norm(self._local_twists[:, 3:], axis=1) > 0.5
+        return np.asarray(np.linalg.norm(self._local_twists[:, 3:], axis=1) > 0.5)
 
     @cached_property
     def _local_twists(self) -> Array:
