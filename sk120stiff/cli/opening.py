@@ -123,6 +123,6 @@ def provenance(path: Path, data: Measurements) -> dict[str, str]:
         "command": " ".join(["sk120stiff", *(shlex.quote(word) for word in sys.argv[1:])]),
         "data": str(path),
         "data_hash": f"sha256:{data.data_hash}",
-        "version": __version__,
+        "version": str(__version__),
         "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
     }

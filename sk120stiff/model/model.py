@@ -232,9 +232,7 @@ class Model:
 
         Instruments have no say here: the model's load and reading errors are left out.
         """
-        situation = situation_of_load(
-            self.robot, a, wrench, point=point, force_point=force_point
-        )
+        situation = situation_of_load(self.robot, a, wrench, point=point, force_point=force_point)
         return self.physical().predict(situation)
 
     def physical(self) -> Model:
@@ -266,13 +264,15 @@ def joint_spring_model(robot: Robot, stiffness: ArrayLike | None = None) -> Mode
         (n,) [N·m/rad or N/m]; an infinite one is left out. Default: all joints, at a stiffness that
         is typical of large arms and only a start for identification.
     """
-    from sk120stiff.effects import effect  # noqa: PLC0415
+    from sk120stiff.effects import effect
 
     model = Model(robot)
     for k, joint in enumerate(robot.actuated):
         spring = effect(robot, "joint_springs", joint)
         spec = spring.parameters[0]
-        value = spec.typical if stiffness is None else spec.internal(float(np.asarray(stiffness)[k]))
+        value = (
+            spec.typical if stiffness is None else spec.internal(float(np.asarray(stiffness)[k]))
+        )
         if value != 0.0:
             origin = "starting value" if stiffness is None else "given"
             model = model + [Parameter(spring, spec, value, origin=origin)]
