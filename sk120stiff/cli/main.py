@@ -17,13 +17,14 @@ PROGRAM = "sk120stiff"
 # opens with the same line; the file is imported when the command is called, not before.
 COMMANDS = {
     "check": "Does a robot load, what moves, what is suspicious.",
-    "stiffness": "How stiff the arm is: here, in this direction, under this load.",
+    "stiffness": "How stiff the arm is: here, this way, under this load.",
     "identify": "Spring values and their uncertainty from measured deflections.",
     "predict": "Predicted displacement of every reading, and the gap to it.",
     "explain": "What is missing when simulation and measurement disagree.",
     "plan": "The poses and loads to measure next.",
-    "simulate": "Synthetic measurements from a model: load steps, noise, zero readings.",
-    "map": "Stiffness over the workspace: minimum, maximum, directions, stability under loads.",
+    "simulate": "Synthetic measurements from a model: loads, noise, zeros.",
+    "compensate": "Joint commands that cancel the deflection along a loaded path.",
+    "map": "Stiffness over the workspace: extremes, directions, stability.",
     "paper": "The 2005 paper's tables, figures, claims: ours beside theirs.",
     "view": "The robot, its ellipsoids and its gaps, live in the browser.",
     "demo": "The main job on the paper's measured data, with a report.",

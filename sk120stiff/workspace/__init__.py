@@ -1,11 +1,13 @@
 """Stiffness over the workspace: maps, the best posture, deflections compensated, exports."""
 
 from sk120stiff.workspace.arm import ElasticArm, elastic_arm
+from sk120stiff.workspace.compensate import Compensation, Standing, compensate, standing
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
 from sk120stiff.workspace.finished import LoadSummary, MapCheck, open_map, summarise_map, verify_map
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
 from sk120stiff.workspace.mapping import MapReport, write_map
+from sk120stiff.workspace.path import LoadedPath, joints_along, read_path, write_joints
 from sk120stiff.workspace.posture import (
     BestPosture,
     PathTask,
@@ -18,10 +20,12 @@ __all__ = [
     "STATUS",
     "Axis",
     "BestPosture",
+    "Compensation",
     "ElasticArm",
     "Grid",
     "JointGrid",
     "LoadSummary",
+    "LoadedPath",
     "MapCheck",
     "MapJob",
     "MapReport",
@@ -29,15 +33,21 @@ __all__ = [
     "Placement",
     "PositionGrid",
     "Reached",
+    "Standing",
     "Task",
     "best_posture",
+    "compensate",
     "elastic_arm",
+    "joints_along",
     "open_map",
     "parse_axes",
     "path_points",
+    "read_path",
     "solve_inverse",
+    "standing",
     "starting_poses",
     "summarise_map",
     "verify_map",
+    "write_joints",
     "write_map",
 ]

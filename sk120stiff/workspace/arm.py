@@ -162,7 +162,7 @@ def elastic_arm(
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     if at.shape != (3,) or not np.isfinite(at).all():
         raise InputError("the point is not three finite numbers", remedy="Give x, y, z in metres.")
-    physical, at = _seen_from(model.physical(), frame or model.robot.tool_frame, at)
+    physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
     robot = physical.robot
     lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
     upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
@@ -217,7 +217,7 @@ def _compliances(physical: Model, poses: Array) -> tuple[Array, Array, Array]:
     return of(physical), of(linear), start
 
 
-def _seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
+def seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
     """The model of the arm up to a frame, and a point of the frame in that arm's tool frame."""
     robot = model.robot
     rest = np.zeros(robot.n)

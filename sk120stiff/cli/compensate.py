@@ -1,0 +1,173 @@
+"""`sk120stiff compensate MODEL PATH --out CSV`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.options import AtOption, ModelArgument
+from sk120stiff.cli.tables import table
+from sk120stiff.errors import InputError
+from sk120stiff.model import Model, joint_spring_model, read_model
+from sk120stiff.robot.coupling import Array
+from sk120stiff.workspace import (
+    Compensation,
+    LoadedPath,
+    Standing,
+    compensate,
+    elastic_arm,
+    joints_along,
+    read_path,
+    standing,
+    write_joints,
+)
+
+LISTED = 10  # points that people are shown
+
+
+def command(
+    model: ModelArgument,
+    path: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PATH",
+            help="A CSV file of points: joints (joint_1_s[deg], …) or the tool's placement (x[mm], "
+            "y, z, roll[deg], pitch, yaw), and the wrench on the robot (fx[N], fy, fz, mx[N*m], "
+            "my, mz), base axes.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="CSV", help="Where to write the corrected path.")
+    ],
+    at: AtOption = None,
+    orientation: Annotated[
+        bool, typer.Option("--orientation", help="Restore the tool's orientation too.")
+    ] = False,
+    only: Annotated[
+        str | None,
+        typer.Option(
+            metavar="JOINTS",
+            help="Joints that may be corrected, separated by commas.",
+            show_default="all",
+        ),
+    ] = None,
+    against: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MODEL",
+            help="Judge the corrected path by this model instead: what a wrong model costs.",
+            show_default="the model that corrects",
+        ),
+    ] = None,
+) -> Answer:
+    """Joint commands that cancel the deflection along a loaded path.
+
+    The loaded tool then stands, at exact equilibrium, where the unloaded nominal robot would have
+    stood. Weight and wrong geometry that the model knows are corrected too. Says what remains and
+    why.
+
+    Example: sk120stiff compensate model.yaml path.csv --out corrected.csv
+    """
+    believed = read_model(model)
+    robot = believed.robot
+    movable = None if only is None else _movable(believed, only)
+    given = read_path(path, robot)
+    nominal = joints_along(given, elastic_arm(joint_spring_model(robot), frame=at))
+    found = compensate(
+        believed,
+        nominal,
+        given.wrench,
+        frame=at,
+        orientation=orientation,
+        movable=movable,
+    )
+    after = found.after
+    if against is not None:
+        truth = read_model(against, robot)
+        after = standing(truth, found.a, nominal, given.wrench, frame=at)
+        before = standing(truth, nominal, nominal, given.wrench, frame=at)
+        found = Compensation(found.a, before, after, found.reasons)
+    write_joints(out, given, robot, found.a, _notes(found))
+    document = {
+        "robot": robot.name,
+        "rows": given.count,
+        "before_um": _rms(found.before) * 1e6,
+        "after_um": _rms(after) * 1e6,
+        "before_max_um": _largest(found.before.distance) * 1e6,
+        "after_max_um": _largest(after.distance) * 1e6,
+        "before_max_urad": _largest(np.linalg.norm(found.before.turned, axis=1)) * 1e6,
+        "after_max_urad": _largest(np.linalg.norm(after.turned, axis=1)) * 1e6,
+        "largest_correction": np.abs(found.a - nominal).max(axis=0, initial=0.0),
+        "joints": robot.actuated,
+        "remaining": [
+            {"line": given.table.lines[k], "reason": reason, "after_um": after.distance[k] * 1e6}
+            for k, reason in enumerate(found.reasons)
+            if reason
+        ],
+        "judged_by": str(against or model),
+        "out": str(out),
+    }
+    held = bool(found.before.exists.any())
+    return Answer(document, parts=_parts(document, given, found), exit_code=0 if held else 1)
+
+
+def _movable(model: Model, text: str) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    unknown = [name for name in names if name not in model.robot.actuated]
+    if unknown or not names:
+        raise InputError(
+            f"{unknown[0]!r} is no actuated joint" if unknown else "no joint is named",
+            where="--only",
+            remedy=f"Joints are: {', '.join(model.robot.actuated)}.",
+        )
+    return np.array([joint in names for joint in model.robot.actuated])
+
+
+def _rms(where: Standing) -> float:
+    """Over the points that have an equilibrium [m]; NaN if none has."""
+    distances = where.distance[where.exists]
+    return float(np.sqrt(np.mean(distances**2))) if len(distances) else float("nan")
+
+
+def _largest(values: Array) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.max()) if len(finite) else float("nan")
+
+
+def _notes(found: Compensation) -> dict[str, list[str]]:
+    def micrometres(where: Standing) -> list[str]:
+        return ["" if np.isnan(d) else f"{d * 1e6:.4f}" for d in where.distance]
+
+    return {
+        "before[um]": micrometres(found.before),
+        "after[um]": micrometres(found.after),
+        "remark": list(found.reasons),
+    }
+
+
+def _parts(document: dict[str, object], path: LoadedPath, found: Compensation) -> list[object]:
+    parts: list[object] = [
+        f"{document['rows']} points. Off its place before: {document['before_um']:.1f} µm rms, "
+        f"{document['before_max_um']:.1f} at most; after: {document['after_um']:.3g} µm rms, "
+        f"{document['after_max_um']:.3g} at most (judged by {document['judged_by']}).",
+        f"Written: {document['out']}",
+    ]
+    left = [k for k, reason in enumerate(found.reasons) if reason]
+    if left:
+        rows = [
+            (
+                str(path.table.lines[k]),
+                found.before.distance[k] * 1e6,
+                found.after.distance[k] * 1e6,
+                found.reasons[k],
+            )
+            for k in left[:LISTED]
+        ]
+        title = f"Not fully corrected: {len(left)} of {path.count} points"
+        parts.append(table(title, ("line", "before [µm]", "after [µm]", "why"), rows))
+    return parts

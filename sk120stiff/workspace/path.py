@@ -1,0 +1,197 @@
+"""A path under load as a CSV file: joints or positions, and the wrench at each point.
+
+::
+
+    point,joint_1_s[deg],joint_2_l[deg],…,fx[N],fy[N],fz[N]          joints
+    point,x[mm],y[mm],z[mm],roll[deg],pitch[deg],yaw[deg],fx[N],…    placement of the tool
+
+``point`` is any label. Moments ``mx my mz`` are optional, and so is the orientation: without it
+only the position is meant. Everything is in base axes; roll, pitch and yaw are as in a URDF.
+Further columns are kept as they are.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff.errors import InputError, Refusal
+from sk120stiff.files import write_atomically
+from sk120stiff.measurements.table import Table, read_table
+from sk120stiff.robot import Robot
+from sk120stiff.robot.coupling import Array
+from sk120stiff.units import from_si
+from sk120stiff.workspace.arm import ElasticArm
+from sk120stiff.workspace.inverse import Task, rotation_of, solve_inverse, starting_poses
+
+FORCES, MOMENTS = ("fx", "fy", "fz"), ("mx", "my", "mz")
+POSITIONS, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
+STARTS = 32  # poses from which the first point of a path is sought
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedPath:
+    """N points with the wrench that acts there.
+
+    Attributes
+    ----------
+    wrench
+        (N, 6) on the robot, base axes [N, N·m].
+    joints
+        (N, n) joint coordinates, where the file gives them [rad or m].
+    position, rotation
+        (N, 3) and (N, 3, 3) of the tool, where the file gives them [m].
+    table
+        The file.
+    """
+
+    wrench: Array
+    joints: Array | None
+    position: Array | None
+    rotation: Array | None
+    table: Table
+
+    @property
+    def count(self) -> int:
+        """Number of points N."""
+        return len(self.wrench)
+
+
+def read_path(path: str | os.PathLike[str], robot: Robot) -> LoadedPath:
+    """Read a path.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or columns are missing, doubled or without unit.
+    """
+    table = read_table(Path(path))
+    has = set(table.headers)
+    missing = [name for name in FORCES if name not in has]
+    if missing:
+        raise InputError(
+            f"the column {missing[0]!r} is missing",
+            where=table.place(missing[0]),
+            remedy="Give the force on the robot as fx[N], fy[N], fz[N]; zeros where nothing acts.",
+        )
+    by_joint = [name for name in robot.actuated if name in has]
+    by_place = [name for name in POSITIONS if name in has and name not in robot.actuated]
+    if bool(by_joint) == bool(by_place):
+        raise InputError(
+            "the path is given by joints and by positions"
+            if by_joint
+            else "the path has no points",
+            where=str(table.path),
+            remedy=f"Give the columns {', '.join(f'{j}[deg]' for j in robot.actuated)}, or x[mm], "
+            "y[mm], z[mm].",
+        )
+    moments = np.zeros((len(table.lines), 3))
+    if has & set(MOMENTS):
+        moments = _columns(table, MOMENTS, "moment")
+    wrench = np.column_stack([_columns(table, FORCES, "force"), moments])
+    if by_joint:
+        kinds = ["length" if slides else "angle" for slides in robot.prismatic]
+        joints = np.column_stack(
+            [_column(table, name, kind) for name, kind in zip(robot.actuated, kinds, strict=True)]
+        )
+        return LoadedPath(wrench, joints, None, None, table)
+    rotation = None
+    if has & set(ANGLES):
+        rotation = np.array([rotation_of(*row) for row in _columns(table, ANGLES, "angle")])
+    return LoadedPath(wrench, None, _columns(table, POSITIONS, "length"), rotation, table)
+
+
+def joints_along(path: LoadedPath, arm: ElasticArm, start: Array | None = None) -> Array:
+    """(N, n) joint coordinates of a path, found by inverse kinematics where it gives positions.
+
+    The first point is sought from `start` and then from poses all over the joints' ranges; every
+    further one from the point before it, so the arm stays in one branch.
+
+    Raises
+    ------
+    Refusal
+        A point cannot be reached; its line is named.
+    """
+    if path.joints is not None:
+        return path.joints
+    if path.position is None:
+        raise ValueError("a path has joints or positions")
+    task = Task(path.position, rotation=path.rotation)
+    rest = np.zeros(arm.n) if start is None else start
+    first = starting_poses(arm, STARTS, np.clip(rest, arm.lower, arm.upper))
+    found: Array | None = None
+    joints = np.empty((path.count, arm.n))
+    for point in range(path.count):
+        here = task.rows(np.array([point]))
+        tries = first if found is None else found[None]
+        for each in tries:
+            reached = solve_inverse(arm, here, each[None])
+            if reached.found[0]:
+                found = reached.a[0]
+                break
+        else:
+            raise Refusal(
+                "the arm cannot reach this point" + (" from the one before it" if point else ""),
+                where=f"{path.table.path}, line {path.table.lines[point]}",
+                remedy="Look at what can be reached with 'sk120stiff map', or give the path by "
+                "joints.",
+            )
+        joints[point] = found
+    return joints
+
+
+def write_joints(
+    target: str | os.PathLike[str],
+    path: LoadedPath,
+    robot: Robot,
+    joints: Array,
+    notes: Mapping[str, list[str]],
+) -> Path:
+    """Write a path with other joint coordinates, in the units of the file it was read from.
+
+    Parameters
+    ----------
+    notes
+        Further columns as text, header → N cells; they replace columns of that name.
+    """
+    table = path.table
+    columns: dict[str, list[str]] = {}
+    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
+    for k, (name, kind) in enumerate(zip(robot.actuated, kinds, strict=True)):
+        unit = table.column_units.get(name) or ("deg" if kind == "angle" else "mm")
+        values = np.asarray(from_si(joints[:, k], unit, kind))
+        columns[f"{name}[{unit}]"] = [f"{value:.10g}" for value in values]
+    kept = {
+        table.headers[name]: list(cells)
+        for name, cells in table.cells.items()
+        if name not in robot.actuated and table.headers[name] not in notes
+    }
+    order = list(kept)
+    # labels first, then joints, then what the file has besides, then the notes
+    labels = [header for header in order if header == "point"]
+    merged = {**{header: kept.pop(header) for header in labels}, **columns, **kept, **notes}
+    rows = [",".join(_cell(text) for text in row) for row in zip(*merged.values(), strict=True)]
+    text = "\n".join([",".join(_cell(header) for header in merged), *rows]) + "\n"
+    return write_atomically(target, text)
+
+
+def _cell(text: str) -> str:
+    return f'"{text.replace(chr(34), chr(34) * 2)}"' if set(text) & set(',"\n') else text
+
+
+def _columns(table: Table, names: tuple[str, ...], kind: str) -> Array:
+    return np.column_stack([_column(table, name, kind) for name in names])
+
+
+def _column(table: Table, name: str, kind: str) -> Array:
+    if name not in table.headers:
+        raise InputError(
+            f"the column {name!r} is missing",
+            where=str(table.path),
+            remedy=f"There are: {', '.join(table.headers.values())}.",
+        )
+    return table.quantity(name, kind)
