@@ -9,7 +9,10 @@ from sk120stiff.robot.checks import CheckReport, check_robot
 
 
 def command(robot: RobotArgument, base: BaseOption = None, tool: ToolOption = None) -> Answer:
-    """Does a robot load, what moves, what is suspicious."""
+    """Does a robot load, what moves, what is suspicious.
+
+    Example: sk120stiff check motoman_sk120
+    """
     report = check_robot(robot, base=base, tool=tool)
     document = {
         "name": report.name,

@@ -104,7 +104,7 @@ def command(
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
-    """Stiffness over the workspace: minimum, maximum, directions, stability under loads.
+    """Stiffness over the workspace: extremes, directions, stability.
 
     The map is a Zarr store with units and labels. A run that was stopped in whatever way goes on
     where it was when the same command is given again. A finished map is checked against the

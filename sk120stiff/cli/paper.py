@@ -29,6 +29,8 @@ def command(out: OutFolderOption = None) -> Answer:
     """The 2005 paper's tables, figures, claims: ours beside theirs.
 
     With --out DIR: report.html, every figure as SVG and PNG, every table as CSV.
+
+    Example: sk120stiff paper --out paper
     """
     if out is not None:
         _check_writable(out)

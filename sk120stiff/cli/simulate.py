@@ -77,7 +77,7 @@ def command(
     ] = False,
     seed: SeedOption = 0,
 ) -> Answer:
-    """Synthetic measurements from a model: load steps, noise, zero readings.
+    """Synthetic measurements from a model: loads, noise, zeros.
 
     Example: sk120stiff simulate model.yaml plan.csv --noise '10 um' --out readings.csv
     """

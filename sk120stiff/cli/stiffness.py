@@ -44,10 +44,12 @@ def command(
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
-    """How stiff the arm is: here, in this direction, under this load.
+    """How stiff the arm is: here, this way, under this load.
 
     Prints the Cartesian stiffness with and without the load's own contribution (K_C), the softest
     and stiffest directions, whether the arm is stable, and how far the load bends it.
+
+    Example: sk120stiff stiffness motoman_sk120 --pose 'joint_2_l=20 deg' --wrench '0,0,-490 N'
     """
     arm = open_robot(robot, base, tool)
     a, load = pose_of(arm, pose), wrench_of(wrench)

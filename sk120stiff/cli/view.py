@@ -85,6 +85,8 @@ def command(
 
     Opens a page on this machine and runs until it is interrupted (Ctrl-C). The page has a slider
     for every motor and for the load. With --static it writes the page as a file and ends.
+
+    Example: sk120stiff view motoman_sk120 --wrench '0,0,-490 N' --static scene.html
     """
     measured = None if data is None else _read(data)
     if measured is not None:  # the frames that the readings are about

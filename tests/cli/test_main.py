@@ -26,7 +26,9 @@ HEAVY = {
     "xarray",
     "yaml",
 }
-INFRASTRUCTURE = {"__init__", "document", "frame", "main", "opening", "options", "tables"}
+INFRASTRUCTURE = {
+    "__init__", "document", "explain_output", "frame", "main", "opening", "options", "tables",
+}  # fmt: skip
 
 
 def test_every_command_is_listed_and_every_listed_command_exists() -> None:
@@ -55,6 +57,7 @@ def test_every_command_has_help_json_and_debug(run, name: str) -> None:
     assert outcome.code == 0
     assert "--json" in outcome.stdout
     assert "--debug" in outcome.stdout
+    assert f"Example: sk120stiff {name}" in outcome.stdout
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["--version"], []])
