@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 import warnings
 from dataclasses import replace
 from functools import cache
@@ -14,7 +15,9 @@ from sk120stiff.effects import Effect, Situation, all_effects, situation_of_load
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.robot import Robot, load_robot
+from sk120stiff.robot.anatomy import sample_poses
 from tests.oracles.sample_urdfs import six_axis_arm
+from tests.robot.loop_arms import four_bar, sk120_loop
 
 Array = NDArray[np.float64]
 FOLDER = Path(__file__).resolve().parents[1] / "hidden" / "robots"
@@ -58,12 +61,16 @@ def arm(name: str) -> Robot:
     if name == "six_axis":
         with warnings.catch_warnings(action="ignore", category=ToolkitWarning):
             return load_robot(six_axis_arm(5), base="base", tool="tool")  # axes of any length
+    if name in ("loop", "four_bar"):
+        folder = Path(tempfile.mkdtemp(prefix="sk120stiff_"))
+        return sk120_loop(folder) if name == "loop" else four_bar(folder)
     if name == "telescope":
         return load_robot(FOLDER / "telescope.urdf", base="floor", tool="plate")
     return load_robot(scara(), base="base", tool="tool")
 
 
 ARMS = ("sk120", "six_axis", "telescope", "scara")
+LOOPED = ("loop", "four_bar")
 
 
 def every_effect(robot: Robot) -> tuple[Effect, ...]:
@@ -73,6 +80,8 @@ def every_effect(robot: Robot) -> tuple[Effect, ...]:
 
 def some_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     """(count, n) within limits, and no further than a rad or a metre from zero."""
+    if robot.closures:
+        return sample_poses(robot, count, int(rng.integers(1000)))
     low = np.maximum(robot.lower, -1.0)
     high = np.minimum(robot.upper, 1.0)
     return rng.uniform(low, high, (count, robot.n))
