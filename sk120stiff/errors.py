@@ -51,10 +51,11 @@ class Refusal(ToolkitError):
 class MissingPart(InputError):
     """An optional part of the toolkit is not installed; the remedy is the install command."""
 
-    def __init__(self, library: str, extra: str, *, needed_for: str) -> None:
+    def __init__(self, library: str, extra: str | None, *, needed_for: str) -> None:
+        name = f'"sk120stiff[{extra}]"' if extra else library
         super().__init__(
             f"{needed_for} needs the library {library!r}, which is not installed",
-            remedy=f'Install it with: pip install "sk120stiff[{extra}]"',
+            remedy=f"Install it with: pip install {name}",
         )
 
 

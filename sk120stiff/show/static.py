@@ -98,7 +98,7 @@ def viewer_script() -> str:
     # Importing meshcat would start ZeroMQ; the script alone is needed.
     found = find_spec("meshcat")
     if found is None or not found.submodule_search_locations:
-        raise MissingPart("meshcat", "view", needed_for="the 3-D scene")
+        raise MissingPart("meshcat", None, needed_for="the 3-D scene")
     source = Path(found.submodule_search_locations[0]) / "viewer" / "dist" / "main.min.js"
     return source.read_text(encoding="utf-8").replace("</script", "<\\/script")
 

@@ -337,5 +337,5 @@ def zarr_or_explain() -> Any:
     try:
         import zarr
     except ImportError as error:
-        raise MissingPart("zarr", "cluster", needed_for="a map") from error
+        raise MissingPart("zarr", None, needed_for="a map") from error
     return zarr
