@@ -122,10 +122,28 @@ def random_pool(
 
 
 def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
-    """(count, n) coordinates drawn evenly from the middle of the joint ranges."""
+    """(count, n) coordinates drawn evenly from the middle of the joint ranges.
+
+    Poses at which a closed loop cannot be closed are drawn again.
+
+    Raises
+    ------
+    Refusal
+        Next to no pose can be closed.
+    """
     lower, upper = usable_range(robot)
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-    return np.asarray(middle + half * rng.uniform(-1.0, 1.0, (count, robot.n)))
+    kept = np.zeros((0, robot.n))
+    for _ in range(DRAWS):
+        drawn = middle + half * rng.uniform(-1.0, 1.0, (count, robot.n))
+        kept = np.concatenate([kept, drawn[robot.closes(drawn)]])
+        if len(kept) >= count:
+            return kept[:count]
+    raise Refusal(
+        "next to no pose within the joint limits can be closed",
+        where=robot.name,
+        remedy="State the limits of the driven joints, or start: of the closures in robot.yaml.",
+    )
 
 
 def usable_range(robot: Robot) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from sk120stiff.robot.loops import LoopCoupling
 from sk120stiff.robot.robot import Robot
 
 _SAMPLES: WeakKeyDictionary[Robot, dict[tuple[int, int], Array]] = WeakKeyDictionary()
+CLEAR_OF_DEAD_POINTS = 0.02  # see `LoopCoupling.closes`
 SHORTEST_LINK = 1e-3  # m; what is shorter has no length to bend along
 
 
@@ -127,7 +128,7 @@ def _drawn(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     for reach in (2.0, 1.0, 0.5, 0.2, 0.05, 0.01):
         least, most = np.maximum(low, middle - reach), np.minimum(high, middle + reach)
         drawn = rng.uniform(np.minimum(least, most), most, (4 * count, robot.n))
-        drawn = drawn[robot.closes(drawn)]
+        drawn = drawn[robot.closes(drawn, CLEAR_OF_DEAD_POINTS)]
         if len(drawn) >= count:
             return np.asarray(drawn[:count])
     raise Refusal(

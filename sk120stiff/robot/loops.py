@@ -118,13 +118,17 @@ class LoopCoupling:
             ),
         )
 
-    def closes(self, a: Array) -> Mask:
-        """(...,) whether every loop can be closed at `a` (..., n), away from dead points."""
+    def closes(self, a: Array, margin: float = DEAD) -> Mask:
+        """(...,) whether every loop can be closed at `a` (..., n), away from dead points.
+
+        `margin` is the least singular value of the loops' equations over their length. It falls
+        to zero at a dead point, in proportion to the sine of a four-bar's transmission angle.
+        """
         z = a.reshape(-1, self.n)
         d, closed = self._closed(z)
         held = np.flatnonzero(closed)
         if len(held):
-            closed[held] = self._spread(self.closer.gaps(z[held], d[held])) > DEAD
+            closed[held] = self._spread(self.closer.gaps(z[held], d[held])) > margin
         return np.asarray(closed.reshape(a.shape[:-1]))
 
     def with_virtual_joints(

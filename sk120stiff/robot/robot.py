@@ -175,11 +175,16 @@ class Robot:
         T_root = self.tree.body(root)[1]
         return np.asarray(swept.rotation.T @ T_root[:3, :3].T @ self.gravity)
 
-    def closes(self, a: ArrayLike) -> NDArray[np.bool_]:
-        """(...,) where the closed loops can be closed; everywhere if there are none."""
+    def closes(self, a: ArrayLike, margin: float | None = None) -> NDArray[np.bool_]:
+        """(...,) where the closed loops can be closed; everywhere if there are none.
+
+        `margin` keeps away from dead points, see `LoopCoupling.closes`.
+        """
         coordinates = self.coordinates(a)
         if isinstance(self.coupling, LoopCoupling):
-            return self.coupling.closes(coordinates)
+            if margin is None:
+                return self.coupling.closes(coordinates)
+            return self.coupling.closes(coordinates, margin)
         return np.ones(coordinates.shape[:-1], dtype=bool)
 
     def gravity_torque(self, a: ArrayLike) -> Array:

@@ -43,6 +43,11 @@ def test_poses_that_cannot_be_closed_are_refused_by_name(quad, loop):
         loop.jacobian([0.3, 1.0, 1.0, 0, 0, 0])
     mask = loop.closes([dead, [0.3, 1.0, 1.0, 0, 0, 0], [0, 0.1, 0.2, 0, 0, 0]])
     assert list(mask) == [False, False, True]
+    # the margin shrinks with the transmission angle's sine, here cos(θ2 + θ3)
+    folded = [[0, 0.5 * s, 0.5 * s, 0, 0, 0] for s in (0.0, 1.2, 1.5)]
+    assert list(loop.closes(folded)) == [True, True, True]
+    assert list(loop.closes(folded, 0.02)) == [True, True, False]
+    assert list(loop.closes(folded, 0.1)) == [True, False, False]
 
 
 def test_a_pose_out_of_reach_is_told_from_a_dead_point(tmp_path):
