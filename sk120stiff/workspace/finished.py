@@ -115,15 +115,13 @@ def summarise_map(path: str | os.PathLike[str]) -> tuple[tuple[LoadSummary, ...]
     dataset = open_map(path)
     stiffness = dataset["minimum_stiffness"]
     axes = stiffness.dims[1:]
-    parts = dict(zip(stiffness.dims, stiffness.data.chunks, strict=True))
-    ends = {axis: np.cumsum([0, *parts[axis]]) for axis in axes}
+    # From the store: the array itself has chunks only where dask is installed.
+    size = dict(zip(stiffness.dims, stiffness.encoding["chunks"], strict=True))
+    starts = {axis: range(0, stiffness.sizes[axis], size[axis]) for axis in axes}
     counts = dict.fromkeys(STATUS, 0)
     best: list[_Extremes] = [_Extremes() for _ in range(stiffness.sizes["load"])]
-    for corner in itertools.product(*(range(len(parts[axis])) for axis in axes)):
-        where = {
-            axis: slice(int(ends[axis][k]), int(ends[axis][k + 1]))
-            for axis, k in zip(axes, corner, strict=True)
-        }
+    for corner in itertools.product(*(starts[axis] for axis in axes)):
+        where = {axis: slice(k, k + size[axis]) for axis, k in zip(axes, corner, strict=True)}
         chunk = dataset.isel(where).load()
         if "status" in chunk:
             for number, count in enumerate(np.bincount(chunk["status"].values.ravel())):

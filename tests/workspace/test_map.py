@@ -263,3 +263,20 @@ def test_the_folder_can_be_copied(tmp_path: Path) -> None:
     write_map(joint_job(4, 4), tmp_path / "m.zarr")
     shutil.copytree(tmp_path / "m.zarr", tmp_path / "copy.zarr")
     assert verify_map(tmp_path / "copy.zarr").intact
+
+
+def test_a_map_needs_no_dask(tmp_path: Path) -> None:
+    write_map(joint_job(9, 8, 7), tmp_path / "m.zarr", chunk_points=SMALL)
+    program = (
+        "import sys; sys.modules['dask'] = None\n"
+        "from sk120stiff.workspace import summarise_map\n"
+        f"loads, status = summarise_map({str(tmp_path / 'm.zarr')!r})\n"
+        "print(sum(status.values()), loads[0].softest)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    points, softest = done.stdout.split()
+    loads, _ = summarise_map(tmp_path / "m.zarr")
+    assert (int(points), float(softest)) == (9 * 8 * 7, loads[0].softest)
