@@ -84,7 +84,8 @@ def _noise(fit: Fit) -> list[str]:
 
 def noise_sentence(fit: Fit) -> str:
     """What one reading is worth, and where that is known from."""
-    noise = replace(fit.problem.noise, sigma=fit.sigma, stated=True)
+    factor = 1.0 if fit.sigma_stated else fit.noise_factor
+    noise = replace(fit.problem.noise.scaled(factor), stated=True)
     known = "The size is stated." if fit.sigma_stated else "The size is estimated with the fit."
     return f"{noise.describe()} {known}"
 

@@ -38,9 +38,9 @@ def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
     Refusal
         As `solve`, or the weights do not settle.
     """
-    found = solve(problem, method=method)
-    iterations = found.iterations
     weights = np.ones(problem.measurements.n_readings)
+    found = solve(problem.with_weights(weights), method=method)
+    iterations = found.iterations
     for _ in range(ROUNDS):
         lengths = reading_lengths(found.problem, found.gap)
         spread = 1.0 if problem.noise.stated else _spread(lengths, found.estimated)

@@ -1,4 +1,4 @@
-"""Do 95 % intervals hold the truth? Synthetic experiments whose data share nothing with the product.
+"""Do 95 % intervals hold the truth? Experiments whose data share nothing with the product.
 
 The readings come from the generator in `tests/hidden/generator` (finite rotations, exact statics,
 its own robots and noise), through a CSV and a YAML file, as a user's would.
@@ -66,7 +66,8 @@ KINDS: tuple[Kind, ...] = (
         "reading_rotation",
         "tracker",
         lambda r: ReadingRotation(
-            "tracker", {key: float(value) for key, value in zip("xyz", 4e-3 * r.normal(size=3))}
+            "tracker",
+            {key: float(value) for key, value in zip("xyz", 4e-3 * r.normal(size=3), strict=True)},
         ),
     ),
     Kind(
