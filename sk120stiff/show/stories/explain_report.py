@@ -25,6 +25,7 @@ from sk120stiff.show.wording import chance, counted, listed, percent, um
 
 CROSS = "on poses left out in turn (cross-validation by pose)"
 
+
 def explain_report(
     answer: Explanation,
     readings: Measurements,
@@ -76,6 +77,7 @@ def explain_report(
         reproducibility=reproducibility or {},
     )
 
+
 def _answer(answer: Explanation) -> Section:
     blocks: list[Block] = [key_figures(answer)]
     if answer.findings:
@@ -84,6 +86,7 @@ def _answer(answer: Explanation) -> Section:
         blocks.append(answer.where[0])
     blocks += [Note(reason, "note", "About the noise") for reason in answer.noise_reasons]
     return Section("The answer", blocks)
+
 
 def _line(answer: Explanation, k: int) -> str:
     finding = answer.findings[k]
@@ -96,6 +99,7 @@ def _line(answer: Explanation, k: int) -> str:
         f"{um(before.heldout_rms)} → {um(step.heldout_rms)} µm; better in {c.folds_improved} of "
         f"{c.folds} folds; same name in {percent(c.frequency)} of resamplings."
     )
+
 
 def key_figures(answer: Explanation) -> KeyFigures:
     """The numbers that matter: gap, noise, names, what is left."""
@@ -129,4 +133,3 @@ def key_figures(answer: Explanation) -> KeyFigures:
     )
     figures = [gap, noise, closed, left] if changed else [gap, noise, left]
     return KeyFigures(figures)
-

@@ -101,17 +101,21 @@ def _per_pose(fit: Fit, models: dict[str, Model], floor: float) -> Picture | str
 
 
 def on_the_arm(fit: Fit, models: dict[str, Model]) -> Picture:
-    """Gap vectors at the largest load of every pose."""
+    """Gap vectors at the largest load of every pose; of many poses those with the largest gaps."""
     views = arm_views(fit, models)
+    first = next(iter(models))
+    ranked = sorted(views, key=lambda view: -float(np.linalg.norm(view.gaps[first])))
+    shown = ranked[:MANY]
     largest = {
-        name: um(max(float(np.linalg.norm(view.gaps[name])) for view in views)) for name in models
+        name: um(max(float(np.linalg.norm(view.gaps[name])) for view in shown)) for name in models
     }
     told = ", ".join(f"up to {value} µm {name}" for name, value in largest.items())
+    which = "every pose" if len(shown) == len(views) else f"the {MANY} poses with the largest gaps"
+    times = f"{exaggeration(shown):,.0f}".replace(",", "\u00a0")
     return Picture(
-        gap_vectors(views),
-        alt=f"The arm at {len(views)} poses from above and from the side, with gap vectors {told}.",
-        caption="Gap vectors at the largest load of every pose, drawn "
-        f"{exaggeration(views):,.0f} times too long.".replace(",", " "),
+        gap_vectors(shown),
+        alt=f"The arm at {len(shown)} poses from above and from the side, with gap vectors {told}.",
+        caption=f"Gap vectors at the largest load of {which}, drawn {times} times too long.",
     )
 
 

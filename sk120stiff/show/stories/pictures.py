@@ -19,6 +19,7 @@ from sk120stiff.show.style import hide_spare, styled, subplots
 
 Array = NDArray[np.float64]
 LONGEST_ARROW = 0.22  # share of the picture's width
+MOST_POINTS = 500  # in one panel; more would only make the page heavy
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +137,9 @@ def suspect_panels(found: Localisation, *, columns: int = 3) -> Figure | None:
 def _draw_suspicion(panel: Axes, suspicion: Suspicion, *, marked: bool) -> None:
     colour = palette.VERMILION if marked else (palette.BLUE if suspicion.seen else palette.NOISE)
     panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
-    panel.plot(suspicion.abscissa, 1e6 * suspicion.partial, "o", color=colour, markersize=2.8,
-               alpha=0.7, markeredgewidth=0)  # fmt: skip
+    every = slice(None, None, -(-suspicion.partial.size // MOST_POINTS))
+    x, y = suspicion.abscissa[every], 1e6 * suspicion.partial[every]
+    panel.plot(x, y, "o", color=colour, markersize=2.8, alpha=0.7, markeredgewidth=0)
     panel.set_xlabel(suspicion.label, fontsize=7.5)
     panel.locator_params(nbins=4)
     title = "\n".join(textwrap.wrap(suspicion.name.split(", on which")[0], 31)[:2])
