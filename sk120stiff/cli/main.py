@@ -24,6 +24,7 @@ COMMANDS = {
     "plan": "The poses and loads to measure next.",
     "simulate": "Synthetic measurements from a model: loads, noise, zeros.",
     "compensate": "Joint commands that cancel the deflection along a loaded path.",
+    "export": "The modelled arm for a simulator: bodies, joints and springs, commanded to a pose.",
     "map": "Stiffness over the workspace: extremes, directions, stability.",
     "paper": "The 2005 paper's tables, figures, claims: ours beside theirs.",
     "view": "The robot, its ellipsoids and its gaps, live in the browser.",

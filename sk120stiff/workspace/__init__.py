@@ -2,6 +2,7 @@
 
 from sk120stiff.workspace.arm import ElasticArm, elastic_arm
 from sk120stiff.workspace.compensate import Compensation, Standing, compensate, standing
+from sk120stiff.workspace.export import FORMATS, mjcf_text, sdf_text
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
 from sk120stiff.workspace.finished import LoadSummary, MapCheck, open_map, summarise_map, verify_map
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
@@ -15,8 +16,10 @@ from sk120stiff.workspace.posture import (
     best_posture,
     path_points,
 )
+from sk120stiff.workspace.springs import SpringArm, spring_arm
 
 __all__ = [
+    "FORMATS",
     "STATUS",
     "Axis",
     "BestPosture",
@@ -33,17 +36,21 @@ __all__ = [
     "Placement",
     "PositionGrid",
     "Reached",
+    "SpringArm",
     "Standing",
     "Task",
     "best_posture",
     "compensate",
     "elastic_arm",
     "joints_along",
+    "mjcf_text",
     "open_map",
     "parse_axes",
     "path_points",
     "read_path",
+    "sdf_text",
     "solve_inverse",
+    "spring_arm",
     "standing",
     "starting_poses",
     "summarise_map",

@@ -170,7 +170,7 @@ def elastic_arm(
     probes[~robot.closes(probes)] = 0.0
     compliance, sag, shift = _compliances(physical, probes)
     mechanism = physical.assembly.mechanism
-    springs = _springs(compliance[0], robot.name)
+    springs = springs_of(compliance[0], robot.name)
     followed = (
         isinstance(mechanism.elastic or mechanism.coupling, LinearCoupling)
         and springs is not None
@@ -227,7 +227,7 @@ def seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
     return replace(model, robot=replace(robot, tool_frame=frame)), point
 
 
-def _springs(compliance: Array, name: str) -> Array | None:
+def springs_of(compliance: Array, name: str) -> Array | None:
     """(n, n) stiffness of a compliance, infinite on the diagonal where nothing yields.
 
     None where the compliance of what yields is singular or negative in some direction.
