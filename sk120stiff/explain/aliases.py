@@ -16,7 +16,7 @@ SAME = 1e-3  # share of the signature that may differ
 
 
 def exact_aliases(
-    model: Model, effect: Effect, others: Sequence[Effect], *, point: Array, tied: bool = False
+    model: Model, effect: Effect, others: Sequence[Effect], *, point: Array
 ) -> tuple[str, ...]:
     """Those of `others` that imitate the fitted `effect` at all poses and loads.
 
@@ -30,8 +30,6 @@ def exact_aliases(
         Contenders.
     point
         (3,) measured point in the tool frame [m].
-    tied
-        The readings give no reason to doubt that tied parameters of the effect are equal.
     """
     pool = random_pool(model.robot, poses=150, directions=3, force=300.0, point=point, seed=1)
     full = model
@@ -44,8 +42,6 @@ def exact_aliases(
     X = (derivative * typical).reshape(-1, len(typical))
     owner = np.array([parameter.effect.id for parameter in full.parameters])
     values = (full.values / typical)[owner == effect.id]
-    for group in effect.ties if tied else ():
-        values[list(group)] = values[list(group)].mean()
     signature = X[:, owner == effect.id] @ values
     base = X[:, np.isin(owner, list(present - {effect.id}))]
     reference = max(float(np.linalg.norm(_without(base, signature))), 1e-300)

@@ -40,7 +40,7 @@ class Confirmation:
     @property
     def holds(self) -> bool:
         """The name may be given."""
-        often = self.folds_improved >= 0.75 * self.folds and self.frequency >= 0.7
+        often = self.folds_improved >= 0.6 * self.folds and self.frequency >= 0.5
         return often and self.gain > 0.0
 
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.effects.gear import GearEffect
 from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
 from sk120stiff.explain.explanation import Evidence, Finding
 from sk120stiff.explain.regression import Regression
-from sk120stiff.explain.search import Scored, gains, score_set
+from sk120stiff.explain.search import Scored, gains, score_set, separation
 from sk120stiff.explain.settling import Attempt
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
+SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice of law explains
 CONTENDERS = 24  # rivals looked at for every effect
 
 
@@ -21,11 +23,26 @@ def findings_of(found: Attempt, *, seed: int) -> tuple[list[Finding], list[str]]
     doubted: list[str] = []
     for effect in by_weight(found.regression, found.chosen):
         finding = _finding(found, effect, seed)
-        if finding.evidence.confirmation.holds:
+        if finding.evidence.confirmation.holds and not _shadow(finding, findings):
             findings.append(finding)
         else:
             doubted.append(finding.effect.id)
     return findings, doubted
+
+
+def _shadow(finding: Finding, before: list[Finding]) -> bool:
+    """Is this only what the law of a stronger effect of the same gear leaves over?
+
+    No gear follows a cubic to the last digit; what is left looks like play or friction there.
+    """
+    if not isinstance(finding.effect, GearEffect):
+        return False
+    return any(
+        isinstance(other.effect, GearEffect)
+        and other.effect.where == finding.effect.where
+        and finding.evidence.misfit_gain < SHADOW**2 * other.evidence.misfit_gain
+        for other in before
+    )
 
 
 def _finding(found: Attempt, effect: int, seed: int) -> Finding:
@@ -36,10 +53,13 @@ def _finding(found: Attempt, effect: int, seed: int) -> Finding:
     chosen = regression.candidates[effect]
     rivals = _rivals(regression, rest, effect)
     exact = _aliases(found, effect, with_it, rivals)
+    sums = regression.sums()
     same = [
         e
         for e, model in rivals
-        if model.score - with_it.score < MARGIN or regression.candidates[e].id in exact
+        if model.score - with_it.score < MARGIN
+        or regression.candidates[e].id in exact
+        or separation(regression, sums, with_it, effect, e) < MARGIN
     ]
     others = [(e, model.score) for e, model in rivals if e not in same]
     runner_up = min(others, key=lambda pair: pair[1], default=None)
@@ -74,7 +94,6 @@ def _aliases(
         chosen,
         close,
         point=situation.point,
-        tied=with_it.variants[with_it.effects.index(effect)] > 0,
     )
     X = regression.X
     here = aliases_by_design(

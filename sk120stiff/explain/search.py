@@ -59,7 +59,9 @@ def score_set(regression: Regression, sums: Sums, effects: Iterable[int]) -> Sco
         else:
             solved = solve_columns(sums, columns, regression.lower, regression.plausible)
             score = _score(regression, sums, solved, len(chosen))
-        plausible = bool((np.abs(solved.values) <= regression.plausible[solved.columns]).all())
+        added = ~np.isin(solved.columns, regression.base)
+        size = np.abs(solved.values[added])
+        plausible = bool((size <= regression.plausible[solved.columns[added]]).all())
         score += sum(LESS_USUAL.get(regression.candidates[e].name, 0.0) for e in chosen)
         if best is None or (plausible, -score) > (best.plausible, -best.score):
             best = Scored(chosen, score, solved, plausible, variants)
@@ -111,7 +113,7 @@ def gains(regression: Regression, sums: Sums, model: Solved) -> Array:
     the model, the gain is ‖orth(M S)ᵀ r‖².
     """
     inside = model.columns
-    gram_in = sums.gram[np.ix_(inside, inside)]
+    gram_in = sums.gram[np.ix_(inside, inside)] + np.diag(regression.plausible[inside] ** -2.0)
     cross = sums.gram[inside]
     scale = np.sqrt(np.maximum(np.diag(gram_in), 1e-300))
     solved = np.linalg.solve(gram_in / np.outer(scale, scale), cross / scale[:, None])
@@ -185,7 +187,23 @@ def beam_search(
     return sorted((m for m in seen.values() if m.plausible), key=lambda m: m.score)
 
 
-def columns_of(regression: Regression, effects: Iterable[int]) -> Index:
-    """Columns of base and chosen candidates."""
-    parts = [regression.base, *(regression.columns[e] for e in effects)]
-    return np.concatenate(parts).astype(np.intp)
+def separation(regression: Regression, sums: Sums, model: Scored, effect: int, rival: int) -> float:
+    """λ = ‖M_[B, S_f] S_e v̂‖²: what a rival in the place of an effect cannot imitate of it.
+
+    B are the other columns of the model. In units of the noise variance; below `MARGIN` the
+    readings do not tell the two apart, whatever the number of their parameters.
+    """
+    own = regression.variants[effect][model.variants[model.effects.index(effect)]]
+    inside = np.isin(model.solved.columns, own)
+    weights = model.solved.values[inside]
+    signature = model.solved.columns[inside]
+    beside = np.concatenate([model.solved.columns[~inside], regression.columns[rival]])
+    right = sums.gram[np.ix_(beside, signature)] @ weights
+    gram = sums.gram[np.ix_(beside, beside)] + np.diag(regression.plausible[beside] ** -2.0)
+    scale = 1.0 / np.sqrt(np.diag(gram))
+    values, vectors = np.linalg.eigh(gram * np.outer(scale, scale))
+    along = vectors.T @ (right * scale)
+    seen = values > 1e-10
+    imitated = float((along[seen] ** 2 / values[seen]).sum())
+    whole = float(weights @ sums.gram[np.ix_(signature, signature)] @ weights)
+    return max(whole - imitated, 0.0)

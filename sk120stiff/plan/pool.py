@@ -15,6 +15,7 @@ from sk120stiff.robot.coupling import Array
 REACH_OF_UNLIMITED = np.pi  # rad; a joint without limits is used over one turn
 REACH_OF_UNLIMITED_SLIDE = 0.5  # m
 SHARE_OF_RANGE = 0.9  # the ends of the range are left out
+FOLDED = 0.2  # sine of the crank-rod angle; below it a rod's share grows beyond all loads
 DRAWS = 200  # batches drawn before a region is given up
 
 
@@ -124,7 +125,8 @@ def random_pool(
 def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     """(count, n) coordinates drawn evenly from the middle of the joint ranges.
 
-    Poses at which a closed loop cannot be closed are drawn again.
+    Poses at which a closed loop cannot be closed are drawn again, and so are those at which a
+    linkage is so folded that its rod holds next to nothing.
 
     Raises
     ------
@@ -136,7 +138,7 @@ def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     kept = np.zeros((0, robot.n))
     for _ in range(DRAWS):
         drawn = middle + half * rng.uniform(-1.0, 1.0, (count, robot.n))
-        kept = np.concatenate([kept, drawn[robot.closes(drawn)]])
+        kept = np.concatenate([kept, drawn[robot.closes(drawn) & _open(robot, drawn)]])
         if len(kept) >= count:
             return kept[:count]
     raise Refusal(
@@ -181,6 +183,17 @@ def poses_in(
         where=robot.name,
         remedy="Lower the least height or widen the box.",
     )
+
+
+def _open(robot: Robot, a: Array) -> NDArray[np.bool_]:
+    """(M,) crank and rod of every linkage stand at an angle whose sine exceeds `FOLDED`."""
+    good = np.ones(len(a), dtype=bool)
+    for linkage in robot.linkages:
+        pivot, elbow, end = (robot.screws(a, frame).position for frame in linkage.corners)
+        crank, rod = elbow - pivot, end - elbow
+        sine = np.linalg.norm(np.cross(crank, rod), axis=1)
+        good &= sine > FOLDED * np.linalg.norm(crank, axis=1) * np.linalg.norm(rod, axis=1)
+    return good
 
 
 def _coupled_within_limits(robot: Robot, a: Array) -> NDArray[np.bool_]:
