@@ -66,9 +66,9 @@ def open_model(robot: Robot, path: Path | None) -> Model:
 
 
 def pose_of(robot: Robot, text: str | None) -> Array:
-    """Actuated coordinates (n,) [rad or m] from --pose; zeros where nothing is given."""
+    """Actuated coordinates (n,) [rad or m] from --pose; the rest pose without it."""
     if text is None:
-        return np.zeros(robot.n)
+        return robot.rest
     kinds = ["length" if slides else "angle" for slides in robot.prismatic]
     return parse_pose(text, robot.actuated, kinds, where="--pose")
 

@@ -167,9 +167,8 @@ def _at_equilibrium(model: Model, a: ArrayLike, load: Array, point: Array) -> Ar
 def _seen_from(model: Model, frame: str) -> tuple[Model, Array]:
     """The model of the arm up to `frame`, and the frame's origin in that arm's tool frame [m]."""
     robot = model.robot
-    rest = np.zeros(robot.n)
     if _same_body(robot, frame):
-        inward = np.linalg.inv(robot.placement(rest)) @ robot.placement(rest, frame)
+        inward = np.linalg.inv(robot.placement(robot.rest)) @ robot.placement(robot.rest, frame)
         return model, inward[:3, 3]
     return replace(model, robot=replace(robot, tool_frame=frame)), np.zeros(3)
 

@@ -98,6 +98,13 @@ class Robot:
         return self.tree.frame_names
 
     @property
+    def rest(self) -> Array:
+        """(n,) coordinates at which the robot exists: zero, or the start of its closed loops."""
+        if isinstance(self.coupling, LoopCoupling):
+            return np.asarray(self.coupling.start[: self.n])
+        return np.zeros(self.n)
+
+    @property
     def closures(self) -> tuple[Closure, ...]:
         """Closed loops that `robot.yaml` declares."""
         return self.coupling.closures if isinstance(self.coupling, LoopCoupling) else ()

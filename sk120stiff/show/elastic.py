@@ -126,7 +126,7 @@ class Elastic:
             Nothing in the model yields.
         """
         arm = model.physical()
-        pose = np.zeros(arm.robot.n) if at is None else np.asarray(at, dtype=float)
+        pose = arm.robot.rest if at is None else np.asarray(at, dtype=float)
         offset, compliance = _unloaded(arm, pose)
         if not compliance.any():
             raise InputError(
@@ -208,7 +208,7 @@ def _is_constant(model: Model) -> bool:
     from sk120stiff.effects import Elastic as ElasticEffect
     from sk120stiff.effects import LinearElastic, situation_of_load
 
-    situation = situation_of_load(model.robot, np.zeros(model.robot.n), np.zeros(6))
+    situation = situation_of_load(model.robot, model.robot.rest, np.zeros(6))
     return all(
         isinstance(effect, LinearElastic) and effect.patterns(situation).ndim == 3
         for effect in model.effects

@@ -122,7 +122,7 @@ class Scene:
             return np.asarray(self.a, dtype=float)
         if self.poses:
             return np.asarray(self.poses[0].a, dtype=float)
-        return np.clip(np.zeros(self.robot.n), self.robot.lower, self.robot.upper)
+        return np.clip(self.robot.rest, self.robot.lower, self.robot.upper)
 
     @property
     def first_load(self) -> Array:

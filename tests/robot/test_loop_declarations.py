@@ -50,6 +50,12 @@ def test_poses_that_cannot_be_closed_are_refused_by_name(quad, loop):
     assert list(loop.closes(folded, 0.1)) == [True, False, False]
 
 
+def test_robots_that_cannot_stand_at_zero_have_a_rest(tmp_path, quad):
+    robot = cylinder(tmp_path)
+    assert np.allclose(robot.rest, [0, 0, 0.76]) and robot.closes(robot.rest)
+    assert not quad.rest.any() and not load_robot("motoman_sk120").rest.any()
+
+
 def test_a_pose_out_of_reach_is_told_from_a_dead_point(tmp_path):
     with pytest.raises(OpenLoop, match=r"piston = 0 mm.*a link would have to be longer"):
         cylinder(tmp_path).jacobian([0.3, 0, 0.0])
