@@ -39,6 +39,10 @@ def command(
         typer.Option(metavar="EFFECT", help="Put this effect into the model from the start."),
     ] = None,
     max_effects: Annotated[int, typer.Option(min=0, max=8, help="Name no more than this.")] = 4,
+    alpha: Annotated[
+        float,
+        typer.Option(min=1e-6, max=0.5, help="Chance of a name where nothing is missing."),
+    ] = 0.01,
     seed: SeedOption = 0,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Write no report.html and no scene.html.")
@@ -60,6 +64,7 @@ def command(
         exclude=tuple(exclude or ()),
         assume=tuple(assume or ()),
         max_effects=max_effects,
+        alpha=alpha,
         seed=seed,
     )
     inputs = [data, data.with_suffix(".yaml"), *(file for file in (holdout, model) if file)]

@@ -14,6 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
 from sk120stiff.effects import Effect
 from sk120stiff.identify import Fit
@@ -51,6 +52,8 @@ class Regression:
         (P,) magnitudes in typical sizes beyond which a value explains nothing.
     sigma_known
         The noise's size is known; else it is estimated by every model for itself.
+    alpha
+        Probability at which a first effect may be named where nothing is missing.
     """
 
     y: Array
@@ -63,6 +66,16 @@ class Regression:
     lower: Array
     plausible: Array
     sigma_known: bool
+    alpha: float
+
+    def price_of_looking(self, rows: float) -> float:
+        """What every effect pays because so many were looked at.
+
+        With it, the fall of the misfit that one more parameter needs is the χ² quantile of
+        alpha over the number of candidates (Bonferroni), never less than the BIC asks for.
+        """
+        needed = stats.chi2.isf(self.alpha / max(len(self.candidates), 1), 1)
+        return max(float(needed - np.log(rows)), 0.0)
 
     @property
     def rows(self) -> int:
@@ -229,7 +242,7 @@ def _dependent(scaled: Array) -> int:
 
 
 def regression_at(
-    fit: Fit, candidates: Sequence[Effect], base_effects: Sequence[str]
+    fit: Fit, candidates: Sequence[Effect], base_effects: Sequence[str], *, alpha: float
 ) -> Regression:
     """Linearise the readings at a fit, over its own parameters and all candidates.
 
@@ -241,6 +254,8 @@ def regression_at(
         Effects to consider besides; those that the model holds already are skipped.
     base_effects
         Ids of the effects that belong to every model.
+    alpha
+        See `Regression`.
     """
     problem = fit.problem
     model = fit.model
@@ -274,6 +289,7 @@ def regression_at(
         lower=np.concatenate([lower, lower[sources]]),
         plausible=np.concatenate([plausible, plausible[sources]]),
         sigma_known=fit.sigma_stated,
+        alpha=alpha,
     )
 
 

@@ -1,8 +1,8 @@
 """Which set of effects explains the gap best: a beam search over models of the catalogue.
 
-Models are scored by the extended Bayesian information criterion (Chen & Chen 2008): the misfit,
-plus ln R for every parameter that moves, plus twice the logarithm of the number of candidates for
-every effect, which pays for having looked at so many.
+Models are scored by an extended Bayesian information criterion (after Chen & Chen 2008): the
+misfit, plus ln R for every parameter that moves, plus a price for every effect, which pays for
+having looked at so many candidates.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def score_set(regression: Regression, sums: Sums, effects: Iterable[int]) -> Sco
 
 def _score(regression: Regression, sums: Sums, solved: Solved, effects: int) -> float:
     n = max(sums.count, 2.0)
-    looked = 2.0 * np.log(max(len(regression.candidates), 1))
+    looked = regression.price_of_looking(n)
     return float(
         _misfit(regression, n, solved.rss) + len(solved.columns) * np.log(n) + effects * looked
     )
@@ -92,7 +92,7 @@ def _with_draws(
     members = np.concatenate([regression.columns[e] for e in drawn])
     others = np.setdiff1d(columns, members)
     n = max(sums.count, 2.0)
-    looked = 2.0 * np.log(max(len(regression.candidates), 1))
+    looked = regression.price_of_looking(n)
     best: tuple[Solved, float] | None = None
     for size in DRAWN_SIZES:
         left = sums.marginal(members, size)

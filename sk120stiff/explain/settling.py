@@ -65,6 +65,7 @@ def attempt(
     candidates: Sequence[Effect],
     *,
     max_effects: int,
+    alpha: float,
 ) -> Attempt:
     """Settle on a set of effects under one noise model.
 
@@ -80,17 +81,19 @@ def attempt(
         Effects that may be missing.
     max_effects
         Largest number of them to add.
+    alpha
+        Probability of naming something where nothing is missing.
     """
     base = fit(model, measurements, noise=noise)
     ids = tuple(effect.id for effect in model.effects)
-    regression = regression_at(base, candidates, ids)
+    regression = regression_at(base, candidates, ids, alpha=alpha)
     whole = base.problem.whitener.logdet
     aside = outlying_rows(regression, base.problem.whitener)
     if len(aside):
         keep = np.ones(measurements.n_readings, dtype=bool)
         keep[aside] = False
         base = fit(model, measurements.select(keep), noise=noise)
-        regression = regression_at(base, candidates, ids)
+        regression = regression_at(base, candidates, ids, alpha=alpha)
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     axes = np.log(3.0 * measurements.n_readings)
@@ -109,7 +112,7 @@ def with_effects(found: Attempt, effects: Sequence[Effect]) -> Attempt:
     """The same attempt with other effects chosen, refitted and linearised anew."""
     ids = tuple(effect.id for effect in found.base.model.effects)
     final = refit(found.base, effects)
-    regression = regression_at(final, found.candidates, ids)
+    regression = regression_at(final, found.candidates, ids, alpha=found.regression.alpha)
     chosen = positions(regression, effects)
     return Attempt(
         base=found.base,
@@ -153,7 +156,7 @@ def _settle(
         if ranked[0].effects == chosen:
             break
         effects, final = _first_that_fits(base, regression, ranked)
-        regression = regression_at(final, candidates, ids)
+        regression = regression_at(final, candidates, ids, alpha=regression.alpha)
         chosen = positions(regression, effects)
     return final, regression, chosen
 

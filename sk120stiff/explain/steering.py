@@ -23,6 +23,8 @@ class Options:
         Effects that are in the model from the start.
     max_effects
         Largest number of named effects.
+    alpha
+        Probability of naming something where nothing is missing, over all candidates together.
     seed
         Of folds and resampling.
     """
@@ -31,6 +33,7 @@ class Options:
     exclude: tuple[str, ...] = ()
     assume: tuple[str, ...] = ()
     max_effects: int = 4
+    alpha: float = 0.01
     seed: int = 0
 
 

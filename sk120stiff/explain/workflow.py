@@ -13,7 +13,7 @@ from sk120stiff.explain.settling import Attempt, attempt, with_effects
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
 from sk120stiff.explain.steps import gap_steps
 from sk120stiff.identify import choose_noise
-from sk120stiff.measurements import Measurements
+from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
 LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
@@ -112,14 +112,25 @@ def _best_attempt(
     candidates = candidates_for(base_model, measurements, wish)
     situation = situation_of(base_model.robot, measurements)
     noise, reasons = choose_noise(measurements, situation, doubt=False)
-    plain = attempt(base_model, measurements, noise, candidates, max_effects=wish.max_effects)
+
+    def under(chosen: NoiseModel) -> Attempt:
+        return attempt(
+            base_model,
+            measurements,
+            chosen,
+            candidates,
+            max_effects=wish.max_effects,
+            alpha=wish.alpha,
+        )
+
+    plain = under(noise)
     clean = plain.base.problem
     other, other_reasons = choose_noise(clean.measurements, clean.situation)
     if not noise.stated and not len(plain.aside) and other.growth == noise.growth:
         return plain, reasons
     if (other.sigma, other.growth, other.zero) == (noise.sigma, noise.growth, noise.zero):
         return plain, reasons
-    second = attempt(base_model, measurements, other, candidates, max_effects=wish.max_effects)
+    second = under(other)
     return (second, other_reasons) if second.total < plain.total else (plain, reasons)
 
 
