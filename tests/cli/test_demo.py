@@ -1,0 +1,117 @@
+"""`sk120stiff demo`: the paper's measured data, end to end."""
+
+import json
+import re
+import subprocess
+import sys
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.show.test_report import Outline
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    folder = tmp_path_factory.mktemp("demo")
+    done = subprocess.run(
+        [sys.executable, "-m", "sk120stiff", "demo", "--json"],
+        capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, cwd=folder,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return folder / "sk120stiff-demo", json.loads(done.stdout)
+
+
+def test_keys_of_the_contract(demo) -> None:
+    out, document = demo
+    assert {"report", "model", "verdict"} <= set(document)
+    for key in ("report", "model", "scene"):
+        assert (out.parent / document[key]).is_file()
+    assert {path.name for path in out.iterdir()} == {
+        "report.html", "scene.html", "model.yaml", "verdict.json"
+    }  # fmt: skip
+
+
+def test_gaps_are_those_of_the_published_numbers(demo) -> None:
+    """Per pose 29, 23 and 27 µm with the paper's springs, as SOURCES.md has it."""
+    _, document = demo
+    before = [pose["paper_um"] for pose in document["per_pose"]]
+    assert [round(value) for value in before] == [29, 23, 27]
+    gap = document["gap_um"]
+    assert gap["paper"] == pytest.approx((sum(v * v for v in before) / 3) ** 0.5, rel=1e-9)
+    assert gap["identified"] < 0.7 * gap["paper"]
+    assert gap["scatter_within_poses"] < gap["identified"] < gap["heldout"]
+
+
+def test_springs_are_found_with_their_uncertainty(demo) -> None:
+    _, document = demo
+    paper = {"joint_1_s": 1.4098e6, "joint_2_l": 4.0076e5, "joint_3_u": 9.3528e5}
+    found = {p["name"].split(":")[1].split(".")[0]: p for p in document["parameters"]}
+    assert found.keys() == paper.keys()
+    for joint, value in paper.items():
+        assert 0.9 < found[joint]["value"] / value < 1.0  # a few per cent softer
+        assert 0.0 < found[joint]["std"] < 0.05 * value
+
+
+def test_three_poses_are_no_ground_for_a_name(demo) -> None:
+    _, document = demo
+    assert document["verdict"] in ("none", "ambiguous", "outside")
+    assert document["effects"] == [] or document["verdict"] == "ambiguous"
+
+
+def test_the_report_tells_three_acts_and_its_limits(demo) -> None:
+    out, document = demo
+    page = (out / "report.html").read_text(encoding="utf-8")
+    outline = Outline(page)
+    assert not outline.open
+    shown = re.sub(r'srcdoc="[^"]*"|<svg.*?</svg>', "", page, flags=re.DOTALL)
+    text = re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]+>", " ", shown)).replace("\u00a0", " "))
+    for heading in ("1. The paper's springs", "2. Springs identified", "3. What is missing?",
+                    "How stiff the arm is", "What three poses can tell"):  # fmt: skip
+        assert heading in text
+    gap = document["gap_um"]
+    assert f"by {gap['paper']:.1f} µm rms" in text and f"by {gap['identified']:.1f} µm" in text
+    assert "force_scale:sensor and reading_scale:tracker : swallowed whole" in text
+    assert text.count("pose 1") >= 2  # gaps and stiffness
+    assert all(a["aria-label"] for a in outline.of("svg") if a.get("role") == "img")
+    assert len([a for a in outline.of("svg") if a.get("role") == "img"]) >= 5
+
+
+def test_pages_load_nothing(demo) -> None:
+    out, _ = demo
+    for name in ("report.html", "scene.html"):
+        outline = Outline((out / name).read_text(encoding="utf-8"))
+        for _, attributes in outline.tags:
+            for key in ("src", "href", "xlink:href"):
+                target = attributes.get(key) or ""
+                assert not target.startswith(("http:", "https:", "//"))
+
+
+def test_the_scene_holds_every_measured_pose(demo) -> None:
+    out, _ = demo
+    page = (out / "scene.html").read_text(encoding="utf-8")
+    found = re.search(r'<script type="application/json" id="scene">(.*?)</script>', page, re.DOTALL)
+    assert found is not None
+    scene = json.loads(found.group(1))
+    assert [pose["label"] for pose in scene["poses"]] == ["pose 1", "pose 2", "pose 3"]
+    assert scene["models"] == ["paper's springs", "identified"]
+
+
+def test_interrupted_it_leaves_nothing(tmp_path, run, monkeypatch) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("sk120stiff.show.stories.demo_report", interrupted)
+    outcome = run("demo", "--out", str(tmp_path / "out"))
+    assert outcome.code == 130
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_file_is_no_folder(tmp_path, run) -> None:
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    outcome = run("demo", "--out", str(tmp_path / "file"))
+    assert outcome.code == 2
+    assert "this is a file, not a folder" in outcome.stderr
+    assert (tmp_path / "file").read_text(encoding="utf-8") == "mine"
