@@ -229,7 +229,7 @@ def _down_weighted(found: Fit) -> list[dict[str, object]]:
             "where": place_of(measurements, int(row)),
             "weight": float(weights[row]),
         }
-        for row in found.down_weighted
+        for row in sorted(found.down_weighted, key=lambda k: float(weights[k]))
     ]
 
 

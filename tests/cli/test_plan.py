@@ -1,0 +1,125 @@
+"""`sk120stiff plan`: files for the measurement, and what they promise."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sk120stiff.measurements import read_measurements
+from sk120stiff.robot import load_robot
+
+MODEL = "robots/motoman_sk120/model.yaml"
+DATA = "robots/motoman_sk120/data/table2_measured.csv"
+FEW = ("--candidates", "60", "--directions", "4")
+
+
+def test_plan_simulate_identify(run, tmp_path: Path) -> None:
+    """What the plan promises is what the identification finds."""
+    plan, made = str(tmp_path / "plan.csv"), str(tmp_path / "made.csv")
+    outcome = run("plan", "--model", MODEL, "--count", "12", *FEW, "--out", plan, "--json")
+    assert outcome.code == 0, outcome.stderr
+    found = outcome.document
+    assert found["criterion"] == "D-optimal"
+    assert len(found["poses"]) == 12
+    assert set(found["poses"][0]) == {"pose", "joints", "wrench"}
+    assert found["gain"] > 1.3
+    assert found["gain_over_spread"] > 1.3
+    assert read_measurements(plan).displacement is None
+    run("simulate", MODEL, plan, "--noise", "10 um", "--zero", "separate", "--out", made)
+    identified = run("identify", made, "--json").document["parameters"]
+    for expected, parameter in zip(found["expected"], identified, strict=True):
+        assert expected["name"] == parameter["name"]
+        assert parameter["std"] == pytest.approx(expected["std"], rel=0.05)
+    predicted = run("predict", MODEL, plan, "--json").document
+    assert len(predicted["rows"]) == 12
+
+
+def test_between_two_effects(run) -> None:
+    options = ("--between", "link_bending:link_3_u,joint_tilt:joint_2_l", *FEW, "--json")
+    found = run("plan", "--model", MODEL, "--count", "5", *options).document
+    assert found["criterion"] == "T-optimal"
+    assert found["between"] == ["link_bending:link_3_u", "joint_tilt:joint_2_l"]
+    assert found["gain"] > 1.5
+    assert found["evidence"] > found["evidence_before"] == 0.0
+    with_data = run("plan", "--model", MODEL, "--count", "5", *options, "--data", DATA).document
+    assert with_data["evidence"] > 0.0
+
+
+def test_names_of_places_may_hold_commas(run) -> None:
+    options = ("--between", "closure_coupling:joint_2_l,joint_3_u,closure_rod", *FEW, "--json")
+    found = run("plan", "--model", MODEL, "--count", "3", *options).document
+    assert found["between"][0] == "closure_coupling:joint_2_l,joint_3_u"
+
+
+def test_for_some_parameters(run) -> None:
+    options = ("--for", "base_rocking", "--for", "joint_springs:joint_1_s.stiffness")
+    found = run("plan", "--model", MODEL, "--count", "4", *options, *FEW, "--json").document
+    assert found["for"] == [
+        "base_rocking:base_link.stiffness_x",
+        "base_rocking:base_link.stiffness_y",
+        "joint_springs:joint_1_s.stiffness",
+    ]
+    absent = found["expected"][0]
+    assert absent["std"] is None
+    assert absent["internal_std"] > 0.0
+    assert absent["internal_unit"] == "rad/(N*m)"
+
+
+def test_regions_loads_and_points(run, tmp_path: Path) -> None:
+    out = tmp_path / "plan.csv"
+    options = ("--lowest", "-500 mm", "--box", "0.5,-1.5,0, 3,1.5,2 m")
+    options = (*options, "--force", "0.25 kN", "--point", "0,40,150 mm")
+    outcome = run("plan", "--model", MODEL, "--count", "6", *options, *FEW, "--out", str(out))
+    assert outcome.code == 0, outcome.stderr
+    plan = read_measurements(out)
+    np.testing.assert_allclose(plan.point, [0.0, 0.04, 0.15])
+    np.testing.assert_allclose(np.linalg.norm(plan.wrench[:, :3], axis=1), 250.0)
+    T = load_robot("motoman_sk120").placement(plan.joints)
+    at = T[:, :3, :3] @ plan.point + T[:, :3, 3]
+    assert np.all((at >= [0.5, -1.5, 0.0]) & (at <= [3.0, 1.5, 2.0]))
+
+
+def test_points_and_noise_come_from_the_data(run, tmp_path: Path) -> None:
+    out = tmp_path / "plan.csv"
+    calculated = "robots/motoman_sk120/data/table2_calculated.csv"
+    outcome = run(
+        "plan", "--model", MODEL, "--count", "3", "--data", calculated, *FEW, "--out", str(out),
+        "--json",
+    )  # fmt: skip
+    assert outcome.document["sigma_um"] == pytest.approx(0.0204)
+    assert read_measurements(out).zero == "separate"
+
+
+def test_seeds_decide(run) -> None:
+    def poses(seed: str) -> object:
+        options = ("--count", "3", *FEW, "--seed", seed, "--json")
+        return run("plan", "--model", MODEL, *options).document["poses"]
+
+    assert poses("1") == poses("1") != poses("2")
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "hint"),
+    [
+        (("--between", "base_rocking"), 2, "--between"),
+        (("--between", "base_rocking,base_rocking"), 2, "twice"),
+        (("--between", "base_rocking,nonsense"), 2, "nonsense"),
+        (("--for", "nonsense"), 2, "nonsense"),
+        (("--for", "base_rocking:base_link.stiffness_q"), 2, "stiffness_q"),
+        (("--force", "400"), 2, "unit"),
+        (("--force", "-4 N"), 2, "positive"),
+        (("--point", "1,2 mm"), 2, "--point"),
+        (("--box", "1,2,3 m"), 2, "--box"),
+        (("--box", "1,1,1,0,0,0 m"), 2, "inside"),
+        (("--lowest", "20 m"), 1, "least height"),
+        (("--count", "5000"), 2, "candidates"),
+    ],
+)
+def test_bad_options(run, tmp_path: Path, options, code: int, hint: str) -> None:
+    out = tmp_path / "plan.csv"
+    outcome = run(
+        "plan", "--model", MODEL, "--count", "4", *FEW, *options, "--out", str(out), "--json"
+    )
+    assert (outcome.code, outcome.stdout) == (code, "")
+    assert hint in outcome.stderr
+    assert not out.exists()
