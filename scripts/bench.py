@@ -122,10 +122,41 @@ def _process(program: str) -> float:
     return time.perf_counter() - begin
 
 
+def tasks(seconds: float) -> Iterator[Row]:
+    """How long the main jobs take, and how that grows with readings and candidates."""
+    import bench_tasks as jobs
+
+    group = "identification"
+    found = attempt(lambda: jobs.table_2_identification(seconds))
+    yield Row(group, "the paper's measured data, read and identified", found[0], "s", found[1])
+    for count in (30, 100, 1_000, 10_000):
+        found = attempt(lambda count=count: jobs.identification(count, seconds / 2))
+        yield Row(group, f"{count:,} readings, three springs", found[0], "s", found[1])
+    for count in (100, 1_000, 10_000):
+        found = attempt(lambda count=count: jobs.prediction(count, seconds / 2))
+        yield Row(group, f"{count:,} readings predicted", found[0], "s", found[1])
+    group = "explain"
+    for count, candidates in ((50, 3), (100, 3), (200, 3), (100, 6), (100, 0)):
+        which = f"{candidates} kinds of effect" if candidates else "the whole catalogue"
+        found = attempt(lambda count=count, some=candidates: jobs.explanation(count, some))
+        yield Row(group, f"{count} readings, {which}", found[0], "s", found[1])
+    found = attempt(lambda: jobs.live_frame(seconds) * 1e3)
+    yield Row("view", "one request of the live page, answered", found[0], "ms", found[1])
+
+
+def attempt(work: Callable[[], float]) -> tuple[float | None, str]:
+    """A number, or why there is none."""
+    try:
+        return work(), ""
+    except ImportError as error:
+        return None, f"absent: {error}"
+
+
 #: What `--only` chooses from, in the order of the table.
 MEASUREMENTS: dict[str, Callable[[float], Iterator[Row]]] = {
     "speed": speed,
     "growth": growth,
+    "tasks": tasks,
     "start": start,
 }
 
