@@ -17,9 +17,13 @@ def write_atomically(path: str | os.PathLike[str], content: str | bytes) -> Path
     Raises
     ------
     InputError
-        The folder cannot be made or written to.
+        `path` is a folder, or its own folder cannot be made or written to.
     """
     target = Path(path)
+    if target.is_dir():
+        raise InputError(
+            "this is a folder, not a file", where=str(target), remedy="Name a file in it."
+        )
     data = content.encode("utf-8") if isinstance(content, str) else content
     try:
         target.parent.mkdir(parents=True, exist_ok=True)

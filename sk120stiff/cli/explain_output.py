@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -55,11 +56,18 @@ def check_folder(out: Path) -> None:
     Raises
     ------
     InputError
-        `out` is a file.
+        `out` is a file, or no folder that may be written to.
     """
     if out.exists() and not out.is_dir():
         raise InputError(
             "this is a file, not a folder", where=str(out), remedy="Name another folder."
+        )
+    there = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(
+            f"cannot write into {there}",
+            where=str(out),
+            remedy="Choose a folder that you may write to.",
         )
 
 

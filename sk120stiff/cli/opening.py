@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import shlex
 import sys
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from sk120stiff.cli.frame import note
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot import Robot, find_robot, load_robot
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_pose, parse_wrench
@@ -70,7 +71,19 @@ def pose_of(robot: Robot, text: str | None) -> Array:
     if text is None:
         return robot.rest
     kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    return parse_pose(text, robot.actuated, kinds, where="--pose")
+    a = parse_pose(text, robot.actuated, kinds, where="--pose")
+    slack = 1e-9  # a limit itself, written in degrees, is within the limits
+    for k in np.flatnonzero((a < robot.lower - slack) | (a > robot.upper + slack)):
+        low, here, high = robot.lower[k], a[k], robot.upper[k]
+        if not robot.prismatic[k]:
+            low, here, high = np.degrees((low, here, high))
+        warnings.warn(
+            f"{robot.actuated[k]} stands at {here:g} {'m' if robot.prismatic[k] else 'deg'}, "
+            f"beyond its limits {low:g} .. {high:g}.",
+            ToolkitWarning,
+            stacklevel=2,
+        )
+    return a
 
 
 def wrench_of(text: str | None) -> Array:
@@ -95,7 +108,14 @@ def open_data(path: Path, base: str | None = None, tool: str | None = None) -> O
             where=str(path),
             remedy=f"Write 'robot: ...' (a name or a path) into {path.with_suffix('.yaml')}.",
         )
-    robot = open_robot(data.robot, base or data.base_frame, tool or data.tool_frame)
+    try:
+        robot = open_robot(data.robot, base or data.base_frame, tool or data.tool_frame)
+    except InputError as error:
+        if error.where not in (None, data.robot):
+            raise
+        place = f"{path.with_suffix('.yaml')}: {error.where}" if error.where else None
+        where = place or str(path.with_suffix(".yaml"))
+        raise InputError(error.what, where=where, remedy=error.remedy) from error
     kinds = ["length" if slides else "angle" for slides in robot.prismatic]
     return Opened(data.with_joints(robot.actuated, kinds), robot)
 

@@ -235,7 +235,7 @@ class MapStore:
     def _check_identity(self) -> None:
         try:
             attributes = dict(self._open().attrs)
-        except (FileNotFoundError, ValueError, KeyError) as error:
+        except (FileNotFoundError, FileExistsError, ValueError, KeyError) as error:
             raise InputError(
                 "there is something here that is no map",
                 where=str(self.path),
