@@ -92,7 +92,8 @@ def command(
     for name in effects or ():
         start = with_effect(start, name, readings)
     start = with_freedom(start, fix or (), free)
-    found = fit(start, readings, method=method.value, robust=robust)
+    with progress_bar("identify"):
+        found = fit(start, readings, method=method.value, robust=robust)
     intervals: Sequence[Interval] | None = None
     if profile:
         with progress_bar("profile") as report:
