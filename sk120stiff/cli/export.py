@@ -39,10 +39,11 @@ def command(
         typer.Option("--to", help="The format.", show_default="by the ending of FILE"),
     ] = None,
 ) -> Answer:
-    """The modelled arm for a simulator: bodies, joints and springs, commanded to a pose.
+    """The modelled arm as a file for MuJoCo or SDF simulators.
 
-    Joints that no spring reaches are built in at the pose; joints that follow others still do. The
-    exported arm deflects as the model does, to well below a micrometre.
+    Bodies, joints and springs, commanded to a pose. Joints that no spring reaches are built in at
+    the pose; joints that follow others still do. The exported arm deflects as the model does, to
+    well below a micrometre.
 
     Example: sk120stiff export model.yaml --pose '0,20,-30,0,-60,0 deg' --out sk120.xml
     """

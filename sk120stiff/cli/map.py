@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_model, open_robot, pose_of, wrench_of
+from sk120stiff.cli.opening import direction_of, open_model, open_robot, pose_of, wrench_of
 from sk120stiff.cli.options import (
     AtOption,
     BaseOption,
@@ -180,7 +180,7 @@ def _points(
             where="--grid",
             remedy="One number makes an axis of one point: 'y=0 m'.",
         )
-    direction = None if axis is None else _unit_vector(axis)
+    direction = None if axis is None else direction_of(axis, "--tool-axis")
     rotation = None
     if orientation is not None:
         rotation = rotation_of(*_three(orientation, "angle", "--orientation"))
@@ -205,19 +205,6 @@ def _three(text: str, kind: str, where: str) -> Array:
     if values.shape != (3,):
         raise InputError(f"{len(values)} numbers given, three are needed", where=where)
     return values
-
-
-def _unit_vector(text: str) -> Array:
-    try:
-        vector = np.array([float(part) for part in text.replace(",", " ").split()])
-    except ValueError as error:
-        raise InputError(f"{text!r} is no direction", where="--tool-axis") from error
-    length = float(np.linalg.norm(vector))
-    if vector.shape != (3,) or not np.isfinite(length) or length == 0.0:
-        raise InputError(
-            f"{text!r} is no direction", where="--tool-axis", remedy="Write three numbers: 0,0,-1."
-        )
-    return vector / length
 
 
 def _parts(

@@ -146,3 +146,23 @@ def provenance(path: Path, data: Measurements) -> dict[str, str]:
         "version": str(__version__),
         "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
     }
+
+
+def direction_of(text: str, option: str) -> Array:
+    """(3,) unit vector of text like ``0,0,-1``; it has no unit.
+
+    Raises
+    ------
+    InputError
+        Not three finite numbers, or all zero.
+    """
+    try:
+        vector = np.array([float(part) for part in text.replace(",", " ").split()])
+    except ValueError as error:
+        raise InputError(f"{text!r} is no direction", where=option) from error
+    length = float(np.linalg.norm(vector))
+    if vector.shape != (3,) or not np.isfinite(length) or length == 0.0:
+        raise InputError(
+            f"{text!r} is no direction", where=option, remedy="Write three numbers: 0,0,-1."
+        )
+    return np.asarray(vector / length)

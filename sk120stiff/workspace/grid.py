@@ -133,7 +133,11 @@ class Chunks:
 
 
 def parse_axes(
-    texts: Sequence[str], limits: Mapping[str, tuple[float, float, str]], *, where: str = "--grid"
+    texts: Sequence[str],
+    limits: Mapping[str, tuple[float, float, str]],
+    *,
+    where: str = "--grid",
+    ranges: bool = False,
 ) -> tuple[Axis, ...]:
     """Axes from text like ``"joint_2_l=-70:70:5 deg; joint_3_u=0 deg"``.
 
@@ -146,6 +150,8 @@ def parse_axes(
         One text or several.
     limits
         Name → (lower limit, upper limit, kind of number) of everything that can be an axis.
+    ranges
+        Take ``start:stop`` without a step, as an axis of these two points.
 
     Raises
     ------
@@ -167,13 +173,17 @@ def parse_axes(
                 where=where,
                 remedy=f"Axes are: {', '.join(limits)}.",
             )
-        axes.append(Axis(name, _values(numbers, unit, limits[name], f"{where}, {name}")))
+        axes.append(Axis(name, _values(numbers, unit, limits[name], f"{where}, {name}", ranges)))
     return tuple(reversed(axes))
 
 
-def _values(text: str, unit: str, limit: tuple[float, float, str], where: str) -> Array:
+def _values(
+    text: str, unit: str, limit: tuple[float, float, str], where: str, ranges: bool
+) -> Array:
     lower, upper, kind = limit
     parts = text.split(":")
+    if ranges and len(parts) == 2:
+        parts = [*parts, parts[1]]
     if len(parts) not in (1, 3) or (len(parts) == 3 and not parts[2]) or parts == [""]:
         raise InputError(
             f"{text!r} is neither a number nor start:stop:step", where=where, remedy=_EXAMPLE
@@ -192,6 +202,10 @@ def _values(text: str, unit: str, limit: tuple[float, float, str], where: str) -
     if len(ends) == 1:
         return np.array(ends)
     start, stop, step = ends
+    if ranges:
+        if stop < start:
+            raise InputError(f"{text!r} ends before it starts", where=where)
+        return np.array([start, stop])
     if not step > 0.0 or stop < start:
         raise InputError(
             f"{text!r} has no points", where=where, remedy="start ≤ stop and step > 0 are needed."

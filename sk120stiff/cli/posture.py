@@ -1,0 +1,201 @@
+"""`sk120stiff posture MODEL PATH --out CSV`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import direction_of
+from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.errors import InputError
+from sk120stiff.model import read_model
+from sk120stiff.units import parse_values
+from sk120stiff.workspace import (
+    BestPosture,
+    PathTask,
+    Placement,
+    best_posture,
+    elastic_arm,
+    parse_axes,
+    read_path,
+    write_joints,
+)
+
+_PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+class Minimise(StrEnum):
+    """What is to be small."""
+
+    compliance = "compliance"
+    deflection = "deflection"
+
+
+def command(
+    model: ModelArgument,
+    path: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PATH",
+            help="A CSV file of tool placements and wrenches as for 'compensate': x[mm], y, z, "
+            "orientation or none, fx[N], fy, fz.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="CSV", help="Where to write the path by joints.")
+    ],
+    minimise: Annotated[
+        Minimise,
+        typer.Option(help="Compliance (so the stiffness is largest), or deflection by the wrench."),
+    ] = Minimise.compliance,
+    direction: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y,Z", help="Direction that matters, base axes.", show_default="all"
+        ),
+    ] = None,
+    axis: Annotated[
+        str | None,
+        typer.Option(
+            "--tool-axis",
+            metavar="X,Y,Z",
+            help="Direction of the tool's z axis, rotation about it free; instead of an "
+            "orientation in the file.",
+            show_default=False,
+        ),
+    ] = None,
+    place: Annotated[
+        str | None,
+        typer.Option(
+            metavar="RANGES",
+            help="How the part, and the path with it, may be moved about its middle: "
+            "'x=-300:300 mm; yaw=-30:30 deg'.",
+            show_default="not at all",
+        ),
+    ] = None,
+    limit_margin: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ANGLE", help="Distance from joint limits: '5 deg'.", show_default="none"
+        ),
+    ] = None,
+    singularity_margin: Annotated[
+        float,
+        typer.Option(help="Smallest allowed ratio of the position Jacobian's singular values."),
+    ] = 0.02,
+    at: AtOption = None,
+    seed: SeedOption = 0,
+) -> Answer:
+    """The stiffest or least deflected posture for a tool path.
+
+    Searches through what the task leaves free: other branches of the arm, rotation about the tool's
+    axis, the place of the part. The worst point of the path counts.
+
+    Example: sk120stiff posture model.yaml path.csv --tool-axis 0,0,-1 --minimise deflection
+    --out best.csv
+    """
+    believed = read_model(model)
+    robot = believed.robot
+    given = read_path(path, robot)
+    if given.position is None:
+        raise InputError(
+            "the path is given by joints, which leaves nothing to choose",
+            where=str(path),
+            remedy="Give x[mm], y[mm], z[mm].",
+        )
+    task = PathTask(
+        given.position,
+        axis=None if axis is None else direction_of(axis, "--tool-axis"),
+        rotation=given.rotation if axis is None else None,
+        wrench=given.wrench,
+        direction=None if direction is None else direction_of(direction, "--direction"),
+    )
+    margin = 0.0
+    if limit_margin is not None:
+        (margin,) = parse_values(limit_margin, "angle", where="--limit-margin")
+    with progress_bar("Searching") as report:
+        found = best_posture(
+            elastic_arm(believed, frame=at),
+            task,
+            minimise=minimise.value,
+            placement=None if place is None else _placement(place, given.position),
+            limit_margin=float(margin),
+            singularity_margin=singularity_margin,
+            seed=seed,
+            progress=report,
+        )
+    notes = {
+        f"{minimise.value}[{'um/N' if minimise == Minimise.compliance else 'um'}]": [
+            f"{value * 1e6:.6g}" for value in found.per_point
+        ]
+    }
+    write_joints(out, given, robot, found.a, notes)
+    document = {
+        "robot": robot.name,
+        "rows": given.count,
+        "minimised": minimise.value,
+        "unit": "m/N" if minimise == Minimise.compliance else "m",
+        "worst": found.objective,
+        "per_point": found.per_point,
+        "joints": robot.actuated,
+        "a": found.a,
+        "placement": dict(zip(_PLACES, found.placement.tolist(), strict=True)),
+        "condition": float(found.condition.min()),
+        "limit_margin": found.limit_margin,
+        "blind_choice": {
+            "postures": len(found.admissible),
+            "best": float(found.admissible[0]),
+            "median": float(np.median(found.admissible)),
+            "worst": float(found.admissible[-1]),
+        },
+        "out": str(out),
+    }
+    return Answer(document, _parts(found, minimise, out))
+
+
+def _placement(text: str, position: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Placement:
+    """Ranges like ``x=-300:300 mm`` about the middle of the path."""
+    limits = {name: (-np.inf, np.inf, "length" if name in "xyz" else "angle") for name in _PLACES}
+    lower, upper = np.zeros(6), np.zeros(6)
+    for axis in parse_axes([text], limits, where="--place", ranges=True):
+        k = _PLACES.index(axis.name)
+        lower[k], upper[k] = axis.values[0], axis.values[-1]
+    return Placement(position.mean(axis=0), lower, upper)
+
+
+def _parts(found: BestPosture, minimise: Minimise, out: Path) -> list[object]:
+    compliance = minimise == Minimise.compliance
+    scale, unit = (1e-6, "N/µm") if compliance else (1e6, "µm")
+
+    def shown(value: float) -> float:
+        return scale / value if compliance else scale * value
+
+    title = "Smallest stiffness along the path" if compliance else "Largest deflection"
+    blind = found.admissible
+    rows = [
+        ("best posture found", shown(found.objective)),
+        (f"best of {len(blind)} blind choices", shown(float(blind[0]))),
+        ("their median", shown(float(np.median(blind)))),
+        ("the worst of them", shown(float(blind[-1]))),
+    ]
+    parts: list[object] = [
+        table(f"{title} [{unit}]", ("", unit), rows),
+        f"Closest to a joint limit: {np.degrees(found.limit_margin):.1f}° (or "
+        f"{found.limit_margin * 1e3:.0f} mm). Smallest singular-value ratio: "
+        f"{found.condition.min():.3f}.",
+    ]
+    if found.placement.any():
+        moved = [
+            f"{name} {value * 1e3:.1f} mm" if name in "xyz" else f"{name} {np.degrees(value):.2f}°"
+            for name, value in zip(_PLACES, found.placement, strict=True)
+            if value
+        ]
+        parts.append(f"The part is moved by {', '.join(moved)}.")
+    return [*parts, f"Written: {out}"]

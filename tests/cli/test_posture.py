@@ -1,0 +1,71 @@
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sk120stiff.robot import load_robot
+from tests.cli.conftest import Run
+
+MODEL = str(Path(__file__).resolve().parents[2] / "robots/motoman_sk120/model.yaml")
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> str:
+    file = tmp_path / "path.csv"
+    rows = [f"{k},1500,{-200 + 100 * k},300,0,0,500" for k in range(5)]
+    file.write_text("point,x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n" + "\n".join(rows) + "\n")
+    return str(file)
+
+
+def test_the_path_is_passed_with_the_tool_as_asked(run: Run, path: str, tmp_path: Path) -> None:
+    out = tmp_path / "best.csv"
+    options = ("--tool-axis", "0,0,-1", "--minimise", "deflection", "--place", "x=-100:100 mm")
+    found = run("posture", MODEL, path, *options, "--out", str(out), "--json")
+    assert found.code == 0, found.stderr
+    document = found.document
+    assert document["rows"] == 5
+    assert document["worst"] == max(document["per_point"])
+    assert document["worst"] <= document["blind_choice"]["best"]
+    assert -0.1 <= document["placement"]["x"] <= 0.1
+    with out.open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    robot = load_robot("motoman_sk120")
+    for k, row in enumerate(rows):
+        a = np.radians([float(row[f"{joint}[deg]"]) for joint in robot.actuated])
+        T = robot.placement(a)
+        meant = [1.5 + document["placement"]["x"], -0.2 + 0.1 * k, 0.3]
+        np.testing.assert_allclose(T[:3, 3], meant, atol=1e-7)
+        np.testing.assert_allclose(T[:3, 2], [0.0, 0.0, -1.0], atol=1e-7)
+
+
+def test_people_see_what_there_was_to_gain(run: Run, path: str, tmp_path: Path) -> None:
+    found = run("posture", MODEL, path, "--out", str(tmp_path / "best.csv"))
+    assert found.code == 0, found.stderr
+    assert "blind choices" in found.stdout
+    assert "N/µm" in found.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("--tool-axis", "0,0,0"), "no direction"),
+        (("--direction", "up"), "no direction"),
+        (("--place", "x=100:-100 mm"), "ends before"),
+        (("--place", "w=1:2 mm"), "yaw"),
+        (("--place", "x=1:2"), "unit"),
+        (("--limit-margin", "5"), "unit"),
+    ],
+)
+def test_bad_input(
+    run: Run, path: str, tmp_path: Path, options: tuple[str, ...], says: str
+) -> None:
+    found = run("posture", MODEL, path, *options, "--out", str(tmp_path / "b.csv"))
+    assert found.code == 2
+    assert says in found.stderr
+
+
+def test_no_posture_is_an_explained_refusal(run: Run, path: str, tmp_path: Path) -> None:
+    found = run("posture", MODEL, path, "--limit-margin", "80 deg", "--out", str(tmp_path / "b"))
+    assert found.code == 1
+    assert "margins" in found.stderr
