@@ -121,7 +121,8 @@ write_map(joint_job(24, 16, 20), sys.argv[1], chunk_points=300)
 def test_a_killed_run_loses_at_most_the_chunk_it_was_at(tmp_path: Path, seed: int) -> None:
     job, path = joint_job(24, 16, 20), tmp_path / "m.zarr"
     number = MapStore(path, job, SMALL).chunks.number
-    process = subprocess.Popen([sys.executable, "-c", KILLED, str(path)])
+    root = Path(__file__).resolve().parents[2]
+    process = subprocess.Popen([sys.executable, "-c", KILLED, str(path)], cwd=root)
     progress = path / store_module.PROGRESS
     wanted = 2 + 5 * seed
     deadline = time.monotonic() + 120
