@@ -39,9 +39,9 @@ class Confirmation:
 
     @property
     def holds(self) -> bool:
-        """The name may be given."""
-        often = self.folds_improved >= 0.6 * self.folds and self.frequency >= 0.5
-        return often and self.gain > 0.0
+        """The name may be given: other poses gain by it, in most folds or beyond their scatter."""
+        mostly = self.folds_improved >= 0.6 * self.folds or self.gain > self.gain_error
+        return mostly and self.gain > 0.0 and self.frequency >= 0.5
 
 
 def confirm(

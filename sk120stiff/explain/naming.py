@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from sk120stiff.effects.gear import GearEffect
@@ -9,7 +11,7 @@ from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
 from sk120stiff.explain.explanation import Evidence, Finding
 from sk120stiff.explain.regression import Regression
-from sk120stiff.explain.search import Scored, gains, score_set, separation
+from sk120stiff.explain.search import Scored, gains, score_set
 from sk120stiff.explain.settling import Attempt
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
@@ -17,17 +19,39 @@ SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice 
 CONTENDERS = 24  # rivals looked at for every effect
 
 
-def findings_of(found: Attempt, *, seed: int) -> tuple[list[Finding], list[str]]:
-    """Findings in the order of their weight, and ids of effects that other poses do not confirm."""
+@dataclass(frozen=True)
+class Named:
+    """What came of the chosen effects.
+
+    Attributes
+    ----------
+    findings
+        Effects that may be named, in the order of their weight.
+    doubted
+        Ids of effects that other poses do not confirm.
+    shadows
+        Ids of effects that only mend the law of a stronger one.
+    """
+
+    findings: tuple[Finding, ...]
+    doubted: tuple[str, ...]
+    shadows: tuple[str, ...]
+
+
+def findings_of(found: Attempt, *, seed: int) -> Named:
+    """Judge every chosen effect."""
     findings: list[Finding] = []
     doubted: list[str] = []
+    shadows: list[str] = []
     for effect in by_weight(found.regression, found.chosen):
         finding = _finding(found, effect, seed)
-        if finding.evidence.confirmation.holds and not _shadow(finding, findings):
+        if _shadow(finding, findings):
+            shadows.append(finding.effect.id)
+        elif finding.evidence.confirmation.holds:
             findings.append(finding)
         else:
             doubted.append(finding.effect.id)
-    return findings, doubted
+    return Named(tuple(findings), tuple(doubted), tuple(shadows))
 
 
 def _shadow(finding: Finding, before: list[Finding]) -> bool:
@@ -53,13 +77,14 @@ def _finding(found: Attempt, effect: int, seed: int) -> Finding:
     chosen = regression.candidates[effect]
     rivals = _rivals(regression, rest, effect)
     exact = _aliases(found, effect, with_it, rivals)
-    sums = regression.sums()
+    # A rival is compared with the effect in full: that some of its parameters may be equal is
+    # no evidence against the rival, nor is one parameter more.
+    full = score_set(regression, regression.sums(), found.chosen, untied=effect).score
+    margin = max(MARGIN, np.log(regression.rows) + 0.5)
     same = [
         e
         for e, model in rivals
-        if model.score - with_it.score < MARGIN
-        or regression.candidates[e].id in exact
-        or separation(regression, sums, with_it, effect, e) < MARGIN
+        if model.score - full < margin or regression.candidates[e].id in exact
     ]
     others = [(e, model.score) for e, model in rivals if e not in same]
     runner_up = min(others, key=lambda pair: pair[1], default=None)
@@ -88,6 +113,7 @@ def _aliases(
         regression.candidates[e]
         for e, model in rivals
         if model.solved.rss - with_it.solved.rss < 2.0 * MARGIN
+        and len(regression.columns[e]) <= len(regression.columns[effect]) + 1
     ]
     always = exact_aliases(
         found.final.model,

@@ -46,12 +46,19 @@ class Scored:
     variants: tuple[int, ...]
 
 
-def score_set(regression: Regression, sums: Sums, effects: Iterable[int]) -> Scored:
-    """Score the base model with some candidates added."""
+def score_set(
+    regression: Regression, sums: Sums, effects: Iterable[int], *, untied: int | None = None
+) -> Scored:
+    """Score the base model with some candidates added.
+
+    Of every candidate the variant that scores best counts; `untied` names one that has to enter
+    with all its parameters.
+    """
     chosen = tuple(sorted(effects))
     best: Scored | None = None
     drawn = [e for e in chosen if regression.candidates[e].exchangeable]
-    for variants in product(*(range(len(regression.variants[e])) for e in chosen)):
+    choices = (range(1 if e == untied else len(regression.variants[e])) for e in chosen)
+    for variants in product(*choices):
         parts = [regression.variants[e][k] for e, k in zip(chosen, variants, strict=True)]
         columns = np.concatenate([regression.base, *parts]).astype(np.intp)
         if drawn:
@@ -185,25 +192,3 @@ def beam_search(
             if e not in set(fixed):
                 scored(set(model.effects) - {e})
     return sorted((m for m in seen.values() if m.plausible), key=lambda m: m.score)
-
-
-def separation(regression: Regression, sums: Sums, model: Scored, effect: int, rival: int) -> float:
-    """λ = ‖M_[B, S_f] S_e v̂‖²: what a rival in the place of an effect cannot imitate of it.
-
-    B are the other columns of the model. In units of the noise variance; below `MARGIN` the
-    readings do not tell the two apart, whatever the number of their parameters.
-    """
-    own = regression.variants[effect][model.variants[model.effects.index(effect)]]
-    inside = np.isin(model.solved.columns, own)
-    weights = model.solved.values[inside]
-    signature = model.solved.columns[inside]
-    beside = np.concatenate([model.solved.columns[~inside], regression.columns[rival]])
-    right = sums.gram[np.ix_(beside, signature)] @ weights
-    gram = sums.gram[np.ix_(beside, beside)] + np.diag(regression.plausible[beside] ** -2.0)
-    scale = 1.0 / np.sqrt(np.diag(gram))
-    values, vectors = np.linalg.eigh(gram * np.outer(scale, scale))
-    along = vectors.T @ (right * scale)
-    seen = values > 1e-10
-    imitated = float((along[seen] ** 2 / values[seen]).sum())
-    whole = float(weights @ sums.gram[np.ix_(signature, signature)] @ weights)
-    return max(whole - imitated, 0.0)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from sk120stiff.effects import situation_of
 from sk120stiff.explain.adequacy import Adequacy, adequacy
 from sk120stiff.explain.consequences import completed
-from sk120stiff.explain.explanation import Explanation, Finding
-from sk120stiff.explain.naming import findings_of
+from sk120stiff.explain.explanation import Explanation
+from sk120stiff.explain.naming import SHADOW, Named, findings_of
 from sk120stiff.explain.settling import Attempt, attempt, with_effects
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
 from sk120stiff.explain.steps import gap_steps
@@ -56,15 +56,18 @@ def explain(
     tell("searching the catalogue", 0.05)
     found, reasons = _best_attempt(model, measurements.masked(), wish)
     left = _adequacy(found)
-    findings: list[Finding] = []
-    doubted: list[str] = []
-    if not _too_much(left):
+    named = Named((), (), ())
+    allowed = LEFT_OVER
+    if not _too_much(left, allowed):
         tell("confirming on other poses", 0.5)
-        findings, doubted = findings_of(found, seed=wish.seed)
-        if doubted:
-            found = with_effects(found, [finding.effect for finding in findings])
+        named = findings_of(found, seed=wish.seed)
+        if named.shadows:
+            allowed = SHADOW
+        if named.doubted or named.shadows:
+            found = with_effects(found, [finding.effect for finding in named.findings])
             left = _adequacy(found)
-    if _too_much(left):
+    findings = named.findings
+    if _too_much(left, allowed):
         nearest = [effect.id for effect in found.effects]
         return _finished(
             with_effects(found, []),
@@ -78,19 +81,19 @@ def explain(
                 noise_reasons=tuple(reasons),
                 set_aside=tuple(int(row) for row in found.aside),
                 adequacy=left,
-                suspects=tuple(dict.fromkeys([*nearest, *doubted])),
+                suspects=tuple(dict.fromkeys([*nearest, *named.doubted])),
             ),
             wish,
         )
     tell("the gap step by step", 0.7)
-    named = [finding.effect for finding in findings]
+    effects = [finding.effect for finding in findings]
     settled = all(finding.settled for finding in findings)
     answer = Explanation(
         verdict="none" if not findings else "named" if settled else "ambiguous",
-        findings=tuple(findings),
+        findings=findings,
         base=found.base,
         final=found.final,
-        steps=gap_steps(found.base, named, holdout, seed=wish.seed),
+        steps=gap_steps(found.base, effects, holdout, seed=wish.seed),
         noise=found.base.problem.noise,
         noise_reasons=tuple(reasons),
         set_aside=tuple(int(row) for row in found.aside),
@@ -143,9 +146,9 @@ def _adequacy(found: Attempt) -> Adequacy:
     return adequacy(found.final, found.regression, found.scored.solved.columns)
 
 
-def _too_much(left: Adequacy) -> bool:
+def _too_much(left: Adequacy, allowed: float) -> bool:
     """Is more left over than a name may leave?"""
-    return left.lacking and left.excess > LEFT_OVER * left.explained
+    return left.lacking and left.excess > allowed * left.explained
 
 
 def _finished(found: Attempt, answer: Explanation, wish: Options) -> Explanation:
