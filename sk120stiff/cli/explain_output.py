@@ -22,6 +22,7 @@ from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import write_model
 from sk120stiff.show.wording import with_error
 
+MANY = 12  # parameters of one effect beyond which only the largest is printed
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
 
@@ -198,8 +199,12 @@ def findings(answer: Explanation) -> list[str]:
         for other in finding.alternatives:
             kind = "always the same" if other in finding.exact else "not told apart here"
             lines.append(f"  or {other} ({kind})")
-        for p in answer.final.model.parameters:
-            if p.effect == finding.effect:
-                value = with_error(p.public_value, p.public_std, p.spec.unit)
-                lines.append(f"  {p.spec.name} {value}")
+        own = [p for p in answer.final.model.parameters if p.effect == finding.effect]
+        if len(own) > MANY:
+            largest = max(own, key=lambda p: abs(p.public_value))
+            lines.append(f"  {len(own)} values, the largest:")
+            own = [largest]
+        for p in own:
+            value = with_error(p.public_value, p.public_std, p.spec.unit)
+            lines.append(f"  {p.spec.name} {value}")
     return lines

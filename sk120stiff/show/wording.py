@@ -19,15 +19,17 @@ def percent(share: float) -> str:
 
 
 def unit_of(written: str) -> str:
-    """A unit as print has it: ``N*m**2/rad`` becomes N·m²/rad."""
+    """A unit as print has it: ``N*m**2/rad`` becomes N·m²/rad, and 1 is not written."""
+    if written == "1":
+        return ""
     return written.replace("**2", "²").replace("**3", "³").replace("*", "·")
 
 
 def with_error(value: float, std: float | None, unit: str = "") -> str:
     """``(1.41 ± 0.11)·10⁷ N·m/rad``: a value to the digits that its standard error supports."""
-    tail = f" {unit_of(unit)}" if unit else ""
+    tail = f" {unit_of(unit)}" if unit_of(unit) else ""
     if not math.isfinite(value):
-        return f"rigid{tail}" if value > 0 else f"{value}{tail}"
+        return "rigid" if value > 0 else number(value)
     if std is None or not math.isfinite(std) or std <= 0.0:
         return f"{number(value)}{tail}"
     exponent = math.floor(math.log10(max(abs(value), std)))

@@ -144,6 +144,17 @@ def test_an_open_question_names_both_and_what_to_measure() -> None:
     assert "What to measure next" in text
 
 
+def test_a_crowd_of_rivals_does_not_flood_the_first_lines() -> None:
+    found = answer("ambiguous")
+    names = tuple(f"joint_offset:{joint}" for joint in found.base.model.robot.actuated)
+    crowd = replace(found, findings=(replace(found.findings[0], alternatives=names),))
+    lead = lead_of(crowd)
+    assert lead.count("The zero of") == 2
+    assert "4 others" in lead
+    text = plain(explain_report(crowd, found.base.problem.measurements).html())
+    assert all(name in text for name in names)
+
+
 def test_outside_gives_no_name() -> None:
     found, text = answer("outside"), plain(page("outside"))
     assert "no effect of the catalogue explains it" in text
@@ -217,7 +228,8 @@ def test_swallowed_is_what_a_refit_leaves() -> None:
 def test_numbers_are_written_as_people_do() -> None:
     assert with_error(1.4115e7, 1.13e6, "N*m/rad") == "(1.41 ± 0.11)·10⁷ N·m/rad"
     assert with_error(-0.0031, 0.0006) == "−0.00310 ± 0.00060"
-    assert with_error(float("inf"), None, "N/m") == "rigid N/m"
+    assert with_error(float("inf"), None, "N/m") == "rigid"
+    assert with_error(0.0248, 0.001, "1") == "0.0248 ± 0.0010"
     assert with_error(62604.0, 7756.0) == "62604 ± 7756"
     assert number(1105.2, 3) == "1105"
     assert number(0.0, 3) == "0"

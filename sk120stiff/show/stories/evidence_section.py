@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
 
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.identify import Fit
@@ -10,6 +13,8 @@ from sk120stiff.model import Parameter
 from sk120stiff.show.report import Block, Note, Section, Table
 from sk120stiff.show.stories.verdicts import near, sentence_of
 from sk120stiff.show.wording import counted, listed, number, percent, unit_of, with_error
+
+MANY = 12  # parameters of one effect beyond which a table helps nobody
 
 
 def evidence_section(answer: Explanation) -> Section:
@@ -54,15 +59,28 @@ def _finding(answer: Explanation, finding: Finding) -> list[Block]:
     return blocks
 
 
-def _sizes(answer: Explanation, finding: Finding) -> Table:
-    rows = parameter_rows(
-        answer.final, [p for p in answer.final.model.parameters if p.effect == finding.effect]
-    )
+def _sizes(answer: Explanation, finding: Finding) -> Table | str:
+    own = [p for p in answer.final.model.parameters if p.effect == finding.effect]
+    if len(own) > MANY:
+        return many_values(own)
+    rows = parameter_rows(answer.final, own)
     return Table(
         ["parameter", "value ± standard error", "95 % from", "to", "unit"],
         rows,
         "Its size. An interval of a stiffness is open upwards where the readings do not exclude "
         "that this direction is rigid.",
+    )
+
+
+def many_values(parameters: Sequence[Parameter]) -> str:
+    """Parameters of one kind that are too many for a table, told by their size."""
+    values = np.array([p.public_value for p in parameters])
+    largest = parameters[int(np.argmax(np.abs(values)))]
+    rms = number(float(np.sqrt(np.mean(values**2))), 3)
+    return (
+        f"It has {len(values)} values; their rms is {rms} {unit_of(largest.spec.unit)}, the largest is {largest.spec.name} with "
+        f"{with_error(largest.public_value, largest.public_std, largest.spec.unit)}. All stand in "
+        "the model file."
     )
 
 

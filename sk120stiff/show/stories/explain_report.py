@@ -19,7 +19,7 @@ from sk120stiff.show.stories.evidence_section import evidence_section
 from sk120stiff.show.stories.gap_section import gap_section
 from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
 from sk120stiff.show.stories.parameters_section import parameters_section
-from sk120stiff.show.stories.verdicts import lead_of, title_of
+from sk120stiff.show.stories.verdicts import FEW, lead_of, title_of
 from sk120stiff.show.stories.where_section import where_section
 from sk120stiff.show.wording import chance, counted, listed, percent, um
 
@@ -93,6 +93,8 @@ def _line(answer: Explanation, k: int) -> str:
     step, before = answer.steps[k + 1], answer.steps[k]
     c = finding.evidence.confirmation
     rivals = [f"`{name}`" for name in finding.alternatives]
+    if len(rivals) > FEW + 1:
+        rivals = [*rivals[:FEW], counted(len(rivals) - FEW, "other")]
     alternatives = f", or {listed(rivals, 'or')}" if rivals else ""
     return (
         f"{finding.effect.sentence()} (`{finding.effect.id}`{alternatives}) Held-out gap "

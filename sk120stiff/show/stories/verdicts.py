@@ -6,6 +6,8 @@ from sk120stiff.effects import effect
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding, noise_floor
 from sk120stiff.show.wording import counted, listed, um
 
+FEW = 2  # rivals that are told in the first lines; the evidence lists all
+
 
 def title_of(answer: Explanation) -> str:
     """Heading of the report."""
@@ -50,7 +52,9 @@ def _ambiguous(answer: Explanation) -> str:
     said = " ".join(settled)
     for finding in open_:
         rivals = [_said(answer, name) for name in near(finding)]
-        said += f" {finding.effect.sentence()} Or: {' Or: '.join(rivals)}"
+        said += f" {finding.effect.sentence()} Or: {' Or: '.join(rivals[:FEW])}"
+        if len(rivals) > FEW:
+            said += f" Or one of {counted(len(rivals) - FEW, 'other')}."
     tail = " These readings cannot tell which."
     if answer.next_poses is not None:
         tail += f" {counted(len(answer.next_poses[0]), 'further reading')} would."

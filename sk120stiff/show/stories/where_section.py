@@ -22,7 +22,8 @@ def where_section(answer: Explanation) -> Section:
     blocks: list[Block] = [Items(answer.where)]
     if isinstance(found, Localisation):
         blocks += _evidence(found)
-    return Section("Where it lives", blocks)
+    anything = not isinstance(found, Localisation) or found.real
+    return Section("Where it lives" if anything else "Is there a gap at all?", blocks)
 
 
 def _evidence(found: Localisation) -> list[Block]:
