@@ -78,7 +78,8 @@ def many_values(parameters: Sequence[Parameter]) -> str:
     largest = parameters[int(np.argmax(np.abs(values)))]
     rms = number(float(np.sqrt(np.mean(values**2))), 3)
     return (
-        f"It has {len(values)} values; their rms is {rms} {unit_of(largest.spec.unit)}, the largest is {largest.spec.name} with "
+        f"It has {len(values)} values; their rms is {rms} {unit_of(largest.spec.unit)}, the "
+        f"largest is {largest.spec.name} with "
         f"{with_error(largest.public_value, largest.public_std, largest.spec.unit)}. All stand in "
         "the model file."
     )
