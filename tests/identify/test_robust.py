@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.identify import Problem, fit, solve
-from sk120stiff.identify.robust import LIMIT, reading_lengths, solve_robustly
+from sk120stiff.identify.robust import LIMIT, _inflation, reading_lengths, solve_robustly
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.plan import Schedule
 from tests.identify.conftest import readings_of, without_statement
@@ -104,3 +104,14 @@ def test_intervals_hold_in_spite_of_outliers(springs) -> None:
     assert inside[True] >= 0.88 * 90
     assert inside[False] < 0.8 * 90
     assert np.std(misses[True]) < 0.75 * np.std(misses[False])
+
+
+def test_inflation_by_hand() -> None:
+    """Huber 1973 for whole readings: E ψ² over (E ψ')², times the mean weight."""
+    lengths = np.array([0.5, 1.0, 2.0, 2.0 * LIMIT])
+    weights = np.array([1.0, 1.0, 1.0, 0.5])
+    psi = (0.25 + 1.0 + 4.0 + LIMIT**2) / 4 / 3
+    slope = (3 * (1 + 2) + 0 + 2 * 0.5) / 4 / 3
+    freedom = (12 - 3) / 12
+    expected = psi / freedom / slope**2 * 3.5 / 4
+    assert _inflation(lengths, weights, 3) == pytest.approx(expected, rel=1e-12)

@@ -131,3 +131,19 @@ def test_effects_of_time_and_branch_are_simulated(springs, plan, robot) -> None:
     up, down = change[0], change[4]  # equal loads on both branches
     assert up[2] - down[2] == pytest.approx(1e-6 * (since[0] - since[4]), abs=1e-6 * 8)
     assert np.linalg.norm(up[:2] - down[:2]) > 1e-5
+
+
+def test_loaded_positions_know_nothing_of_the_zero_reading(springs, plan) -> None:
+    """A tracker reads each position by itself: the errors of both have the same size."""
+    noise, steps = NoiseModel(1e-5), Schedule("ascending", 10)
+    exact = as_positions(springs, simulate(springs, plan, schedule=steps))
+    zero = ~exact.wrench.any(axis=1)
+    errors = np.array(
+        [
+            as_positions(springs, simulate(springs, plan, noise=noise, schedule=steps, seed=s))
+            .displacement - exact.displacement
+            for s in range(60)
+        ]
+    )  # fmt: skip
+    assert errors[:, zero].std() == pytest.approx(1e-5, rel=0.1)
+    assert errors[:, ~zero].std() == pytest.approx(1e-5, rel=0.1)
