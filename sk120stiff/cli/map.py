@@ -21,6 +21,7 @@ from sk120stiff.cli.options import (
 )
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.model import Model
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
@@ -32,6 +33,7 @@ from sk120stiff.workspace import (
     MapReport,
     PositionGrid,
     elastic_arm,
+    open_map,
     parse_axes,
     summarise_map,
     verify_map,
@@ -98,6 +100,15 @@ def command(
             show_default="compute here",
         ),
     ] = None,
+    page: Annotated[
+        Path | None,
+        typer.Option(
+            "--page",
+            metavar="HTML",
+            help="Write a page too: the least stiffness as coloured points around the robot.",
+            show_default="none",
+        ),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace another map of that name.")
     ] = False,
@@ -114,7 +125,8 @@ def command(
     --wrench '0,0,-490 N' --out sk120.zarr
     """
     arm_robot = open_robot(robot, base, tool)
-    arm = elastic_arm(open_model(arm_robot, model), frame=at)
+    believed = open_model(arm_robot, model)
+    arm = elastic_arm(believed, frame=at)
     rest = pose_of(arm_robot, pose)
     loads = np.array([wrench_of(text) for text in wrench] if wrench else [np.zeros(6)])
     points = _points(arm, grid, rest, axis, orientation)
@@ -131,6 +143,8 @@ def command(
             remedy="Make it anew with --overwrite.",
         )
     loads_found, status = summarise_map(out)
+    if page is not None:
+        _write_page(page, out, believed, pose)
     document = {
         "robot": arm.name,
         "store": str(out),
@@ -140,6 +154,7 @@ def command(
         "chunks": written.chunks,
         "files_verified": check.files,
         "status": status,
+        "page": page,
         "wrenches": loads,
         "loads": loads_found,
         "units": {
@@ -151,6 +166,15 @@ def command(
         },
     }
     return Answer(document, parts=_parts(arm, written, check.files, status, loads, loads_found))
+
+
+def _write_page(page: Path, store: Path, model: Model, pose: str | None) -> None:
+    from sk120stiff.show import cloud_of_map, cloud_page, scene_of_model
+
+    robot = model.robot
+    title = f"{robot.name}: stiffness over the workspace"
+    scene = scene_of_model(model, title=title, a=pose_of(robot, pose))
+    cloud_page(page, scene, cloud_of_map(open_map(store), robot))
 
 
 def _points(

@@ -20,6 +20,10 @@ Scene (`sk120stiff.show.scene`)
     ``static_scene(path, scene)`` for a self-contained page with sliders, ``scene_html(scene)`` for
     its text, and the scene itself shows in a notebook.
 
+Map (`sk120stiff.show.cloud`)
+    ``cloud_page(path, scene, cloud_of_map(open_map("map.zarr"), robot))``: the robot among the
+    coloured points of a map.
+
 Live (`sk120stiff.show.live`)
     ``serve(scene, port=..., open_browser=...)``: the same page with everything computed by Python.
 """
@@ -31,6 +35,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from sk120stiff.show.building import scene_of_model
+    from sk120stiff.show.cloud import Cloud, cloud_html, cloud_of_map, cloud_page
     from sk120stiff.show.elastic import Elastic
     from sk120stiff.show.report import (
         Code,
@@ -50,6 +55,7 @@ if TYPE_CHECKING:
     from sk120stiff.show.static import scene_html, static_scene
 
 _HOME = {
+    "Cloud": "cloud",
     "Code": "report",
     "Elastic": "elastic",
     "Items": "report",
@@ -64,6 +70,9 @@ _HOME = {
     "ScenePose": "scene",
     "Section": "report",
     "Table": "report",
+    "cloud_html": "cloud",
+    "cloud_of_map": "cloud",
+    "cloud_page": "cloud",
     "inline_svg": "saving",
     "save_figure": "saving",
     "reproducibility": "report",
@@ -73,6 +82,7 @@ _HOME = {
 }
 
 __all__ = [
+    "Cloud",
     "Code",
     "Elastic",
     "Items",
@@ -87,6 +97,9 @@ __all__ = [
     "ScenePose",
     "Section",
     "Table",
+    "cloud_html",
+    "cloud_of_map",
+    "cloud_page",
     "inline_svg",
     "reproducibility",
     "save_figure",

@@ -67,7 +67,7 @@ def render_page(payload: dict[str, Any], *, viewer: str | None) -> str:
         Meshcat's script to put into the page; None lets the page load it from the live server.
     """
     return (
-        _environment()
+        environment()
         .get_template("page.html.j2")
         .render(
             title=payload["title"],
@@ -104,7 +104,8 @@ def viewer_script() -> str:
 
 
 @cache
-def _environment() -> Environment:
+def environment() -> Environment:
+    """The templates of pages with a 3-D scene."""
     return Environment(
         loader=PackageLoader("sk120stiff.show", "page"),
         autoescape=True,

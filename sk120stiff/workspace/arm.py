@@ -45,8 +45,8 @@ class ElasticArm:
 
     Attributes
     ----------
-    name
-        Name of the robot.
+    name, frame
+        Name of the robot, and of the frame that carries the point.
     joints
         (n,) names of the actuated joints.
     slides
@@ -70,6 +70,7 @@ class ElasticArm:
     """
 
     name: str
+    frame: str
     joints: tuple[str, ...]
     slides: tuple[bool, ...]
     lower: Array
@@ -179,6 +180,7 @@ def elastic_arm(
     weighs = mechanism.chain.weighs and sag.any()
     return ElasticArm(
         name=robot.name,
+        frame=robot.tool_frame,
         joints=robot.actuated,
         slides=robot.prismatic,
         lower=robot.lower,

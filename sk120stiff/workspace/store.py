@@ -198,7 +198,9 @@ class MapStore:
             "title": f"Stiffness of {arm.name} over its workspace",
             "robot": arm.name,
             "joints": list(arm.joints),
+            "frame": arm.frame,
             "point": arm.point.tolist(),
+            "rest": self.job.points.rest.tolist(),
             "convention": "stiffness of the unloaded pose under a small displacement, "
             "J (K_theta - K_C)^-1 J^T inverted, base axes, SI units",
             "coordinates": "wrench",

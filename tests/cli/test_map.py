@@ -26,6 +26,15 @@ def test_a_map_is_written_and_summed_up(run: Run, tmp_path: Path) -> None:
     assert again.document["written"] == 0
 
 
+def test_a_page_shows_the_map(run: Run, tmp_path: Path) -> None:
+    page = tmp_path / "map.html"
+    found = run(
+        "map", "motoman_sk120", *GRID, "--out", str(tmp_path / "m.zarr"), "--page", str(page)
+    )
+    assert found.code == 0, found.stderr
+    assert "least stiffness" in page.read_text()
+
+
 def test_people_see_a_table(run: Run, tmp_path: Path) -> None:
     store = str(tmp_path / "m.zarr")
     found = run("map", "motoman_sk120", "--grid", "x=1.8:2.2:0.2; y=0; z=0:4:2 m", "--out", store)
