@@ -32,7 +32,9 @@ def exact_aliases(
         (3,) measured point in the tool frame [m].
     """
     pool = random_pool(model.robot, poses=150, directions=3, force=300.0, point=point, seed=1)
-    full = model
+    # Where the effect is absent: in its presence a gain of the sensor holds it already.
+    absent = [0.0 if p.effect.id == effect.id else p.value for p in model.parameters]
+    full = model.with_values(np.array(absent))
     present = {e.id for e in model.effects}
     for other in others:
         if other.id not in present:
@@ -41,7 +43,8 @@ def exact_aliases(
     typical = np.array([parameter.spec.typical for parameter in full.parameters])
     X = (derivative * typical).reshape(-1, len(typical))
     owner = np.array([parameter.effect.id for parameter in full.parameters])
-    values = (full.values / typical)[owner == effect.id]
+    values = model.values[[p.effect.id == effect.id for p in model.parameters]]
+    values = values / typical[owner == effect.id]
     signature = X[:, owner == effect.id] @ values
     base = X[:, np.isin(owner, list(present - {effect.id}))]
     reference = max(float(np.linalg.norm(_without(base, signature))), 1e-300)

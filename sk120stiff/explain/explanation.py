@@ -74,7 +74,7 @@ class Step:
     Attributes
     ----------
     label
-        ``joint_springs``, then ``+ name:where``.
+        Names of the base model's effects, then ``+ name:where``.
     fit_rms
         On the readings that were fitted.
     heldout_rms

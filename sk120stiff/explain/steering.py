@@ -39,8 +39,9 @@ class Options:
 
 def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Model:
     """The model with the effects that the user takes for granted, to be fitted with it."""
+    everything = all_effects(model.robot, poses=used.poses, timed=used.time is not None)
     for wanted in assumed:
-        found = [e for e in all_effects(model.robot, poses=used.poses) if _matches(e, wanted)]
+        found = [effect for effect in everything if _matches(effect, wanted)]
         if not found:
             raise _unknown(wanted, model)
         for effect in found:

@@ -33,10 +33,15 @@ def gap_steps(
     steps = []
     for count in range(len(effects) + 1):
         found = refit(base, effects[:count])
-        label = "joint_springs" if not count else f"+ {effects[count - 1].id}"
+        label = f"+ {effects[count - 1].id}" if count else _base_name(base)
         held = _on_poses_left_out(found, seed) if holdout is None else _on_file(found, holdout)
         steps.append(Step(label, found.rms, held))
     return tuple(steps)
+
+
+def _base_name(base: Fit) -> str:
+    """Names of the base model's effects, each once."""
+    return " + ".join(dict.fromkeys(effect.name for effect in base.model.effects))
 
 
 def _on_file(found: Fit, holdout: Measurements) -> float:

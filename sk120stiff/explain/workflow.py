@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from sk120stiff.effects import situation_of
+from sk120stiff.errors import InputError
 from sk120stiff.explain.adequacy import Adequacy, adequacy
 from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.explanation import Explanation
@@ -12,7 +13,7 @@ from sk120stiff.explain.naming import SHADOW, Named, findings_of
 from sk120stiff.explain.settling import Attempt, attempt, with_effects
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
 from sk120stiff.explain.steps import gap_steps
-from sk120stiff.identify import choose_noise
+from sk120stiff.identify import choose_noise, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
@@ -47,12 +48,13 @@ def explain(
     Raises
     ------
     InputError
-        No displacements, too few readings, or an effect that does not exist.
+        No displacements, too few readings, one pose alone, or an effect that does not exist.
     Refusal
         The base model itself cannot be fitted.
     """
     wish = options or Options()
     tell = progress or _silent
+    _refuse_unexplainable(model, measurements)
     tell("searching the catalogue", 0.05)
     found, reasons = _best_attempt(model, measurements.masked(), wish)
     left = _adequacy(found)
@@ -101,6 +103,16 @@ def explain(
     )
     tell("what these readings cannot tell", 0.85)
     return _finished(found, answer, wish)
+
+
+def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
+    refuse_unusable(model, measurements)
+    if len(measurements.masked().poses) < 2:
+        raise InputError(
+            "readings of one pose alone cannot be explained: no other pose can confirm a name",
+            where=str(measurements.path or "measurements"),
+            remedy="Measure at two poses or more; springs alone come from 'sk120stiff identify'.",
+        )
 
 
 def _best_attempt(

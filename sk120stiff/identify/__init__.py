@@ -1,7 +1,7 @@
 """Measurements + model become a `Fit`: least squares, uncertainty, what cannot be known."""
 
 from sk120stiff.identify.comparison import Compared, compare
-from sk120stiff.identify.estimate import fit
+from sk120stiff.identify.estimate import fit, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.held_out import HeldOut, held_out
 from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
@@ -25,6 +25,7 @@ __all__ = [
     "held_out",
     "lack_of_fit",
     "profile_intervals",
+    "refuse_unusable",
     "solve",
     "solve_near",
     "weak_directions",

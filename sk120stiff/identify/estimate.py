@@ -51,7 +51,7 @@ def fit(
         The fit did not converge, no equilibrium exists, or the readings show none of the
         parameters.
     """
-    _refuse_unusable(model, measurements)
+    refuse_unusable(model, measurements)
     used = measurements.masked()
     reasons: tuple[str, ...] = ()
     if noise is None:
@@ -100,7 +100,8 @@ def _checked(found: Fit, measurements: Measurements) -> Fit:
     return found
 
 
-def _refuse_unusable(model: Model, measurements: Measurements) -> None:
+def refuse_unusable(model: Model, measurements: Measurements) -> None:
+    """Raise an `InputError` for readings that no fit of this model can be made of."""
     where = _place(measurements)
     if not len(model.free):
         raise InputError(

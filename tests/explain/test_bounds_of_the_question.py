@@ -1,0 +1,73 @@
+"""What explain refuses before it computes, and what it may call the same thing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff import InputError, Model, base_model, load_robot
+from sk120stiff.effects import effect
+from sk120stiff.explain import explain
+from sk120stiff.explain.aliases import exact_aliases
+from sk120stiff.explain.steering import with_assumed
+from sk120stiff.explain.steps import gap_steps
+from sk120stiff.identify import fit
+from tests.explain.readings import NOISE, POINT, base_fit, hidden
+
+
+@pytest.fixture(scope="module")
+def springs() -> Model:
+    model = base_model(load_robot("motoman_sk120"))
+    assert model is not None
+    return model
+
+
+def test_a_plan_is_refused_as_bad_input(springs):
+    with pytest.raises(InputError, match="no measured displacements"):
+        explain(springs, replace(hidden(), displacement=None))
+
+
+def test_one_pose_is_refused_before_the_search(springs):
+    readings = hidden()
+    with pytest.raises(InputError, match="one pose alone"):
+        explain(springs, readings.select(readings.rows_of("1")))
+
+
+def test_a_gain_of_the_force_sensor_is_no_other_name_for_rocking(springs):
+    """All gains together scale the whole displacement, that of the rocking base among it."""
+    robot = springs.robot
+    rocking = effect(robot, "base_rocking", "base_link")
+    model = (springs + rocking).with_public(
+        **{"base_rocking:base_link.stiffness_x": 6e6, "base_rocking:base_link.stiffness_y": 7e6}
+    )
+    rivals = [effect(robot, "force_scale", "sensor"), effect(robot, "reading_scale", "tracker")]
+    assert exact_aliases(model, rocking, rivals, point=POINT) == ()
+
+
+def test_the_twist_of_the_forearm_is_another_name_for_the_spring_of_joint_4(springs):
+    robot = springs.robot
+    wrist = effect(robot, "joint_springs", "joint_4_r")
+    model = (springs + wrist).with_public(**{"joint_springs:joint_4_r.stiffness": 3e5})
+    rivals = [effect(robot, "link_torsion", "link_3_u"), effect(robot, "force_scale", "sensor")]
+    assert exact_aliases(model, wrist, rivals, point=POINT) == ("link_torsion:link_3_u",)
+
+
+def test_drift_taken_for_granted_goes_by_the_clock_where_there_is_one(springs):
+    readings = hidden()
+    timed = replace(readings, time=60.0 * np.asarray(readings.order))
+    units = {
+        p.spec.unit
+        for p in with_assumed(springs, timed, ["reading_drift"]).parameters
+        if p.effect.name == "reading_drift"
+    }
+    assert units == {"m/s"}
+
+
+def test_the_first_step_is_called_by_all_effects_of_the_base_model(springs):
+    readings = hidden(poses=5)
+    assert [step.label for step in gap_steps(base_fit(readings), (), None, seed=0)] == [
+        "joint_springs"
+    ]
+    more = springs + effect(springs.robot, "base_rocking", "base_link")
+    found = fit(more, readings, noise=NOISE)
+    assert gap_steps(found, (), None, seed=0)[0].label == "joint_springs + base_rocking"
