@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sk120stiff.cli.document import as_json_text
-from sk120stiff.cli.explain_output import check_folder, findings, said
+from sk120stiff.cli.explain_output import check_folder, findings, plan_of, remove_stale, said
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
@@ -21,6 +21,7 @@ from sk120stiff.explain import explain, verdict_document
 from sk120stiff.explain.swallowed import swallowed
 from sk120stiff.files import write_atomically
 from sk120stiff.identify import fit
+from sk120stiff.measurements import write_measurements
 from sk120stiff.model import base_model, write_model
 from sk120stiff.robot.bundled import bundled_robots
 
@@ -102,22 +103,27 @@ def _write(
     )
     tell(80, 100)
     inputs = [data, data.with_suffix(".yaml"), data.parent.parent / "sk120.urdf"]
+    following = None if made.answer.next_poses is None else "next_poses.csv"
     report = demo_report(
         made,
+        next_poses=following or "",
         scene=scene,
         scene_link="scene.html",
         reproducibility=reproducibility(where["command"], inputs),
     ).html()
     tell(98, 100)
-    model = replace(made.answer.final.model, provenance=where)
-    (out / "verdict.json").unlink(missing_ok=True)
+    model = replace(made.model, provenance=where)
+    remove_stale(out)
     written: dict[str, object] = {
         "report": write_atomically(out / "report.html", report),
         "scene": write_atomically(out / "scene.html", scene),
         "model": out / "model.yaml",
     }
     write_model(model, out / "model.yaml")
-    write_atomically(out / "verdict.json", as_json_text(verdict_document(made.answer)) + "\n")
+    if following is not None:
+        write_measurements(plan_of(made.answer, readings), out / following)
+    verdict = verdict_document(made.answer, following)
+    write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
     tell(100, 100)
     return written
 
@@ -125,7 +131,10 @@ def _write(
 def _document(made: Demo) -> dict[str, object]:
     return {
         "verdict": made.answer.verdict,
-        "effects": [finding.effect.id for finding in made.answer.findings],
+        "effects": [
+            {"name": found.effect.id, "alternatives": list(found.alternatives)}
+            for found in made.answer.findings
+        ],
         "gap_um": {
             "paper": 1e6 * made.rms(made.paper),
             "identified": 1e6 * made.rms(made.found.model),

@@ -96,18 +96,23 @@ def write_answer(
     prediction_table(task.readings, predicted).to_csv(gaps, index=False)
     document = verdict_document(answer, following)
     # An old verdict must not stand beside new files, nor old proposals and pages beside a new one.
-    for stale in ("verdict.json", "next_poses.csv", "next_poses.yaml", "report.html", "scene.html"):
-        (out / stale).unlink(missing_ok=True)
+    remove_stale(out)
     write_model(fitted, out / "model.yaml")
     write_atomically(out / "gaps.csv", gaps.getvalue())
     if following is not None:
-        write_measurements(_plan(answer, task.readings), out / following)
+        write_measurements(plan_of(answer, task.readings), out / following)
     for name, text in pages.items():
         write_atomically(out / name, text)
     write_atomically(out / "verdict.json", as_json_text(document) + "\n")
     tell(100, 100)
     places = {"out": out, "model": out / "model.yaml"}
     return {**document, **places, **{Path(name).stem: out / name for name in pages}}
+
+
+def remove_stale(out: Path) -> None:
+    """Take away what an earlier run left, the verdict first."""
+    for name in ("verdict.json", "next_poses.csv", "next_poses.yaml", "report.html", "scene.html"):
+        (out / name).unlink(missing_ok=True)
 
 
 def _pages(
@@ -138,7 +143,8 @@ def _heldout(file: Path) -> str:
     return f"on the readings of `{file.name}`, which are of other poses"
 
 
-def _plan(answer: Explanation, readings: Measurements) -> Measurements:
+def plan_of(answer: Explanation, readings: Measurements) -> Measurements:
+    """The poses and loads to measure next, as measurements without displacements."""
     if answer.next_poses is None:
         raise ValueError("there is nothing to measure next")
     a, wrench = answer.next_poses

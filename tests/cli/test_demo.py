@@ -29,9 +29,11 @@ def test_keys_of_the_contract(demo) -> None:
     assert {"report", "model", "verdict"} <= set(document)
     for key in ("report", "model", "scene"):
         assert (out.parent / document[key]).is_file()
-    assert {path.name for path in out.iterdir()} == {
-        "report.html", "scene.html", "model.yaml", "verdict.json"
-    }  # fmt: skip
+    verdict = json.loads((out / "verdict.json").read_text(encoding="utf-8"))
+    following = {"next_poses.csv", "next_poses.yaml"} if verdict["next_poses"] else set()
+    pages = {"report.html", "scene.html", "model.yaml", "verdict.json"}
+    assert {path.name for path in out.iterdir()} == pages | following
+    assert verdict["verdict"] == document["verdict"]
 
 
 def test_gaps_are_those_of_the_published_numbers(demo) -> None:
@@ -59,6 +61,8 @@ def test_three_poses_are_no_ground_for_a_name(demo) -> None:
     _, document = demo
     assert document["verdict"] in ("none", "ambiguous", "outside")
     assert document["effects"] == [] or document["verdict"] == "ambiguous"
+    for found in document["effects"]:
+        assert found["alternatives"]
 
 
 def test_the_report_tells_three_acts_and_its_limits(demo) -> None:
@@ -73,6 +77,8 @@ def test_the_report_tells_three_acts_and_its_limits(demo) -> None:
         assert heading in text
     gap = document["gap_um"]
     assert f"by {gap['paper']:.1f} µm rms" in text and f"by {gap['identified']:.1f} µm" in text
+    assert ("What 'none' means here" in text) == (document["verdict"] == "none")
+    assert ("Thin ground" in text) == bool(document["effects"])
     assert "force_scale:sensor and reading_scale:tracker : swallowed whole" in text
     assert text.count("pose 1") >= 2  # gaps and stiffness
     assert all(a["aria-label"] for a in outline.of("svg") if a.get("role") == "img")

@@ -33,7 +33,7 @@ from sk120stiff.show.report import (
 )
 from sk120stiff.show.stories.evidence_section import evidence_section
 from sk120stiff.show.stories.gap_section import on_the_arm, pose_rms, steps_table
-from sk120stiff.show.stories.limits_section import blind_section
+from sk120stiff.show.stories.limits_section import blind_section, next_section
 from sk120stiff.show.stories.stiffness_section import stiffness_section
 from sk120stiff.show.stories.verdicts import lead_of
 from sk120stiff.show.stories.where_section import where_section
@@ -41,6 +41,12 @@ from sk120stiff.show.wording import chance, counted, listed, number, percent, um
 
 PAPER, OURS = "paper's springs", "identified"
 NAMEABLE = 5.0  # √λ at which an effect can usually be named
+_SHORT = {
+    "none": ("no name", "verdict: none"),
+    "named": ("named", "verdict: named"),
+    "ambiguous": ("open", "verdict: ambiguous"),
+    "outside": ("outside", "no effect explains it"),
+}
 WORTH_LISTING = 2e-6  # m rms at its usual size
 
 
@@ -65,6 +71,12 @@ class Demo:
     other: Fit
     answer: Explanation
     hidden: Sequence[Swallowed]
+
+    @property
+    def model(self) -> Model:
+        """The model to go on with: identified springs, and an effect only if it is settled."""
+        settled = self.answer.verdict == "named"
+        return self.answer.final.model if settled else self.found.model
 
     @property
     def models(self) -> dict[str, Model]:
@@ -96,6 +108,7 @@ def demo_report(
     *,
     scene: str = "",
     scene_link: str = "",
+    next_poses: str = "",
     reproducibility: Mapping[str, str] | None = None,
 ) -> Report:
     """Tell the demo as a report.
@@ -106,10 +119,13 @@ def demo_report(
         What was computed.
     scene, scene_link
         Text of the scene's page, and its address beside the report.
+    next_poses
+        Address of the file with poses to measure next; empty where there is none.
     reproducibility
         Name → text, shown last.
     """
     situation = demo.found.problem.situation
+    following = next_section(demo.answer, next_poses)
     counts = f"{counted(situation.count, 'reading')} at {counted(len(situation.poses), 'pose')}"
     return Report(
         title="How stiff is a Motoman SK120, and what is missing from its model?",
@@ -123,6 +139,7 @@ def demo_report(
             *([_in_space(demo, scene, scene_link)] if scene else []),
             _third_act(demo),
             _three_poses(demo),
+            *([following] if following else []),
             _onwards(),
         ],
         reproducibility=reproducibility or {},
@@ -155,7 +172,8 @@ def _answer(demo: Demo) -> Section:
     ]
     if demo.noise is not None:
         figures.append(KeyFigure("scatter", um(demo.noise), "µm", "within poses, no model needed"))
-    figures.append(KeyFigure("verdict", demo.answer.verdict, "", "of explain"))
+    value, note = _SHORT[demo.answer.verdict]
+    figures.append(KeyFigure("what is missing", value, "", note))
     acts = [
         "The paper's springs are put to its measured deflections.",
         "The springs are identified again, with their uncertainty.",
@@ -293,6 +311,17 @@ def _third_act(demo: Demo) -> Section:
                 f"with {counted(len(demo.found.problem.situation.poses), 'pose')} none is.",
                 "caution",
                 "What 'none' means here",
+            )
+        )
+    if answer.findings:
+        poses = counted(len(demo.found.problem.situation.poses), "pose")
+        blocks.append(
+            Note(
+                "Folds and resamplings have no more to go by than "
+                f"{poses}, and the next section tells which causes could show at all. Take a name "
+                "from here as what to look for in the next campaign, not as a finding.",
+                "caution",
+                "Thin ground",
             )
         )
     where, evidence = where_section(answer), evidence_section(answer)
