@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from enum import StrEnum
@@ -15,7 +16,8 @@ from sk120stiff.cli.opening import open_data, provenance, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import effect
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.explain.mistakes import mistakes
 from sk120stiff.identify import (
     Compared,
     Fit,
@@ -92,6 +94,8 @@ def command(
     for name in effects or ():
         start = with_effect(start, name, readings)
     start = with_freedom(start, fix or (), free)
+    for said in mistakes(plain, readings):
+        warnings.warn(f"{said}.", ToolkitWarning, stacklevel=2)
     with progress_bar("identify"):
         found = fit(start, readings, method=method.value, robust=robust)
     intervals: Sequence[Interval] | None = None

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 
 from sk120stiff.effects import situation_of
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.adequacy import Adequacy, adequacy
 from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.explanation import Explanation
+from sk120stiff.explain.mistakes import mistakes, without_copies
 from sk120stiff.explain.naming import SHADOW, Named, findings_of
 from sk120stiff.explain.settling import Attempt, attempt, with_effects
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
@@ -50,13 +52,14 @@ def explain(
     InputError
         No displacements, too few readings, one pose alone, or an effect that does not exist.
     Refusal
-        The base model itself cannot be fitted.
+        The data look written down wrongly, or the base model itself cannot be fitted.
     """
     wish = options or Options()
     tell = progress or _silent
     _refuse_unexplainable(model, measurements)
+    used = _sound(model, measurements)
     tell("searching the catalogue", 0.05)
-    found, reasons = _best_attempt(model, measurements.masked(), wish)
+    found, reasons = _best_attempt(model, used, wish)
     left = _adequacy(found)
     named = Named((), (), ())
     allowed = LEFT_OVER
@@ -147,6 +150,20 @@ def _best_attempt(
         return plain, reasons
     second = under(other)
     return (second, other_reasons) if second.total < plain.total else (plain, reasons)
+
+
+def _sound(model: Model, measurements: Measurements) -> Measurements:
+    """The rows to be explained, once nothing in them looks like a slip of the pen."""
+    for said in mistakes(model, measurements):
+        raise Refusal(
+            said,
+            where=str(measurements.path or "the measurements"),
+            remedy="No cause is sought before this is settled.",
+        )
+    single, told = without_copies(measurements)
+    if told:
+        warnings.warn(told, ToolkitWarning, stacklevel=3)
+    return single.masked()
 
 
 def _silent(phrase: str, share: float) -> None:
