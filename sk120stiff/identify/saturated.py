@@ -8,10 +8,11 @@ the yardstick for what a fitted model has left over.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from sk120stiff.effects import Situation
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
@@ -149,6 +150,7 @@ def choose_noise(
             if other.likelihood > max(best.likelihood, judged[0].likelihood + STRONG):
                 best = other
     if best is not judged[0]:
+        best = _finest_growth(best, measurements, situation)
         reasons.append(
             f"The scatter grows with the displacement: {best.noise.growth * 100:.2g} % of it."
         )
@@ -157,16 +159,33 @@ def choose_noise(
     return _scaled(best, reasons), reasons
 
 
+def _finest_growth(best: PoseNoise, measurements: Measurements, situation: Situation) -> PoseNoise:
+    """The likeliest growth near one that was found on a coarse grid."""
+
+    def unlikely(logarithm: float) -> float:
+        noise = replace(best.noise, growth=float(np.exp(logarithm)))
+        return -pose_noise(noise, measurements, situation, jump=True).likelihood
+
+    middle = np.log(best.noise.growth)
+    found = minimize_scalar(
+        unlikely, bounds=(middle - 1.0, middle + 1.0), method="bounded", options={"xatol": 0.02}
+    )
+    noise = replace(best.noise, growth=float(np.exp(found.x)))
+    return pose_noise(noise, measurements, situation, jump=True)
+
+
 def _scaled(best: PoseNoise, reasons: list[str]) -> NoiseModel:
     """The noise model with the size that the scatter within poses shows."""
     noise = best.noise
     if noise.stated:
-        excess = best.factor - 1.0
-        if best.freedom < 30 or excess < max(4.0 / np.sqrt(2.0 * best.freedom), 0.1):
+        unsure = 4.0 / np.sqrt(2.0 * max(best.freedom, 1))
+        more = best.factor > 1.0 + max(unsure, 0.1)
+        less = best.factor < 1.0 - max(unsure, 0.25) and noise.growth == 0.0
+        if best.freedom < 30 or not (more or less):
             return noise
         reasons.append(
             f"Within a pose the readings scatter {best.factor:.2f} times as much as their stated "
-            "uncertainty; the larger value is used."
+            "uncertainty; the scatter is believed."
         )
         return noise.scaled(best.factor)
     if best.freedom >= 10:
