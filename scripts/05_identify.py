@@ -3,6 +3,9 @@
 Run from the repository:  python scripts/05_identify.py
 """
 
+import tempfile
+from pathlib import Path
+
 from sk120stiff.identify import fit, fit_report, profile_intervals
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import joint_spring_model, write_model
@@ -17,4 +20,4 @@ print(fit_report(found, profile=profile_intervals(found)))
 
 for parameter, (low, high) in zip(found.parameters, found.intervals(), strict=True):
     print(f"{parameter.name}: {parameter.public_value:.4g} in {low:.4g} .. {high:.4g} N*m/rad")
-write_model(found.model, "identified.yaml")
+print("Written to", write_model(found.model, Path(tempfile.gettempdir()) / "identified.yaml"))
