@@ -153,9 +153,14 @@ def demo_lead(demo: Demo) -> str:
         f"The springs that the paper gives miss its measured deflections by {um(before)} µm rms "
         f"per axis; springs identified from these readings miss them by {um(after)} µm. "
     )
+    poses = counted(len(demo.found.problem.situation.poses), "pose")
+    if demo.answer.verdict == "ambiguous":
+        names = [f.effect.id for f in demo.answer.findings]
+        names += [name for f in demo.answer.findings for name in f.alternatives]
+        fitting = listed([f"`{name}`" for name in dict.fromkeys(names)], "or")
+        return said + f"Something may be missing, but {poses} cannot tell what: {fitting} would do."
     if demo.answer.verdict != "none":
         return said + lead_of(demo.answer)
-    poses = counted(len(demo.found.problem.situation.poses), "pose")
     if demo.noise is None or demo.chance is None:
         return said + f"With {poses} nothing can be named as missing."
     return said + (
