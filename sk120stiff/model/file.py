@@ -2,7 +2,9 @@
 
 ::
 
-    robot: motoman_sk120
+    robot: motoman_sk120            # or a path, relative to this file
+    base_frame: base_link           # default, as of tool_frame: the robot's own
+    tool_frame: tool0
     effects:
       - name: joint_springs
         where: joint_1_s
@@ -15,6 +17,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +26,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sk120stiff.effects import effect
 from sk120stiff.effects.gear import breaks_of
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import read_text, write_atomically
 from sk120stiff.model.model import Model, Parameter
 from sk120stiff.robot import Robot, find_robot, load_robot
@@ -49,14 +52,21 @@ class _Effect(_Strict):
 
 class _File(_Strict):
     robot: str
+    base_frame: str | None = None
+    tool_frame: str | None = None
     effects: list[_Effect] = Field(default_factory=list)
     provenance: dict[str, str] = Field(default_factory=dict)
 
 
-def model_text(model: Model) -> str:
-    """The model as YAML text; `model_from_text` gives the same model back."""
+def model_text(model: Model, *, folder: Path | None = None) -> str:
+    """The model as YAML text; `model_from_text` gives the same model back.
+
+    A robot that is named by a relative path is found from `folder` too, if that is given.
+    """
     document = {
-        "robot": model.robot.source,
+        "robot": _seen_from(folder, model.robot.source),
+        "base_frame": model.robot.base_frame,
+        "tool_frame": model.robot.tool_frame,
         "effects": [
             {
                 "name": item.name,
@@ -74,7 +84,7 @@ def model_text(model: Model) -> str:
 
 def write_model(model: Model, path: str | os.PathLike[str]) -> Path:
     """Write the model; an interrupted write leaves an old file as it was."""
-    return write_atomically(path, model_text(model))
+    return write_atomically(path, model_text(model, folder=Path(path).parent))
 
 
 def read_model(path: str | os.PathLike[str], robot: Robot | None = None) -> Model:
@@ -85,6 +95,11 @@ def read_model(path: str | os.PathLike[str], robot: Robot | None = None) -> Mode
     InputError
         Not a model, or an effect, place, parameter or unit that does not exist; file and key are
         named.
+
+    Warns
+    -----
+    ToolkitWarning
+        The robot given is not the one that the model is of.
     """
     source = Path(path)
     return model_from_text(read_text(source), where=str(source), folder=source.parent, robot=robot)
@@ -95,7 +110,12 @@ def model_from_text(
 ) -> Model:
     """Read a model from YAML text; a relative robot path is tried from `folder` first."""
     content = _parsed(text, where)
-    arm = robot or load_robot(content.robot, relative_to=folder)
+    if robot is None:
+        base, tool = content.base_frame, content.tool_frame
+        arm = load_robot(content.robot, base=base, tool=tool, relative_to=folder)
+    else:
+        arm = robot
+        _warn_of_another_robot(content.robot, arm, folder, where)
     parameters: list[Parameter] = []
     model = Model(arm, provenance=content.provenance)
     for entry in content.effects:
@@ -129,6 +149,35 @@ def base_model(robot: Robot) -> Model | None:
     return None if source.model_file is None else read_model(source.model_file, robot)
 
 
+def _seen_from(folder: Path | None, source: str) -> str:
+    """A relative path to a robot as it reads from another folder; anything else as it is."""
+    if folder is None or source.lstrip().startswith("<") or Path(source).is_absolute():
+        return source
+    if not Path(source).exists():  # the name of a bundled robot
+        return source
+    return Path(os.path.relpath(source, folder)).as_posix()
+
+
+def _warn_of_another_robot(said: str, robot: Robot, folder: Path | None, where: str) -> None:
+    if said in (robot.source, robot.name) or _same_file(said, robot.source, folder):
+        return
+    warnings.warn(
+        f"{where}: this model is of the robot {said!r}; here it is used with {robot.source!r}.",
+        ToolkitWarning,
+        stacklevel=4,
+    )
+
+
+def _same_file(said: str, source: str, folder: Path | None) -> bool:
+    try:
+        meant, known = find_robot(said, relative_to=folder).urdf, find_robot(source).urdf
+        if isinstance(meant, Path) and isinstance(known, Path):
+            return meant.read_bytes() == known.read_bytes()
+    except (InputError, OSError):
+        return False
+    return meant == known
+
+
 def _parsed(text: str, where: str) -> _File:
     try:
         return _File.model_validate(yaml.safe_load(text) or {})
@@ -146,8 +195,8 @@ def _parsed(text: str, where: str) -> _File:
         raise InputError(
             f"key {key!r}: {first['msg'].lower()}",
             where=where,
-            remedy="A model file has the keys robot, effects and provenance; each effect has name, "
-            "where and parameters.",
+            remedy="A model file has the keys robot, base_frame, tool_frame, effects, provenance; "
+            "each effect has name, where and parameters.",
         ) from error
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
 from sk120stiff.effects import effect
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import (
     base_model,
     joint_spring_model,
@@ -61,6 +63,31 @@ def test_a_robot_beside_the_model_is_found(tmp_path):
     path = tmp_path / "model.yaml"
     path.write_text(GOOD.replace("motoman_sk120", "arm.urdf"), encoding="utf-8")
     assert read_model(path).robot.actuated[0] == "joint_1_s"
+
+
+def test_a_model_keeps_its_frames_and_finds_its_robot_from_its_own_folder(tmp_path, monkeypatch):
+    from sk120stiff.robot.bundled import bundled_robots
+
+    urdf = bundled_robots()["motoman_sk120"] / "sk120.urdf"
+    (tmp_path / "arm.urdf").write_bytes(urdf.read_bytes())
+    (tmp_path / "results").mkdir()
+    monkeypatch.chdir(tmp_path)
+    robot = load_robot("arm.urdf", base="link_1_s", tool="reflector")
+    path = write_model(joint_spring_model(robot), "results/model.yaml")
+    monkeypatch.chdir("/")
+    again = read_model(tmp_path / path).robot
+    assert (again.base_frame, again.tool_frame) == ("link_1_s", "reflector")
+    assert again.actuated == robot.actuated
+
+
+def test_a_model_of_another_robot_is_used_with_a_warning(tmp_path):
+    robot = load_robot("motoman_sk120")
+    for said in ("motoman_sk120", robot.name, str(robot.source)):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            model_from_text(GOOD.replace("motoman_sk120", said), robot=robot)
+    with pytest.warns(ToolkitWarning, match="of the robot 'ur10'"):
+        model_from_text(GOOD.replace("motoman_sk120", "ur10"), robot=robot)
 
 
 @pytest.mark.parametrize("number", [1.0 / 3.0, np.pi * 1e-7, 1e-300, 123456.7])
