@@ -25,7 +25,7 @@ logger = logging.getLogger(__name__)
 Classes = NDArray[np.uint8]
 LARGEST_ANGLE = 1e5  # rad; beyond it sine and cosine lose digits
 PIECE = 16384  # poses that a thread takes at a time
-PATIENCE = 0.5  # seconds after which a compilation is announced
+PATIENCE = 0.5  # seconds after which the preparation is announced
 _READY: list[Any] = []  # the compiled function and the type of its outputs, once they are loaded
 
 #: What `stiffness_batch` can compute.
@@ -297,8 +297,8 @@ def _kernel(
 
 @contextmanager
 def announced() -> Iterator[None]:
-    """Say so when what happens inside takes long, which it does only where it compiles."""
-    message = "Compiling the batch kernel (once on this machine, some ten seconds) …"
+    """Say so when what happens inside takes long: it compiles, or the machine is busy."""
+    message = "Preparing the batch kernel (some ten seconds at its first use on a machine) …"
     clock = threading.Timer(PATIENCE, logger.info, args=(message,))
     clock.daemon = True
     clock.start()

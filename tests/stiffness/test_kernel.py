@@ -289,7 +289,7 @@ def test_a_long_start_is_announced(
     monkeypatch.setattr("sk120stiff.stiffness.batch.PATIENCE", 0.01)
     with caplog.at_level(logging.INFO, logger="sk120stiff"), announced():
         time.sleep(0.2)
-    assert "Compiling" in caplog.text
+    assert "Preparing" in caplog.text
 
 
 def test_compiled_code_is_kept_where_the_package_is_read_only(tmp_path: Path) -> None:
