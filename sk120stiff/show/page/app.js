@@ -136,7 +136,14 @@ SK.start = (scene) => {
       panel.refresh();
       changed();
       if (t < 1) requestAnimationFrame(step);
-      else setTimeout(() => { if (mine === flight) { gliding = false; camera.follow(frame.position); } }, 60);
+      else setTimeout(arrive, 60);
+    };
+    // The camera follows the picture of the target, which a slow machine owes for a while.
+    const arrive = () => {
+      if (mine !== flight) return;
+      if (pending || asked) { setTimeout(arrive, 30); return; }
+      gliding = false;
+      camera.follow(frame.position);
     };
     gliding = true;
     step();
