@@ -158,8 +158,8 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
         point=measurements.point,
         force_point=measurements.force_point,
         reading_axes=rotation if measurements.displacement_frame == "tool" else identity,
-        order=_since_zero(measurements.order, measurements.zero_order, measurements.zero_group),
-        time=_since_zero(measurements.time, measurements.zero_time, measurements.zero_group),
+        order=measurements.order_since_zero,
+        time=measurements.time_since_zero,
         branch=_branch_signs(measurements),
         pose=np.array([index[label] for label in measurements.pose], dtype=np.intp),
         poses=labels,
@@ -170,19 +170,3 @@ def _branch_signs(measurements: Measurements) -> Array:
     if measurements.branch is None:
         return np.ones(measurements.n_readings)
     return np.array([-1.0 if branch == "unload" else 1.0 for branch in measurements.branch])
-
-
-def _since_zero(clock: Array | None, zero: Array | None, group: NDArray[np.int64]) -> Array | None:
-    """(N,) clock of each reading minus that of its zero reading.
-
-    Where the file does not tell when the zero was read, it is taken to be one typical interval
-    before the first reading that subtracts it.
-    """
-    if clock is None or not np.isfinite(clock).all():
-        return None
-    steps = np.diff(np.sort(clock))
-    interval = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
-    first = {int(g): float(clock[group == g].min()) - interval for g in np.unique(group)}
-    assumed = np.array([first[int(g)] for g in group])
-    known = assumed if zero is None else np.where(np.isfinite(zero), zero, assumed)
-    return np.asarray(clock - known)

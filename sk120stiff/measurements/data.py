@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.poses import refuse_differing_joints
+from sk120stiff.measurements.zero import since_zero
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -187,21 +188,19 @@ class Measurements:
         position = {label: k for k, label in enumerate(self.poses)}
         return np.array([position[label] for label in self.pose], dtype=np.int64)
 
-    @cached_property
-    def since_zero(self) -> Floats | None:
-        """(N,) time (s), else order, that passed since the row's zero reading; None if unknown.
+    @property
+    def order_since_zero(self) -> Floats | None:
+        """(N,) order of each row minus that of its zero reading; None without an order."""
+        if self.order is None:
+            return None
+        return since_zero(self.order, self.zero_order, self.zero_group)
 
-        Where the zero reading's own time is not known, the first row that uses it stands for it.
-        """
-        for when, zero in ((self.time, self.zero_time), (self.order, self.zero_order)):
-            if when is not None:
-                _, group = np.unique(self.zero_group, return_inverse=True)
-                first = np.full(group.max() + 1, np.inf)
-                np.minimum.at(first, group, when)
-                known = np.full(len(when), np.nan) if zero is None else zero
-                since: Floats = when - np.where(np.isnan(known), first[group], known)
-                return since
-        return None
+    @property
+    def time_since_zero(self) -> Floats | None:
+        """(N,) time since the zero reading of each row [s]; None without times."""
+        if self.time is None:
+            return None
+        return since_zero(self.time, self.zero_time, self.zero_group)
 
     def rows_of(self, pose: str) -> Integers:
         """Indices of the rows with this label.

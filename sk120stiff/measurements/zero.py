@@ -73,3 +73,19 @@ def group_by_run(pose: Integers, loaded: Mask, use: Mask, sequence: Floats) -> I
             group[row] = start + max(runs, 1) - 1
         start += max(runs, 1)
     return group
+
+
+def since_zero(clock: Floats, zero: Floats | None, group: Integers) -> Floats:
+    """(N,) clock (order, or time) of each row minus that of the zero reading it subtracts.
+
+    Where the file does not tell when the zero was read (`zero` None or NaN), it is taken to be one
+    typical interval before the first row of its `group`.
+    """
+    steps = np.diff(np.sort(clock))
+    interval = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
+    _, index = np.unique(group, return_inverse=True)
+    first = np.full(index.max() + 1, np.inf)
+    np.minimum.at(first, index, clock)
+    known = np.full(len(clock), np.nan) if zero is None else zero
+    since: Floats = clock - np.where(np.isnan(known), first[index] - interval, known)
+    return since

@@ -97,7 +97,8 @@ def test_defaults(tmp_path: Path, yaml: str | None) -> None:
     np.testing.assert_array_equal(m.force_point, np.zeros(3))
     np.testing.assert_array_equal(m.zero_group, [0, 0])
     assert m.use.all()
-    assert m.sigma is m.order is m.time is m.branch is m.repeat is m.since_zero is None
+    assert m.sigma is m.order is m.time is m.branch is m.repeat is None
+    assert m.order_since_zero is m.time_since_zero is None
 
 
 def test_the_force_acts_at_the_measured_point_by_default(tmp_path: Path) -> None:

@@ -157,7 +157,7 @@ def test_positions_come_back_as_the_displacements_they_were(tmp_path: Path) -> N
     back = there_and_back(m, angle="rad", length="m")
     compare(m, back, rtol=0.0)
     np.testing.assert_array_equal(back.zero_count, [2, 1])
-    np.testing.assert_array_equal(back.since_zero, m.since_zero)
+    np.testing.assert_array_equal(back.order_since_zero, m.order_since_zero)
 
 
 def test_a_robot_path_is_relative_to_the_file(tmp_path: Path) -> None:

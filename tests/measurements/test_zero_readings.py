@@ -37,7 +37,7 @@ A,0,0,0,0,1002,500,0,6,60
     np.testing.assert_array_equal(m.zero_count, [2, 1, 2])
     np.testing.assert_allclose(m.zero_order, [3.5, 5, 3.5])
     np.testing.assert_allclose(m.zero_time, [35, 50, 35])
-    np.testing.assert_allclose(m.since_zero, [20 - 35, 30 - 50, 40 - 35])
+    np.testing.assert_allclose(m.time_since_zero, [20 - 35, 30 - 50, 40 - 35])
     np.testing.assert_array_equal(m.line, [3, 4, 5])
     assert "3 rows without load" in m.notes[-1]
     assert "1 to 2" in m.notes[-1]
@@ -125,12 +125,12 @@ DISPLACED = "pose,q1[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm],order"
 
 
 @pytest.mark.parametrize(
-    ("zero", "since"), [("shared", [-1, 2, 0]), ("unknown", [-1, 2, 0]), ("separate", [0, 0, 0])]
+    ("zero", "since"), [("shared", [-1, 2, 2]), ("unknown", [-1, 2, 2]), ("separate", [2, 2, 2])]
 )
-def test_time_since_zero_of_displacements(tmp_path: Path, zero: str, since: list[int]) -> None:
-    """Rows without load tell when the zero was; else the first row of the group stands for it."""
+def test_order_since_zero_of_displacements(tmp_path: Path, zero: str, since: list[int]) -> None:
+    """Rows without load tell when the zero was; else it was one interval (3, 1: 2) before."""
     text = f"{DISPLACED}\nA,0,1,0,0,1,0,0,3\nA,0,2,0,0,1,0,0,6\nB,0,1,0,0,1,0,0,7\n"
     m = read(tmp_path, text + "A,0,0,0,0,0,0,0,4\n", f"displacement: {{zero: {zero}}}").masked()
-    np.testing.assert_allclose(m.since_zero, since)
+    np.testing.assert_allclose(m.order_since_zero, since)
     if zero != "separate":
         np.testing.assert_array_equal(m.zero_order, [4, 4, np.nan])
