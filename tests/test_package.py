@@ -1,8 +1,10 @@
 """What an installed copy carries, and what importing it costs."""
 
 import ast
+import re
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -52,6 +54,30 @@ def test_importing_the_package_imports_nothing_else() -> None:
 
 def test_the_checkout_finds_its_robots() -> None:
     assert bundled_robots()["motoman_sk120"] == ROOT / "robots" / "motoman_sk120"
+
+
+OTHER_NAMES = {"pinocchio": "pin", "yaml": "pyyaml"}  # import → package
+OPTIONAL = {"dask": "cluster", "distributed": "cluster", "xacrodoc": "xacro"}  # import → extra
+
+
+def test_every_library_that_is_imported_is_a_named_dependency() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+    def names(entries: list[str]) -> set[str]:
+        return {re.split(r"[\[<>=;]", entry)[0] for entry in entries}
+
+    named = names(project["dependencies"])
+    extras = {extra: names(entries) for extra, entries in project["optional-dependencies"].items()}
+    for path in (ROOT / "sk120stiff").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom) and not node.level:
+                modules = [node.module or ""]
+            for top in {module.partition(".")[0] for module in modules}:
+                if top == "sk120stiff" or top in sys.stdlib_module_names:
+                    continue
+                where = extras[OPTIONAL[top]] if top in OPTIONAL else named
+                assert OTHER_NAMES.get(top, top) in where, f"{path} imports {top}"
 
 
 @pytest.fixture(scope="session")
