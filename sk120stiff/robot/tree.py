@@ -160,15 +160,6 @@ class Tree:
         safe = np.where(masses > 0.0, masses, 1.0)[:, None]
         return masses, moments / safe
 
-    def position_limits(self) -> tuple[Array, Array]:
-        """(m,) lower and upper joint limits [rad or m] as Pinocchio read them."""
-        lower, upper = np.full(self.m, -np.inf), np.full(self.m, np.inf)
-        for k, joint in enumerate(list(self._model.joints)[1:]):
-            if joint.nq == 1:
-                lower[k] = self._model.lowerPositionLimit[joint.idx_q]
-                upper[k] = self._model.upperPositionLimit[joint.idx_q]
-        return lower, upper
-
     def jacobian(self, q: Array, frame: str, point: Array) -> Array:
         """(6, m) Pinocchio's own Jacobian of a point of a frame, root axes: the second road."""
         joint, T_body_frame = self.body(frame)

@@ -7,7 +7,6 @@ becomes a finding; the rest of the picture and all kinematics stay.
 from __future__ import annotations
 
 import io
-import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -176,15 +175,3 @@ def _colour(mesh: Any) -> Colour | None:
     except (AttributeError, ValueError, TypeError, IndexError):
         return None
     return (r, g, b, a)
-
-
-def mesh_files(document: UrdfDocument) -> tuple[os.PathLike[str], ...]:
-    """Files of all meshes that exist, each once."""
-    found: dict[os.PathLike[str], None] = {}
-    for spec in document.visuals:
-        if spec.geometry.filename is None:
-            continue
-        path, _ = resolve(spec.geometry.filename, document.path, document.package_folders)
-        if path is not None:
-            found[path] = None
-    return tuple(found)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sk120stiff.effects import effect
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding, noise_floor
-from sk120stiff.show.wording import counted, listed, um
+from sk120stiff.show.wording import counted, um
 
 FEW = 2  # rivals that are told in the first lines; the evidence lists all
 
@@ -90,11 +90,6 @@ def noise_of(answer: Explanation) -> float:
 def near(finding: Finding) -> list[str]:
     """Alternatives that other poses could tell apart."""
     return [name for name in finding.alternatives if name not in finding.exact]
-
-
-def names_of(answer: Explanation) -> str:
-    """``joint_tilt:joint_2_l`` and so on, as a list."""
-    return listed([f"`{finding.effect.id}`" for finding in answer.findings])
 
 
 def sentence_of(answer: Explanation, name: str) -> str:
