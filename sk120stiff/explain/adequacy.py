@@ -9,6 +9,7 @@ from scipy import stats
 
 from sk120stiff.explain.regression import Index, Regression
 from sk120stiff.identify import Fit
+from sk120stiff.identify.left_over import left_over, orthonormal
 from sk120stiff.identify.saturated import load_basis, pose_columns
 from sk120stiff.robot.coupling import Array
 
@@ -58,7 +59,7 @@ def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
     columns
         Its columns in the regression.
     """
-    inside = _orthonormal(regression.X[:, columns])
+    inside = orthonormal(regression.X[:, columns])
     r = fit.residual - inside @ (inside.T @ fit.residual)
     total, freedom = float(r @ r), max(len(r) - inside.shape[1], 1)
     rest, rest_freedom = _beyond_poses(fit, r, inside)
@@ -83,16 +84,8 @@ def _beyond_poses(fit: Fit, r: Array, inside: Array) -> tuple[float, int]:
     situation = fit.problem.situation
     local = fit.problem.whitener.apply(pose_columns(load_basis(situation)))
     group = np.repeat(situation.pose, 3)
-    left, columns, rank = r.copy(), inside.copy(), 0
-    for pose in np.unique(group):
-        rows = group == pose
-        block = _orthonormal(local[rows])
-        left[rows] -= block @ (block.T @ left[rows])
-        columns[rows] -= block @ (block.T @ columns[rows])
-        rank += block.shape[1]
-    own = _orthonormal(columns, keep=1e-6)
-    left -= own @ (own.T @ left)
-    return float(left @ left), len(r) - rank - own.shape[1]
+    rest, rank = left_over(r, inside, local, group)
+    return rest, len(r) - rank
 
 
 def _explained(regression: Regression, columns: Index) -> float:
@@ -103,18 +96,5 @@ def _explained(regression: Regression, columns: Index) -> float:
     values = np.linalg.lstsq(regression.X[:, columns], regression.y, rcond=None)[0]
     part = dict(zip(columns.tolist(), values, strict=True))
     signature = regression.X[:, named] @ np.array([part[int(c)] for c in named])
-    base = _orthonormal(regression.X[:, regression.base])
+    base = orthonormal(regression.X[:, regression.base])
     return float(np.linalg.norm(signature - base @ (base.T @ signature)))
-
-
-def _orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
-    """(R, rank) orthonormal basis of the column space; columns are scaled to one length first.
-
-    Columns shorter than `keep` times the longest (for an orthonormal input: times one) are dropped.
-    """
-    norms = np.linalg.norm(matrix, axis=0)
-    kept = matrix[:, norms > keep * max(float(norms.max(initial=0.0)), 1e-300)]
-    if not kept.shape[1]:
-        return np.zeros((len(matrix), 0))
-    U, singular, _ = np.linalg.svd(kept / np.linalg.norm(kept, axis=0), full_matrices=False)
-    return np.asarray(U[:, singular > 1e-8 * singular[0]])

@@ -25,8 +25,9 @@ from sk120stiff.explain.localisation import (
     Suspicion,
 )
 from sk120stiff.explain.suspects import Suspect, axes_of, reach_of, suspects_of
-from sk120stiff.explain.within_poses import WithinPoses, orthonormal, within_poses
+from sk120stiff.explain.within_poses import WithinPoses, within_poses
 from sk120stiff.identify import Fit
+from sk120stiff.identify.left_over import orthonormal
 from sk120stiff.robot.coupling import Array
 
 SHOWN = 8  # suspects that are worked out for figures

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.effects import Effect
-from sk120stiff.explain.within_poses import orthonormal
 from sk120stiff.identify import Fit
+from sk120stiff.identify.left_over import orthonormal
 
 WHOLE = 0.99  # share from which an effect counts as swallowed
 

@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from sk120stiff.explain.localisation import OrderShare
 from sk120stiff.identify import Fit
+from sk120stiff.identify.left_over import left_over
 from sk120stiff.identify.saturated import load_basis, pose_columns
 from sk120stiff.robot.coupling import Array
-
-Index = NDArray[np.intp]
 
 FEWEST = 10  # degrees of freedom below which a scatter tells no size of the noise
 _LOOKS = 3
@@ -81,7 +79,7 @@ def within_poses(fit: Fit, white: Array, inside: Array) -> WithinPoses:
     rank = [inside.shape[1]]
     for options in ({}, {"jump": True}, {"jump": True, "cubic": True}):
         basis = fit.problem.whitener.apply(pose_columns(load_basis(situation, **options)))
-        square, used = _beyond(white, inside, basis, group)
+        square, used = left_over(white, inside, basis, group)
         left.append(square)
         rank.append(used)
     freedom = len(white) - rank[-1]
@@ -108,31 +106,3 @@ def within_poses(fit: Fit, white: Array, inside: Array) -> WithinPoses:
     elif known and steps[0][1]:
         misfit = bare.tail(*steps[0])
     return WithinPoses(scale, known, misfit, orders)
-
-
-def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
-    """(R, rank) orthonormal basis of the column space; columns are scaled to one length first.
-
-    Columns shorter than `keep` times the longest are dropped.
-    """
-    norms = np.linalg.norm(matrix, axis=0)
-    kept = matrix[:, norms > keep * max(float(norms.max(initial=0.0)), 1e-300)]
-    if not kept.shape[1]:
-        return np.zeros((len(matrix), 0))
-    U, singular, _ = np.linalg.svd(kept / np.linalg.norm(kept, axis=0), full_matrices=False)
-    return np.asarray(U[:, singular > 1e-8 * singular[0]])
-
-
-def _beyond(white: Array, inside: Array, basis: Array, group: Index) -> tuple[float, int]:
-    """Sum of squares that a basis, free at every pose, and the model leave; and their rank."""
-    left, columns, rank = white.copy(), inside.copy(), 0
-    for pose in np.unique(group):
-        rows = group == pose
-        block = orthonormal(basis[rows])
-        left[rows] -= block @ (block.T @ left[rows])
-        columns[rows] -= block @ (block.T @ columns[rows])
-        rank += block.shape[1]
-    norms = np.linalg.norm(columns, axis=0)
-    own = orthonormal(columns[:, norms > 1e-6])  # `inside` had columns of length one
-    left -= own @ (own.T @ left)
-    return float(left @ left), rank + own.shape[1]

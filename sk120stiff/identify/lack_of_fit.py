@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.left_over import left_over, orthonormal
 from sk120stiff.identify.saturated import load_basis, pose_columns
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot.coupling import Array
@@ -116,35 +116,10 @@ def _against(fit: Fit, columns: Array, against: Yardstick) -> LackOfFit | None:
     """F test of the misfit that columns, free at every pose, take beyond the model."""
     local = fit.problem.whitener.apply(columns)
     group = np.repeat(fit.problem.situation.pose, 3)
-    rest, freedom = _beyond(fit.residual, _basis(fit.jacobian), local, group)
+    rest, rank = left_over(fit.residual, orthonormal(fit.jacobian), local, group)
+    freedom = len(fit.residual) - rank
     taken = fit.degrees_of_freedom - freedom
     if freedom < FEWEST or taken < 1:
         return None
     ratio = max(fit.chi_square - rest, 0.0) / taken / (rest / freedom)
     return LackOfFit(against, ratio, (taken, freedom), float(stats.f.sf(ratio, taken, freedom)))
-
-
-def _beyond(
-    residual: Array, model: Array, local: Array, group: NDArray[np.intp]
-) -> tuple[float, int]:
-    """Sum of squares that model and local columns leave together, and its degrees of freedom."""
-    left, inside, rank = residual.copy(), model.copy(), 0
-    for pose in np.unique(group):
-        rows = group == pose
-        block = _basis(local[rows])
-        left[rows] -= block @ (block.T @ left[rows])
-        inside[rows] -= block @ (block.T @ inside[rows])
-        rank += block.shape[1]
-    own = _basis(inside, least=1e-6)
-    left -= own @ (own.T @ left)
-    return float(left @ left), len(residual) - rank - own.shape[1]
-
-
-def _basis(matrix: Array, least: float = 0.0) -> Array:
-    """(R, rank) orthonormal basis of the columns that are longer than `least`."""
-    norms = np.linalg.norm(matrix, axis=0)
-    kept = matrix[:, norms > least]
-    if not kept.shape[1]:
-        return np.zeros((len(matrix), 0))
-    U, singular, _ = np.linalg.svd(kept / np.linalg.norm(kept, axis=0), full_matrices=False)
-    return np.asarray(U[:, singular > 1e-8 * singular[0]])

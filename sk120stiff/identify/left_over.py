@@ -1,0 +1,51 @@
+"""What a model and a regression at every single pose leave of a whitened gap together."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.robot.coupling import Array
+
+IMITATED = 1e-6  # length of a unit column beyond the regression below which it is rounding
+
+
+def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
+    """(R, rank) orthonormal basis of the column space; columns are scaled to one length first.
+
+    Columns shorter than `keep` times the longest are dropped.
+    """
+    norms = np.linalg.norm(matrix, axis=0)
+    kept = matrix[:, norms > keep * max(float(norms.max(initial=0.0)), 1e-300)]
+    if not kept.shape[1]:
+        return np.zeros((len(matrix), 0))
+    U, singular, _ = np.linalg.svd(kept / np.linalg.norm(kept, axis=0), full_matrices=False)
+    return np.asarray(U[:, singular > 1e-8 * singular[0]])
+
+
+def left_over(
+    white: Array, inside: Array, local: Array, group: NDArray[np.intp]
+) -> tuple[float, int]:
+    """Sum of squares that is left, and the rank of what was taken out.
+
+    Parameters
+    ----------
+    white
+        (R,) whitened gap.
+    inside
+        (R, k) orthonormal basis of what the model's parameters can do.
+    local
+        (R, m) whitened columns that are free at every pose.
+    group
+        (R,) pose of each row.
+    """
+    left, columns, rank = white.copy(), inside.copy(), 0
+    for pose in np.unique(group):
+        rows = group == pose
+        block = orthonormal(local[rows])
+        left[rows] -= block @ (block.T @ left[rows])
+        columns[rows] -= block @ (block.T @ columns[rows])
+        rank += block.shape[1]
+    own = orthonormal(columns[:, np.linalg.norm(columns, axis=0) > IMITATED])
+    left -= own @ (own.T @ left)
+    return float(left @ left), rank + own.shape[1]
