@@ -24,7 +24,7 @@ def main() -> None:
             outcomes += found
             if done % 25 == 0:
                 print(f"{done} of {arguments.count} experiments", end="\r", file=sys.stderr)
-    print(f"{arguments.count} experiments, seed {arguments.seed}. How often the truth lay inside:\n")
+    print(f"{arguments.count} experiments, seed {arguments.seed}: how often the truth is inside\n")
     print(
         f"{'parameters of':18} {'number':>7} {'95 % interval':>14} {'± 1.96 std':>11} {'miss':>6}"
     )

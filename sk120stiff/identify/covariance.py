@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.effects import ParameterSpec
 from sk120stiff.identify.polish import seen_directions
+from sk120stiff.identify.rise import linear_valley
 from sk120stiff.robot.coupling import Array
 
 HIDDEN = 0.1  # variance by which blind directions may move an estimate, over its own
@@ -63,7 +64,7 @@ def condition_of(jacobian: Array) -> float:
     return float(singular[0] / singular[-1]) if singular[-1] > 0.0 else float(np.inf)
 
 
-def internal_interval(
+def internal_intervals(
     x: Array,
     jacobian: Array,
     residual: Array,
@@ -73,11 +74,10 @@ def internal_interval(
     reach: float,
     unit: float,
 ) -> Array:
-    """(P, 2) likelihood intervals of the linearised problem, cut at the bounds.
+    """(P, 2) likelihood intervals of the linearised problem within its bounds.
 
-    Where the misfit over the noise rises by reach². For an estimate inside its bounds that is
-    x ± reach·std. For one that a bound holds, the misfit rises from the bound on with a slope g
-    and the curvature h that the other parameters leave, h d² + 2 |g| d = reach².
+    The misfit over the noise rises by reach² at their ends, all other parameters refitted. Where no
+    bound is near, that is x ± reach·std.
 
     Parameters
     ----------
@@ -86,25 +86,21 @@ def internal_interval(
     reach
         Quantile of the normal or Student distribution.
     unit
-        Noise seen over noise assumed.
+        Noise seen over noise assumed; infinite where nobody knows.
     """
-    std = np.sqrt(np.diag(covariance_of(jacobian, held, span))) * unit
-    ends = np.column_stack([x - reach * std, x + reach * std])
-    for k in np.flatnonzero(held):
-        others = jacobian[:, ~held]
-        own = jacobian[:, k]
-        if others.shape[1]:
-            U = seen_directions(others, span[~held])[0]
-            own = own - U @ (U.T @ own)
-        slope, curvature = abs(float(own @ residual)), float(own @ own)
-        if curvature <= 0.0:
-            ends[k] = (-np.inf, np.inf)
-            continue
-        far = (np.sqrt(slope**2 + curvature * (reach * unit) ** 2) - slope) / curvature
-        low = x[k] - bounds[0][k] <= bounds[1][k] - x[k]
-        ends[k] = (x[k], x[k] + far) if low else (x[k] - far, x[k])
-    ends[~np.isfinite(ends).all(axis=1)] = (-np.inf, np.inf)
-    return np.asarray(np.clip(ends, bounds[0][:, None], bounds[1][:, None]))
+    std = np.sqrt(np.diag(covariance_of(jacobian, held, span)))
+    lost = ~np.isfinite(std)
+    if not np.isfinite(unit) or lost.all():
+        return np.column_stack(bounds)
+    half = np.where(lost, np.inf, reach * unit * std)
+    ends = np.column_stack([np.maximum(x - half, bounds[0]), np.minimum(x + half, bounds[1])])
+    near = ~lost & ((x - half <= bounds[0]) | (x + half >= bounds[1]))
+    if not near.any():
+        return ends
+    valley = linear_valley(x, residual, jacobian, bounds, span, np.where(lost, 0.0, std))
+    for k in np.flatnonzero(~lost):
+        ends[k] = [valley.end(int(k), side, reach * unit) for side in (-1.0, 1.0)]
+    return ends
 
 
 def public_interval(spec: ParameterSpec, low: float, high: float) -> tuple[float, float]:

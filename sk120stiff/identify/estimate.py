@@ -15,7 +15,7 @@ from sk120stiff.identify.solving import solve
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import Model
 
-AGREES = 0.01  # probability of a larger misfit down to which a model agrees with stated noise
+AGREES = 0.01  # probabilities of a larger misfit, up to 1 less this, that stated noise explains
 FEWEST = 2  # readings; one alone leaves nothing to judge a fit by
 
 
@@ -80,7 +80,7 @@ def _reconsidered(found: Fit, reasons: tuple[str, ...], method: Method) -> Fit:
         return replace(found, reasons=reasons)
     other = solve(Problem(problem.model, problem.measurements, plain), method=method)
     if plain.stated and other.lack_of_fit is not None:
-        enough = other.lack_of_fit > AGREES
+        enough = AGREES < other.lack_of_fit < 1.0 - AGREES
     else:
         enough = 2.0 * (found.log_likelihood - other.log_likelihood) < STRONG
     if not enough:

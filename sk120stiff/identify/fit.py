@@ -13,7 +13,7 @@ from sk120stiff.identify.covariance import (
     condition_of,
     correlation_of,
     covariance_of,
-    internal_interval,
+    internal_intervals,
     public_interval,
 )
 from sk120stiff.identify.polish import seen_directions
@@ -191,7 +191,7 @@ class Fit:
         an interval of a stiffness is not symmetric, and it is open upwards where the readings do
         not exclude a rigid part. A physical bound cuts them.
         """
-        ends = internal_interval(
+        ends = internal_intervals(
             self.x,
             self.jacobian,
             self.residual,

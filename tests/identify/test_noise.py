@@ -46,6 +46,14 @@ def test_an_unknown_zero_is_told_from_the_scatter(springs, zero: str) -> None:
     assert any(zero in reason for reason in found.reasons)
 
 
+def test_a_stated_size_that_is_far_too_large_is_not_believed(springs) -> None:
+    readings = readings_of(springs, poses=30, sigma=5e-6, schedule=Schedule("ascending", 6))
+    stated = replace(readings, noise=replace(readings.noise, sigma=15e-6))
+    found = fit(springs, stated)
+    assert found.sigma == pytest.approx(5e-6, rel=0.15)
+    assert any("scatter" in reason for reason in found.reasons)
+
+
 def test_noise_that_grows_is_found(springs) -> None:
     readings = without_statement(readings_of(springs, poses=30, growth=0.03, seed=1))
     found = fit(springs, readings)
