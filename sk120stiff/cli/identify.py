@@ -17,7 +17,7 @@ from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import effect
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.explain.mistakes import mistakes
+from sk120stiff.explain.mistakes import mistakes, without_copies
 from sk120stiff.identify import (
     Compared,
     Fit,
@@ -96,6 +96,9 @@ def command(
     start = with_freedom(start, fix or (), free)
     for said in mistakes(plain, readings):
         warnings.warn(f"{said}.", ToolkitWarning, stacklevel=2)
+    readings, told = without_copies(readings)
+    if told:
+        warnings.warn(told, ToolkitWarning, stacklevel=2)
     with progress_bar("identify"):
         found = fit(start, readings, method=method.value, robust=robust)
     intervals: Sequence[Interval] | None = None

@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 GROWTHS = (0.0, 0.003, 0.01, 0.02, 0.05)
 # Where nothing says how large the noise is, a model needs a scale to start from: a laser tracker's.
 _START = 10e-6  # m
+_FINEST = 1e-9  # m; a smaller scatter is that of copied rows or computed data, of no instrument
 
 
 @dataclass(frozen=True)
@@ -158,7 +159,7 @@ def _sigma(measurements: Measurements, zero: Literal["shared", "separate"]) -> t
         return float(np.median(measurements.sigma)), True
     found = pure_error(measurements, zero)
     # Fewer than ten degrees of freedom leave σ open by a quarter or more: a start, not knowledge.
-    if found is not None and found[0] > 0:
+    if found is not None and found[0] > _FINEST:
         return found[0], found[1] >= 10
     return _START, False
 

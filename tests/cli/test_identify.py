@@ -258,3 +258,11 @@ def test_any_subset_of_effects_can_be_fitted(run) -> None:
     for parameter in found["parameters"]:
         if parameter["unit"].startswith("N") and parameter["value"] is not None:
             assert parameter["value"] > 0.0 or "force_bias" in parameter["name"]
+
+
+def test_rows_that_were_pasted_twice_count_once(run, copy, rows) -> None:
+    plain, twice = run("identify", DATA, "--json"), copy("twice", [*rows, *rows[1:]])
+    outcome = run("identify", twice, "--json")
+    assert "15 rows repeat earlier ones" in outcome.stderr
+    for key in ("sigma_um", "rms_um", "sigma_stated"):
+        assert outcome.document[key] == plain.document[key]

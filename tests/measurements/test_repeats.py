@@ -95,3 +95,17 @@ def test_candidates_take_sigma_from_repeats() -> None:
     first = candidates(m)[0]
     assert first.stated
     assert first.sigma == pytest.approx(SIGMA, rel=0.2)
+
+
+def test_copied_rows_state_no_noise() -> None:
+    """Their scatter is zero but for rounding, and no instrument reads to a nanometre."""
+    displacement = np.random.default_rng(1).normal(0.0, 1e-4, (4, 3))
+    m = Measurements(
+        pose=("A", "A", "B", "B") * 2,
+        joint_names=("q",),
+        joints=np.array([[0.0], [0.0], [1.0], [1.0]] * 2),
+        wrench=np.array([[k, 0, 0, 0, 0, 0] for k in (1.0, 2.0, 1.0, 2.0)] * 2),
+        displacement=np.vstack([displacement, displacement]),
+        zero="separate",
+    )
+    assert all(not noise.stated and noise.sigma > 1e-6 for noise in candidates(m))
