@@ -127,7 +127,7 @@ def _winner(
     """Is one of `same` the best single effect to add to `rest` on these poses?"""
     promise = gains(regression, sums, score_set(regression, sums, rest).solved)
     order = [int(e) for e in np.argsort(-promise) if int(e) not in rest][:8]
-    contenders = {*order, *same}
+    contenders = {*same, *(e for e in order if not regression.candidates[e].exchangeable)}
     scored = {e: score_set(regression, sums, (*rest, e)) for e in contenders}
     fair = {e: model.score for e, model in scored.items() if model.plausible}
     if not fair:

@@ -22,6 +22,7 @@ from sk120stiff.robot.coupling import Array
 
 Index = NDArray[np.intp]
 
+FLOOR = 2.0  # least difference of scores for which an effect joins a model
 HIDDEN = 0.5  # standard errors by which all that is plausible of a parameter would show
 
 
@@ -72,10 +73,11 @@ class Regression:
         """What every effect pays because so many were looked at.
 
         With it, the fall of the misfit that one more parameter needs is the χ² quantile of
-        alpha over the number of candidates (Bonferroni), never less than the BIC asks for.
+        alpha over the number of candidates (Bonferroni) and a little more, never less than the
+        BIC asks for.
         """
-        needed = stats.chi2.isf(self.alpha / max(len(self.candidates), 1), 1)
-        return max(float(needed - np.log(rows)), 0.0)
+        needed = stats.chi2.isf(self.alpha / max(len(self.candidates), 1), 1) + FLOOR
+        return max(float(needed - np.log(rows)), FLOOR)
 
     @property
     def rows(self) -> int:

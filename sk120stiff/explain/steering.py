@@ -10,6 +10,8 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
+POSES_WITH_OFFSETS = 60
+
 
 @dataclass(frozen=True)
 class Options:
@@ -51,7 +53,11 @@ def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Mo
 
 
 def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Effect, ...]:
-    """Effects of the catalogue that the readings could show and the user does not exclude."""
+    """Effects of the catalogue that the readings could show and the user does not exclude.
+
+    Offsets of single poses are looked for among at most `POSES_WITH_OFFSETS` poses, unless the
+    user names them: beyond that they cost more time than all other effects together.
+    """
     situation = situation_of(model.robot, used)
     present = {effect.id for effect in model.effects}
     everything = all_effects(model.robot, poses=used.poses, timed=used.time is not None)
@@ -63,6 +69,11 @@ def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Eff
         for effect in everything
         if effect.id not in present
         and effect.applies_to(situation)
+        and (
+            not effect.exchangeable
+            or len(used.poses) <= POSES_WITH_OFFSETS
+            or any(_matches(effect, wanted) for wanted in wish.only)
+        )
         and not any(_matches(effect, wanted) for wanted in wish.exclude)
         and (not wish.only or any(_matches(effect, wanted) for wanted in wish.only))
     )
