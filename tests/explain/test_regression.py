@@ -1,0 +1,133 @@
+"""The linear algebra of the search, held against plain least squares and dense Gaussians."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+from scipy.stats import multivariate_normal
+
+from sk120stiff.effects import effect
+from sk120stiff.explain.regression import Regression, solve_columns
+from sk120stiff.explain.search import beam_search, gains, score_set
+from sk120stiff.robot import load_robot
+
+POSES, AXES = 12, 15
+
+
+def regression(seed: int = 0, *, known: bool = True, lower: float = -np.inf) -> Regression:
+    """Two base columns, three single effects, and one of twelve draws, on made-up columns."""
+    rng = np.random.default_rng(seed)
+    group = np.repeat(np.arange(POSES), AXES)
+    offsets = np.kron(np.eye(POSES), np.ones((AXES, 1)))
+    X = np.hstack([rng.normal(size=(POSES * AXES, 5)), offsets])
+    y = X[:, :5] @ np.array([4.0, -3.0, 1.5, 0.0, 0.0]) + rng.normal(size=len(X))
+    robot = load_robot("motoman_sk120")
+    named = [effect(robot, "joint_springs", f"joint_{k}") for k in ("4_r", "5_b", "6_t")]
+    zero = effect(robot, "zero_offset", poses=[str(k) for k in range(POSES)])
+    columns = (np.array([2]), np.array([3]), np.array([4]), np.arange(5, 5 + POSES))
+    return Regression(
+        y=y,
+        X=X,
+        group=group,
+        base=np.array([0, 1]),
+        candidates=(*named, zero),
+        columns=columns,
+        variants=tuple((own,) for own in columns),
+        lower=np.full(X.shape[1], lower),
+        plausible=np.full(X.shape[1], 1e6),
+        sigma_known=known,
+        alpha=0.01,
+    )
+
+
+def test_sums_over_poses_are_the_whole():
+    found = regression()
+    sums = found.sums()
+    assert np.allclose(sums.gram, found.X.T @ found.X)
+    assert np.allclose(sums.moment, found.X.T @ found.y)
+    twice = found.sums(np.full(POSES, 2.0))
+    assert np.allclose(twice.gram, 2.0 * sums.gram)
+
+
+def test_free_columns_are_least_squares():
+    found = regression()
+    pick = np.array([0, 1, 2])
+    solved = solve_columns(found.sums(), pick, found.lower, found.plausible)
+    values, rss, *_ = np.linalg.lstsq(found.X[:, pick], found.y, rcond=None)
+    assert np.allclose(solved.values, values, rtol=1e-6)
+    assert np.isclose(solved.rss, rss[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_bounded_columns_are_non_negative_least_squares(seed):
+    found = regression(seed, lower=0.0)
+    pick = np.arange(5)
+    solved = solve_columns(found.sums(), pick, found.lower, found.plausible)
+    values, norm = nnls(found.X[:, pick], found.y)
+    assert np.array_equal(solved.columns, np.flatnonzero(values))
+    assert np.isclose(solved.rss, norm**2, rtol=1e-6)
+
+
+def test_gains_are_the_fall_of_the_misfit():
+    found = regression()
+    sums = found.sums()
+    base = solve_columns(sums, found.base, found.lower, found.plausible)
+    promised = gains(found, sums, base)
+    for own, promise in zip(found.columns, promised, strict=True):
+        grown = np.concatenate([found.base, own])
+        rss = np.linalg.lstsq(found.X[:, grown], found.y, rcond=None)[1][0]
+        assert np.isclose(promise, base.rss - rss, rtol=1e-5)
+
+
+def test_draws_cost_their_marginal_likelihood():
+    """−2 ln p(y | v, τ) of the integrated sums, against the dense Gaussian N(X v, 1 + τ² Z Zᵀ)."""
+    found = regression()
+    members, size = found.columns[3], 1.5
+    left = found.sums().marginal(members, size)
+    v = np.array([3.9, -3.1, 1.4])
+    columns = np.array([0, 1, 2])
+    sums = left.sums
+    misfit = sums.square - 2.0 * v @ sums.moment[columns]
+    misfit += v @ sums.gram[np.ix_(columns, columns)] @ v
+    Z = found.X[:, members]
+    V = np.eye(len(found.y)) + size**2 * Z @ Z.T
+    dense = multivariate_normal(found.X[:, columns] @ v, V).logpdf(found.y)
+    constant = len(found.y) * np.log(2.0 * np.pi)
+    assert np.isclose(misfit + left.price, -2.0 * dense - constant, rtol=1e-9)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_the_search_finds_the_one_cause(known):
+    ranked = beam_search(regression(3, known=known))
+    assert ranked[0].effects == (0,)
+    empty = next(model for model in ranked if not model.effects)
+    assert empty.score - ranked[0].score > 50.0
+
+
+def test_noise_alone_names_nothing():
+    """One alarm in a hundred is allowed; sixty files of pure noise must not show four."""
+    alarms = 0
+    for seed in range(60):
+        found = regression(seed)
+        rng = np.random.default_rng(1000 + seed)
+        y = found.X[:, :2] @ np.array([4.0, -3.0]) + rng.normal(size=len(found.y))
+        clean = Regression(**{**vars_of(found), "y": y})
+        alarms += bool(beam_search(clean)[0].effects)
+    assert alarms <= 3
+
+
+def test_an_implausible_value_disqualifies():
+    found = regression()
+    narrow = found.plausible.copy()
+    narrow[2] = 0.2
+    tight = Regression(**{**vars_of(found), "plausible": narrow})
+    assert not score_set(tight, tight.sums(), [0]).plausible
+
+
+def vars_of(found: Regression) -> dict[str, object]:
+    names = (
+        "y", "X", "group", "base", "candidates", "columns", "variants", "lower", "plausible",
+        "sigma_known", "alpha",
+    )  # fmt: skip
+    return {name: getattr(found, name) for name in names}
