@@ -123,7 +123,8 @@ def equilibrium(
     Raises
     ------
     Refusal
-        No equilibrium was reached: the load is beyond what the springs can hold.
+        No equilibrium was reached, or one at which the arm would not stay: the load is beyond what
+        the springs can hold.
     """
     z_0 = np.asarray(z_0, dtype=float)
     load = np.asarray(wrench, dtype=float)
@@ -152,14 +153,30 @@ def equilibrium(
         if not np.isfinite(change).all():
             break
         if np.max(np.abs(change), initial=0.0) <= TOLERANCE:
+            _refuse_unstable(feedback[..., pick[:, None], pick])
             measured = screws if force_point is None else screws.at(_given(point))
             compliance = np.broadcast_to(compliance, K_C.shape)
             return Equilibrium(z, measured, torques, compliance, K_C, weights, feedback, step)
         # A step of more than half a radian would leave the region in which Newton can be trusted.
         largest = np.max(np.abs(change), axis=-1, keepdims=True, initial=0.0)
         z[..., pick] -= change * np.minimum(1.0, 0.5 / np.maximum(largest, 1e-300))
-    raise Refusal(
-        "no static equilibrium was found: the load is beyond what these springs can hold",
+    raise _beyond("no static equilibrium was found")
+
+
+def _refuse_unstable(feedback: Array) -> None:
+    """Refuse a balance from which the least push makes the arm fall: C K_C with an eigenvalue ≥ 1.
+
+    With springs K_θ = C⁻¹ that is where K_θ − K_C is no longer positive definite. A matrix whose
+    Frobenius norm is below one has no such eigenvalue, so few readings are looked at closely.
+    """
+    doubtful = feedback[np.asarray((feedback**2).sum((-1, -2)) >= 1.0)]
+    if len(doubtful) and (np.linalg.eigvals(doubtful).real >= 1.0).any():
+        raise _beyond("the only static equilibrium that was found is not stable")
+
+
+def _beyond(what: str) -> Refusal:
+    return Refusal(
+        f"{what}: the load is beyond what these springs can hold",
         remedy="Check the units of load and springs; see the critical load with "
         "'sk120stiff stiffness'.",
     )

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.errors import Refusal
+from sk120stiff.robot import load_robot
 from sk120stiff.stiffness import complementary_stiffness, equilibrium, linear_springs
 from tests.stiffness.arms import POINT, mixed_arm, sk120, sk120_poses
 
@@ -98,3 +99,23 @@ def test_no_rest_is_a_refusal_and_not_a_number():
     arm = mixed_arm(0)
     with pytest.raises(Refusal, match="no static equilibrium"):
         equilibrium(arm.mechanism, arm.poses(1, 0)[0], 1e6 * LOAD, linear_springs(arm.springs))
+
+
+COLUMN = """<robot name="column"><link name="floor"/><link name="top"/>
+<joint name="hinge" type="revolute"><parent link="floor"/><child link="top"/>
+<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="0" velocity="0"/></joint></robot>"""
+
+
+@pytest.mark.parametrize("push", [0.0, 1e-3])
+def test_a_column_that_would_tip_over_is_no_rest(push):
+    """A weight P on a column of 2 m on a spring k stands up to P = k / 2 m and not beyond."""
+    mechanism = load_robot(COLUMN).mechanism()
+    top, spring = np.array([0.0, 0.0, 2.0]), linear_springs([1000.0])
+
+    def rest(weight):
+        load = np.array([push * weight, 0, -weight, 0, 0, 0])
+        return equilibrium(mechanism, np.zeros(1), load, spring, point=top).z[0]
+
+    assert abs(rest(450.0)) < 0.1
+    with pytest.raises(Refusal, match="not stable"):
+        rest(600.0)
