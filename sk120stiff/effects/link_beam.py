@@ -124,7 +124,7 @@ class LinkTorsion(LinearElastic):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Torsional stiffness GJ."""
-        return (compliance("GJ", softest=2e5, typical=4e6, scale=self.scale, unit="N*m**2"),)
+        return (compliance("GJ", softest=5e4, typical=4e6, scale=self.scale, unit="N*m**2"),)
 
     def sentence(self) -> str:
         """What happens."""
