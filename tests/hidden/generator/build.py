@@ -34,7 +34,10 @@ def build(level: str, seed: int, number: int) -> Case:
         key = (seed, index, number, attempt)
         rng = np.random.default_rng(key)
         try:
-            return BUILDERS[level](level, key, rng)
+            case = BUILDERS[level](level, key, rng)
+            for rows in (case.train, case.holdout, case.sealed):
+                case.world.observe(rows)  # every set has to have an equilibrium
+            return case
         except (NotThisTime, NoEquilibrium, np.linalg.LinAlgError):
             continue
     raise RuntimeError(f"no {level} case for seed {seed}, number {number}")
