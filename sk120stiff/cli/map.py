@@ -109,6 +109,16 @@ def command(
             show_default="none",
         ),
     ] = None,
+    figures: Annotated[
+        Path | None,
+        typer.Option(
+            "--figures",
+            metavar="DIR",
+            help="Draw slices too, as SVG and PNG: least stiffness and definiteness over every "
+            "pair of axes, through the softest point.",
+            show_default="none",
+        ),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace another map of that name.")
     ] = False,
@@ -122,7 +132,7 @@ def command(
     checksums of when it was written.
 
     Example: sk120stiff map motoman_sk120 --grid 'joint_2_l=::2; joint_3_u=::2 deg'
-    --wrench '0,0,-490 N' --out sk120.zarr
+    --wrench '0,0,-490 N' --out sk120.zarr --figures sk120_slices
     """
     arm_robot = open_robot(robot, base, tool)
     believed = open_model(arm_robot, model)
@@ -130,6 +140,12 @@ def command(
     rest = pose_of(arm_robot, pose)
     loads = np.array([wrench_of(text) for text in wrench] if wrench else [np.zeros(6)])
     points = _points(arm, grid, rest, axis, orientation)
+    if figures is not None and sum(size > 1 for size in points.grid.shape) < 2:
+        raise InputError(
+            "a slice needs two axes with more than one point each",
+            where="--figures",
+            remedy="Map over two axes or more.",
+        )
     job = MapJob(arm, points, loads, with_directions=directions)
     with progress_bar("Mapping") as report:
         written = write_map(job, out, scheduler=scheduler, overwrite=overwrite, progress=report)
@@ -145,6 +161,7 @@ def command(
     loads_found, status = summarise_map(out)
     if page is not None:
         _write_page(page, out, believed, pose)
+    drawn = [] if figures is None else _draw(figures, out, loads_found)
     document = {
         "robot": arm.name,
         "store": str(out),
@@ -155,6 +172,7 @@ def command(
         "files_verified": check.files,
         "status": status,
         "page": page,
+        "figures": drawn,
         "wrenches": loads,
         "loads": loads_found,
         "units": {
@@ -165,7 +183,10 @@ def command(
             "stiffest_at": "rad or m",
         },
     }
-    return Answer(document, parts=_parts(arm, written, check.files, status, loads, loads_found))
+    parts = _parts(arm, written, check.files, status, loads, loads_found)
+    if drawn:
+        parts.append(f"Figures: {len(drawn)} files in {figures}")
+    return Answer(document, parts)
 
 
 def _write_page(page: Path, store: Path, model: Model, pose: str | None) -> None:
@@ -175,6 +196,18 @@ def _write_page(page: Path, store: Path, model: Model, pose: str | None) -> None
     title = f"{robot.name}: stiffness over the workspace"
     scene = scene_of_model(model, title=title, a=pose_of(robot, pose))
     cloud_page(page, scene, cloud_of_map(open_map(store), robot))
+
+
+def _draw(folder: Path, store: Path, loads: tuple[LoadSummary, ...]) -> list[Path]:
+    from sk120stiff.show import figures_of_map, save_figure
+
+    dataset = open_map(store)
+    return [
+        save_figure(each.figure, folder / f"{each.name}.{ending}")
+        for load, summary in enumerate(loads)
+        for each in figures_of_map(dataset, load=load, at=summary.softest_at or None)
+        for ending in ("svg", "png")
+    ]
 
 
 def _points(

@@ -22,7 +22,7 @@ Scene (`sk120stiff.show.scene`)
 
 Map (`sk120stiff.show.cloud`)
     ``cloud_page(path, scene, cloud_of_map(open_map("map.zarr"), robot))``: the robot among the
-    coloured points of a map.
+    coloured points of a map. ``figures_of_map(dataset)``: slices of it as figures.
 
 Live (`sk120stiff.show.live`)
     ``serve(scene, port=..., open_browser=...)``: the same page with everything computed by Python.
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from sk120stiff.show.building import scene_of_model
     from sk120stiff.show.cloud import Cloud, cloud_html, cloud_of_map, cloud_page
     from sk120stiff.show.elastic import Elastic
+    from sk120stiff.show.map_figures import MapFigure, figures_of_map
     from sk120stiff.show.report import (
         Code,
         Items,
@@ -61,6 +62,7 @@ _HOME = {
     "Items": "report",
     "KeyFigure": "report",
     "KeyFigures": "report",
+    "MapFigure": "map_figures",
     "Note": "report",
     "Picture": "report",
     "Reading": "scene",
@@ -73,6 +75,7 @@ _HOME = {
     "cloud_html": "cloud",
     "cloud_of_map": "cloud",
     "cloud_page": "cloud",
+    "figures_of_map": "map_figures",
     "inline_svg": "saving",
     "save_figure": "saving",
     "reproducibility": "report",
@@ -88,6 +91,7 @@ __all__ = [
     "Items",
     "KeyFigure",
     "KeyFigures",
+    "MapFigure",
     "Note",
     "Picture",
     "Reading",
@@ -100,6 +104,7 @@ __all__ = [
     "cloud_html",
     "cloud_of_map",
     "cloud_page",
+    "figures_of_map",
     "inline_svg",
     "reproducibility",
     "save_figure",

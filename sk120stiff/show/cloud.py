@@ -19,6 +19,7 @@ from sk120stiff.show.frame import Request, compute_frame
 from sk120stiff.show.payload import frame_payload, scene_payload
 from sk120stiff.show.scene import Scene
 from sk120stiff.show.static import environment, json_for_script, script, viewer_script
+from sk120stiff.show.wording import load_in_words
 
 if TYPE_CHECKING:
     import xarray
@@ -134,11 +135,7 @@ def cloud_of_map(
     if not known.any():
         raise InputError("no point of this map has a value", where=variable)
     wrench = np.asarray(dataset["wrench"].isel(load=load).values, dtype=float)
-    text = ", ".join(f"{component:g}" for component in wrench[:3]) + " N"
-    if wrench[3:].any():
-        text += "; " + ", ".join(f"{component:g}" for component in wrench[3:]) + " N·m"
-    subtitle = f"load {text}" if wrench.any() else "no load"
-    return Cloud(position[known], values[known], label, unit, subtitle)
+    return Cloud(position[known], values[known], label, unit, load_in_words(wrench.tolist()))
 
 
 def cloud_html(scene: Scene, cloud: Cloud) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import pi
 from typing import Any, Final
 
 from matplotlib import rc_context
@@ -11,6 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sk120stiff.show import palette
+
+#: Factor from SI to a unit that axes are drawn in.
+FROM_SI: Final = {"deg": 180.0 / pi, "rad": 1.0, "mm": 1e3, "m": 1.0}
 
 WIDTH: Final = 7.2  # inches: the text width of a report page
 

@@ -72,6 +72,16 @@ def listed(words: Sequence[str], joint: str = "and") -> str:
     return f"{', '.join(words[:-1])} {joint} {words[-1]}"
 
 
+def load_in_words(wrench: Sequence[float]) -> str:
+    """``load 0, 0, -490 N``: a wrench [N, N·m], its moment only where there is one."""
+    if not any(wrench):
+        return "no load"
+    text = "load " + ", ".join(f"{component:g}" for component in wrench[:3]) + " N"
+    if any(wrench[3:]):
+        text += "; " + ", ".join(f"{component:g}" for component in wrench[3:]) + " N·m"
+    return text
+
+
 def counted(count: int, one: str, many: str = "") -> str:
     """``1 pose``, ``3 poses``."""
     return f"{count} {one if count == 1 else many or one + 's'}"

@@ -35,6 +35,34 @@ def test_a_page_shows_the_map(run: Run, tmp_path: Path) -> None:
     assert "least stiffness" in page.read_text()
 
 
+def test_slices_are_drawn_for_every_load_and_pair_of_axes(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "slices"
+    loads = ("--wrench", "0,0,-490 N", "--wrench", "100,0,0 N")
+    grid = ("--grid", "joint_2_l=-70:70:35; joint_3_u=-100:0:50; joint_5_b=10 deg")
+    store = ("--out", str(tmp_path / "m.zarr"))
+    found = run("map", "motoman_sk120", *grid, *loads, *store, "--figures", str(folder), "--json")
+    assert found.code == 0, found.stderr
+    names = {
+        f"load{load}_joint_2_l_joint_3_u_{kind}.{ending}"
+        for load in (1, 2)
+        for kind in ("stiffness", "definiteness")
+        for ending in ("svg", "png")
+    }
+    assert {path.name for path in folder.iterdir()} == names
+    assert {Path(path).name for path in found.document["figures"]} == names
+
+
+def test_a_line_has_no_slice(run: Run, tmp_path: Path) -> None:
+    store = tmp_path / "m.zarr"
+    found = run(
+        "map", "motoman_sk120", "--grid", "joint_2_l=-70:70:35 deg", "--out", str(store),
+        "--figures", str(tmp_path / "f"),
+    )  # fmt: skip
+    assert found.code == 2
+    assert "two axes" in found.stderr
+    assert not store.exists()
+
+
 def test_people_see_a_table(run: Run, tmp_path: Path) -> None:
     store = str(tmp_path / "m.zarr")
     found = run("map", "motoman_sk120", "--grid", "x=1.8:2.2:0.2; y=0; z=0:4:2 m", "--out", store)

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import new_figure, styled
+from sk120stiff.show.style import FROM_SI, new_figure, styled
 
 Array = NDArray[np.float64]
 
@@ -25,21 +26,25 @@ def stiffness_slice(
     value_label: str = "least stiffness [N/µm]",
     scale: float = 1e-6,
     marks: Mapping[str, tuple[float, float]] | None = None,
+    units: tuple[str, str] = ("deg", "deg"),
     title: str | None = None,
 ) -> Figure:
-    """A quantity over two joint values, as filled contours.
+    """A quantity over two joint values or two positions, as filled contours.
 
     Parameters
     ----------
     x, y
-        (nx,), (ny,) joint values [rad].
+        (nx,), (ny,) joint values [rad] or positions [m].
     values
         (ny, nx) quantity in SI, e.g. the least principal stiffness [N/m]; NaN stays white.
     scale
         Factor from SI to the unit that `value_label` names.
     marks
-        Label → (x, y) [rad] of poses to mark.
+        Label → (x, y) [rad or m] of poses to mark.
+    units
+        Units of the two axes as they are drawn: one of `sk120stiff.show.style.FROM_SI`.
     """
+    x, y = FROM_SI[units[0]] * np.asarray(x), FROM_SI[units[1]] * np.asarray(y)
     shown = scale * np.asarray(values, dtype=float)
     if shown.shape != (len(y), len(x)):
         raise InputError(f"values have shape {shown.shape}, not ({len(y)}, {len(x)})")
@@ -52,24 +57,27 @@ def stiffness_slice(
         figure = new_figure(3.9, width=5.4)
         panel = figure.subplots()
         levels = np.linspace(low, top, 15)
-        drawn = panel.contourf(
-            np.degrees(x), np.degrees(y), np.clip(shown, None, top), levels=levels, cmap="cividis"
-        )
+        drawn = panel.contourf(x, y, np.clip(shown, None, top), levels=levels, cmap="cividis")
         lines = panel.contour(
-            np.degrees(x), np.degrees(y), np.clip(shown, None, top), levels=levels[2:-1:3],
+            x, y, np.clip(shown, None, top), levels=levels[2:-1:3],
             colors="white", linewidths=0.6,
         )  # fmt: skip
         panel.clabel(lines, fontsize=7, fmt="%.3g")
         panel.grid(visible=False)
-        for label, (at_x, at_y) in (marks or {}).items():
-            panel.plot(np.degrees(at_x), np.degrees(at_y), "o", color=palette.VERMILION,
-                       markeredgecolor="white", markersize=7)  # fmt: skip
+        for label, mark in (marks or {}).items():
+            place = (FROM_SI[units[0]] * mark[0], FROM_SI[units[1]] * mark[1])
+            right = place[0] > 0.5 * (x[0] + x[-1])  # the label stays inside the picture
+            high = place[1] > 0.5 * (y[0] + y[-1])
+            panel.plot(*place, "o", color=palette.VERMILION, markeredgecolor="white",
+                       markersize=7, clip_on=False, zorder=5)  # fmt: skip
             panel.annotate(
-                label, (np.degrees(at_x), np.degrees(at_y)), (6, 5), textcoords="offset points",
-                fontsize=8.5, color="white", fontweight="bold",
+                label, place, (-7 if right else 7, -6 if high else 6), textcoords="offset points",
+                ha="right" if right else "left", va="top" if high else "bottom", fontsize=8.5,
+                color="white", fontweight="bold",
+                path_effects=[withStroke(linewidth=2.0, foreground=palette.INK)],
             )  # fmt: skip
-        panel.set_xlabel(f"{x_label} [deg]")
-        panel.set_ylabel(f"{y_label} [deg]")
+        panel.set_xlabel(f"{x_label} [{units[0]}]")
+        panel.set_ylabel(f"{y_label} [{units[1]}]")
         bar = figure.colorbar(drawn, ax=panel, label=value_label, format="%.3g")
         bar.outline.set_visible(False)
         if title:
