@@ -74,7 +74,11 @@ def test_the_answer_goes_to_stdout_and_the_rest_to_stderr(run, teach) -> None:
             "Error: d.csv, column fx: no unit. Write fx[N].\n",
         ),
         (Refusal("the arm is unstable"), 1, "Error: the arm is unstable.\n"),
-        (MissingPart("distributed", "cluster", needed_for="map"), 2, 'pip install "sk120stiff[cluster]"'),
+        (
+            MissingPart("distributed", "cluster", needed_for="map"),
+            2,
+            'pip install "sk120stiff[cluster]"',
+        ),
         (KeyboardInterrupt(), 130, "Interrupted."),
         (OSError(28, "No space left on device", "out.csv"), 1, "Error: out.csv: No space left"),
         (MemoryError(), 1, "Error: not enough memory"),
