@@ -1,6 +1,7 @@
 """Measurements: what was pressed, what moved, and how well that is known."""
 
 from sk120stiff.measurements.data import Measurements, NoiseStatement
+from sk120stiff.measurements.importing import Imported, read_figaroh
 from sk120stiff.measurements.joining import join_measurements
 from sk120stiff.measurements.noise import NoiseModel, candidates
 from sk120stiff.measurements.reading import read_measurements
@@ -9,6 +10,7 @@ from sk120stiff.measurements.whitening import Whitener
 from sk120stiff.measurements.writing import write_measurements
 
 __all__ = [
+    "Imported",
     "Measurements",
     "NoiseModel",
     "NoiseStatement",
@@ -16,6 +18,7 @@ __all__ = [
     "candidates",
     "join_measurements",
     "pure_error",
+    "read_figaroh",
     "read_measurements",
     "write_measurements",
 ]

@@ -83,6 +83,12 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
             joints[name] = kind
         else:
             extra.append(name)
+    if "pose" not in has and {"x1", "y1", "z1"} <= table.headers.keys():
+        raise InputError(
+            "these are marker positions of a calibration, not readings under load",
+            where=f"{table.path}, line {table.header_line}",
+            remedy="Convert them first: 'sk120stiff import' says what can be identified from them.",
+        )
     _require(table, has, ("pose",))
     _require(table, has, FORCES)
     measured = _measured(table, has)

@@ -17,6 +17,12 @@ from sk120stiff.measurements.zero import find_zero_readings, group_by_run
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+POSITIONS_ALONE = (
+    "positions without a difference in load hold no information on stiffness: no spring and no "
+    "other elastic effect can be identified from them. They show the rigid geometry alone, which "
+    "is not calibrated here: joint_offset, tool_offset and link_length need readings under load."
+)
+
 
 @dataclass(frozen=True)
 class Displacements:
@@ -110,7 +116,8 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
         raise InputError(
             "no row has a load, so nothing was displaced",
             where=f"{table.path}, line {table.lines[0]}",
-            remedy="Add rows with forces; positions alone say nothing about stiffness.",
+            remedy=f"{POSITIONS_ALONE[0].upper()}{POSITIONS_ALONE[1:]} "
+            "Read the same poses again with a known load.",
         )
     sequence = next(
         (s for s in (rows.order, rows.time) if s is not None), np.arange(float(len(rows.pose)))

@@ -1,0 +1,173 @@
+"""`sk120stiff import CSV --robot ROBOT --out FILE.csv`."""
+# ruff: noqa: N999 - the file is named as its command, and is imported by that name alone
+
+from __future__ import annotations
+
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import open_robot, wrench_of
+from sk120stiff.cli.options import BaseOption, ToolOption
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import read_figaroh, write_measurements
+from sk120stiff.units import parse_values
+
+
+class Length(StrEnum):
+    """Unit of marker coordinates."""
+
+    m = "m"
+    mm = "mm"
+
+
+class Angle(StrEnum):
+    """Unit of joint values."""
+
+    rad = "rad"
+    deg = "deg"
+
+
+class Load(StrEnum):
+    """Unit of forces, or of a payload."""
+
+    N = "N"
+    kN = "kN"
+    kg = "kg"
+
+
+def command(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CSV",
+            help="Columns x1,y1,z1 and the joints (their names, or q1,q2,...); for the load "
+            "fx,fy,fz or payload or load; pose and use where there are any.",
+            show_default=False,
+        ),
+    ],
+    robot: Annotated[
+        str,
+        typer.Option(
+            "--robot",
+            metavar="ROBOT",
+            help="A .urdf, a .xacro, a folder with robot.yaml, or a bundled name (motoman_sk120).",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="The CSV file to write; a YAML file goes beside it.",
+            show_default=False,
+        ),
+    ],
+    length: Annotated[
+        Length | None, typer.Option(help="Unit of positions, where headers carry none.")
+    ] = None,
+    angle: Annotated[
+        Angle | None, typer.Option(help="Unit of joint angles, where headers carry none.")
+    ] = None,
+    load: Annotated[
+        Load | None, typer.Option(help="Unit of fx,fy,fz or payload (kg: payload alone).")
+    ] = None,
+    wrench: Annotated[
+        str | None,
+        typer.Option(
+            metavar="VALUES",
+            help="What the column load counts, on the robot in base axes: '0,0,-490 N'.",
+            show_default=False,
+        ),
+    ] = None,
+    marker: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Which marker, where there are several."),
+    ] = None,
+    point: Annotated[
+        str | None,
+        typer.Option(
+            metavar="VALUES",
+            help="Where the marker sits in the tool frame: '0,0,150 mm'.",
+            show_default="its origin",
+        ),
+    ] = None,
+    joints: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAMES",
+            help="Columns of the actuated joints, in the joints' order: 'a,b,c'.",
+            show_default="named as the joints, or q1,q2,...",
+        ),
+    ] = None,
+    base: BaseOption = None,
+    tool: ToolOption = None,
+) -> Answer:
+    """A calibration file of marker positions as measurements.
+
+    For files as FIGAROH takes them. Says what was assumed, and what can be identified: without two
+    loads at one pose, nothing about stiffness.
+
+    Example: sk120stiff import marks.csv --robot motoman_sk120 --length m --angle rad --out own.csv
+    """
+    if out.resolve() == source.resolve():
+        raise InputError(
+            "this would overwrite the file that is read",
+            where=str(out),
+            remedy="Choose another name for --out.",
+        )
+    arm = open_robot(robot, base, tool)
+    found = read_figaroh(
+        source,
+        arm.actuated,
+        prismatic=[n for n, slides in zip(arm.actuated, arm.prismatic, strict=True) if slides],
+        length=length,
+        angle=angle,
+        load=load,
+        wrench=None if wrench is None else wrench_of(wrench),
+        joints=None if joints is None else [name.strip() for name in joints.split(",")],
+        marker=marker,
+        point=None if point is None else _point(point),
+    )
+    readings = replace(
+        found.measurements,
+        robot=str(Path(arm.source).resolve()) if Path(arm.source).exists() else arm.source,
+        base_frame=arm.base_frame,
+        tool_frame=arm.tool_frame,
+    )
+    write_measurements(readings, out, as_positions=True)
+    document = {
+        "rows": readings.n_readings,
+        "poses": len(readings.poses),
+        "useful_poses": found.useful_poses,
+        "rows_with_load_difference": found.differences,
+        "stiffness_identifiable": found.differences > 0,
+        "identifiable": found.identifiable,
+        "assumed": list(found.assumed),
+        "largest_load_N": float(np.linalg.norm(readings.wrench[:, :3], axis=1).max()),
+        "out": out,
+    }
+    parts: list[object] = [
+        f"{readings.n_readings} rows at {len(readings.poses)} poses.",
+        "Assumed:",
+        *(f"- {sentence}" for sentence in found.assumed),
+        "What can be identified:",
+        found.identifiable,
+        f"Written to {out} and {out.with_suffix('.yaml')}.",
+    ]
+    return Answer(document, parts)
+
+
+def _point(text: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    values = parse_values(text, "length", where="--point")
+    if len(values) != 3:
+        raise InputError(
+            f"{text!r} is no point", where="--point", remedy="Write three lengths: '0,0,150 mm'."
+        )
+    return values
