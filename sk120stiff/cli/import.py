@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
@@ -14,8 +15,11 @@ import typer
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
-from sk120stiff.errors import InputError
-from sk120stiff.measurements import read_figaroh, write_measurements
+from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.measurements import Measurements, read_figaroh, write_measurements
+from sk120stiff.measurements.registration import registration_doubts
+from sk120stiff.robot import Robot
+from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 
 
@@ -141,6 +145,9 @@ def command(
         base_frame=arm.base_frame,
         tool_frame=arm.tool_frame,
     )
+    doubts = registration_doubts(*_positions(readings, arm))
+    for sentence in doubts:
+        warnings.warn(sentence, ToolkitWarning, stacklevel=2)
     write_measurements(readings, out, as_positions=True)
     document = {
         "rows": readings.n_readings,
@@ -150,6 +157,7 @@ def command(
         "stiffness_identifiable": found.differences > 0,
         "identifiable": found.identifiable,
         "assumed": list(found.assumed),
+        "doubts": doubts,
         "largest_load_N": float(np.linalg.norm(readings.wrench[:, :3], axis=1).max()),
         "out": out,
     }
@@ -164,7 +172,15 @@ def command(
     return Answer(document, parts)
 
 
-def _point(text: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _positions(readings: Measurements, arm: Robot) -> tuple[Array, Array]:
+    """(P, 3) position in the first row in use of each pose [m]: as measured, by the rigid robot."""
+    used = np.flatnonzero(readings.use)
+    first = used[np.unique(readings.pose_index[used], return_index=True)[1]]
+    measured = np.zeros((0, 3)) if readings.displacement is None else readings.displacement[first]
+    return measured, arm.placement(readings.joints[first], point=readings.point)[..., :3, 3]
+
+
+def _point(text: str) -> Array:
     values = parse_values(text, "length", where="--point")
     if len(values) != 3:
         raise InputError(

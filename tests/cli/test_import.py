@@ -38,6 +38,7 @@ def test_the_springs_come_out(run, tmp_path: Path) -> None:
     )
     assert outcome.code == 0, outcome.stderr
     found = outcome.document
+    assert found["doubts"] == []
     assert (found["rows"], found["poses"], found["useful_poses"]) == (6, 3, 3)
     assert found["stiffness_identifiable"] is True
     assert read_measurements(out).robot == "motoman_sk120"
@@ -80,3 +81,20 @@ def test_bad_options(run, tmp_path: Path) -> None:
         assert refused.code == 2, arguments
         assert word in refused.stderr
         assert not Path(out).exists()
+
+
+def test_a_turned_tracker_and_a_wrong_unit_are_doubted(run, tmp_path: Path) -> None:
+    source = Path(marks(tmp_path, payload=False))
+    lines = source.read_text(encoding="utf-8").splitlines()
+    turned = [lines[0]]
+    for line in lines[1:]:
+        x, y, *rest = line.split(",")
+        turned.append(",".join([y, str(-float(x)), *rest]))
+    source.write_text("\n".join(turned) + "\n", encoding="utf-8")
+    out = str(tmp_path / "own.csv")
+    (doubt,) = run("import", str(source), *TOLD, "--out", out, "--json").document["doubts"]
+    assert "about 90 deg" in doubt
+    told = (*TOLD[:2], "--length", "mm", "--angle", "rad")
+    outcome = run("import", marks(tmp_path), *told, "--wrench", "0,0,-9 N", "--out", out)
+    assert outcome.code == 0
+    assert "Check the units" in outcome.stderr
