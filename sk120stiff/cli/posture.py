@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -14,18 +15,22 @@ from sk120stiff.cli.opening import direction_of
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
-from sk120stiff.model import read_model
+from sk120stiff.model import Model, read_model
+from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     BestPosture,
+    Landscape,
     PathTask,
     Placement,
     best_posture,
     elastic_arm,
     parse_axes,
+    posture_landscape,
     read_path,
     write_joints,
 )
+from sk120stiff.workspace.arm import seen_from
 
 _PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
 
@@ -90,6 +95,23 @@ def command(
         float,
         typer.Option(help="Smallest allowed ratio of the position Jacobian's singular values."),
     ] = 0.02,
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Draw the choice (.svg, .png or .pdf): the worst point over the tool's "
+            "orientation with the posture that was chosen, and the values along the path.",
+            show_default="none",
+        ),
+    ] = None,
+    page: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="HTML",
+            help="Write a page too: the arm in 3-D at every point of the path.",
+            show_default="none",
+        ),
+    ] = None,
     at: AtOption = None,
     seed: SeedOption = 0,
 ) -> Answer:
@@ -99,8 +121,14 @@ def command(
     axis, the place of the part. The worst point of the path counts.
 
     Example: sk120stiff posture model.yaml path.csv --tool-axis 0,0,-1 --minimise deflection
-    --out best.csv
+    --out best.csv --picture best.svg
     """
+    if picture is not None and picture.suffix.lower() not in (".svg", ".png", ".pdf"):
+        raise InputError(
+            f"a picture cannot be written as {picture.suffix or 'a name without an ending'}",
+            where="--picture",
+            remedy="Choose a name that ends in .svg, .png or .pdf.",
+        )
     believed = read_model(model)
     robot = believed.robot
     given = read_path(path, robot)
@@ -120,12 +148,14 @@ def command(
     margin = 0.0
     if limit_margin is not None:
         (margin,) = parse_values(limit_margin, "angle", where="--limit-margin")
+    arm = elastic_arm(believed, frame=at)
+    freedom = None if place is None else _placement(place, given.position)
     with progress_bar("Searching") as report:
         found = best_posture(
-            elastic_arm(believed, frame=at),
+            arm,
             task,
             minimise=minimise.value,
-            placement=None if place is None else _placement(place, given.position),
+            placement=freedom,
             limit_margin=float(margin),
             singularity_margin=singularity_margin,
             seed=seed,
@@ -137,6 +167,21 @@ def command(
         ]
     }
     write_joints(out, given, robot, found.a, notes)
+    if picture is not None:
+        turned = None
+        if task.rotation is None:
+            turned = posture_landscape(
+                arm,
+                task,
+                found,
+                minimise=minimise.value,
+                placement=freedom,
+                limit_margin=float(margin),
+                singularity_margin=singularity_margin,
+            )
+        _draw(picture, found, turned, minimise)
+    if page is not None:
+        _write_page(page, *seen_from(believed, at or robot.tool_frame, np.zeros(3)), found, task)
     document = {
         "robot": robot.name,
         "rows": given.count,
@@ -156,11 +201,43 @@ def command(
             "worst": float(found.admissible[-1]),
         },
         "out": str(out),
+        "picture": picture,
+        "page": page,
     }
-    return Answer(document, _parts(found, minimise, out))
+    files = [str(file) for file in (out, picture, page) if file is not None]
+    return Answer(document, _parts(found, minimise, files))
 
 
-def _placement(text: str, position: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Placement:
+def _draw(file: Path, found: BestPosture, turned: Landscape | None, minimise: Minimise) -> None:
+    from sk120stiff.show import save_figure
+    from sk120stiff.show.figures import posture_choice
+
+    figure = posture_choice(
+        found.per_point,
+        compliance=minimise == Minimise.compliance,
+        landscape=None if turned is None else (turned.angle, turned.objective),
+        chosen=None if turned is None else turned.chosen,
+        tilt=turned is not None and turned.tilt,
+        blind=found.admissible,
+    )
+    save_figure(figure, file)
+
+
+def _write_page(file: Path, model: Model, point: Array, found: BestPosture, task: PathTask) -> None:
+    from sk120stiff.show import ScenePose, scene_of_model, static_scene
+
+    worst = int(np.argmax(found.per_point))
+    scene = scene_of_model(
+        model,
+        title=f"{model.robot.name}: best posture",
+        a=found.a[worst],
+        wrench=task.each().wrench[worst],
+    )
+    poses = tuple(ScenePose(f"point {k + 1}", a) for k, a in enumerate(found.a))
+    static_scene(file, replace(scene, poses=poses, point=point))
+
+
+def _placement(text: str, position: Array) -> Placement:
     """Ranges like ``x=-300:300 mm`` about the middle of the path."""
     limits = {name: (-np.inf, np.inf, "length" if name in "xyz" else "angle") for name in _PLACES}
     lower, upper = np.zeros(6), np.zeros(6)
@@ -170,7 +247,7 @@ def _placement(text: str, position: np.ndarray[tuple[int, int], np.dtype[np.floa
     return Placement(position.mean(axis=0), lower, upper)
 
 
-def _parts(found: BestPosture, minimise: Minimise, out: Path) -> list[object]:
+def _parts(found: BestPosture, minimise: Minimise, files: list[str]) -> list[object]:
     compliance = minimise == Minimise.compliance
     scale, unit = (1e-6, "N/µm") if compliance else (1e6, "µm")
 
@@ -198,4 +275,4 @@ def _parts(found: BestPosture, minimise: Minimise, out: Path) -> list[object]:
             if value
         ]
         parts.append(f"The part is moved by {', '.join(moved)}.")
-    return [*parts, f"Written: {out}"]
+    return [*parts, f"Written: {', '.join(files)}"]

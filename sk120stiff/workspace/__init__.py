@@ -7,6 +7,7 @@ from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
 from sk120stiff.workspace.finished import LoadSummary, MapCheck, open_map, summarise_map, verify_map
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
+from sk120stiff.workspace.landscape import Landscape, posture_landscape
 from sk120stiff.workspace.mapping import MapReport, write_map
 from sk120stiff.workspace.path import LoadedPath, joints_along, read_path, write_joints
 from sk120stiff.workspace.posture import (
@@ -27,6 +28,7 @@ __all__ = [
     "ElasticArm",
     "Grid",
     "JointGrid",
+    "Landscape",
     "LoadSummary",
     "LoadedPath",
     "MapCheck",
@@ -47,6 +49,7 @@ __all__ = [
     "open_map",
     "parse_axes",
     "path_points",
+    "posture_landscape",
     "read_path",
     "sdf_text",
     "solve_inverse",

@@ -177,7 +177,7 @@ def best_posture(
             where=arm.name,
             remedy="Give a force alone.",
         )
-    judge = _Judge(
+    judge = Judge(
         replace(arm, lower=arm.lower + limit_margin, upper=arm.upper - limit_margin),
         path.each(),
         minimise,
@@ -215,19 +215,20 @@ def best_posture(
 
 
 @dataclass(frozen=True, eq=False)
-class _Pool:
+class Pool:
     """k postures followed along the path: (k, N, n), (k, 6) and (k,)."""
 
     path: Array
     placement: Array
     objective: Array
 
-    def best(self, count: int) -> _Pool:
+    def best(self, count: int) -> Pool:
+        """The first `count` that pass, the best first."""
         order = np.argsort(self.objective)[:count]
         order = order[np.isfinite(self.objective[order])]
-        return _Pool(self.path[order], self.placement[order], self.objective[order])
+        return Pool(self.path[order], self.placement[order], self.objective[order])
 
-    def improve(self, trial: _Pool, children: int) -> _Improved:
+    def improve(self, trial: Pool, children: int) -> _Improved:
         """Each posture or the best of its children, which stand one after the other in `trial`."""
         k = len(self.objective)
         objectives = trial.objective.reshape(children, k)
@@ -235,7 +236,7 @@ class _Pool:
         pick = best * k + np.arange(k)
         improved = trial.objective[pick] < self.objective
         return _Improved(
-            _Pool(
+            Pool(
                 np.where(improved[:, None, None], trial.path[pick], self.path),
                 np.where(improved[:, None], trial.placement[pick], self.placement),
                 np.where(improved, trial.objective[pick], self.objective),
@@ -246,12 +247,12 @@ class _Pool:
 
 @dataclass(frozen=True, eq=False)
 class _Improved:
-    pool: _Pool
+    pool: Pool
     improved: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
-class _Judge:
+class Judge:
     """Puts postures on the task, follows the path, and says how good they are."""
 
     arm: ElasticArm
@@ -263,20 +264,25 @@ class _Judge:
 
     @property
     def lower(self) -> Array:
+        """(6,) lower bounds of the placement [m, rad]."""
         return np.zeros(6) if self.place is None else np.asarray(self.place.lower, dtype=float)
 
     @property
     def upper(self) -> Array:
+        """(6,) upper bounds [m, rad]."""
         return np.zeros(6) if self.place is None else np.asarray(self.place.upper, dtype=float)
 
     @property
     def span(self) -> Array:
+        """(6,) widths between them [m, rad]."""
         return self.upper - self.lower
 
     def inside(self, placement: Array) -> Array:
+        """Placements (..., 6) brought within the bounds."""
         return np.clip(placement, self.lower, self.upper)
 
-    def __call__(self, starts: Array, placement: Array) -> _Pool:
+    def __call__(self, starts: Array, placement: Array) -> Pool:
+        """Follow the path from (k, n) starts with the part at (k, 6); infinite: does not pass."""
         count = len(starts)
         followed = np.empty((count, self.path.count, self.arm.n))
         objective = np.zeros(count)
@@ -301,7 +307,7 @@ class _Judge:
             alive = alive[~lost]
             if not len(alive):
                 break
-        return _Pool(followed, placement, objective)
+        return Pool(followed, placement, objective)
 
     def _moves(self, placement: Array) -> tuple[Array, Array]:
         """(k, 3, 3) rotations and (k, 3) shifts of the part."""
@@ -352,7 +358,8 @@ class _Judge:
         torque = np.swapaxes(J[:, 3:], -1, -2) @ moment[..., None]
         return np.asarray((J[:, :3] @ np.linalg.solve(K, torque))[..., 0])
 
-    def report(self, pool: _Pool, admissible: Array) -> BestPosture:
+    def report(self, pool: Pool, admissible: Array) -> BestPosture:
+        """The best of a pool, with what it gives at every point."""
         best = int(np.argmin(pool.objective))
         a, placement = pool.path[best], pool.placement[best]
         turn, _ = self._moves(placement[None])

@@ -39,6 +39,29 @@ def test_the_path_is_passed_with_the_tool_as_asked(run: Run, path: str, tmp_path
         np.testing.assert_allclose(T[:3, 2], [0.0, 0.0, -1.0], atol=1e-7)
 
 
+@pytest.mark.parametrize("axis", [(), ("--tool-axis", "0,0,-1")])
+def test_a_picture_and_a_page_are_written(
+    run: Run, path: str, tmp_path: Path, axis: tuple[str, ...]
+) -> None:
+    picture, page = tmp_path / "best.svg", tmp_path / "best.html"
+    files = ("--out", str(tmp_path / "b.csv"), "--picture", str(picture), "--page", str(page))
+    found = run("posture", MODEL, path, *axis, *files, "--json")
+    assert found.code == 0, found.stderr
+    assert found.document["picture"] == str(picture)
+    assert picture.read_text().rstrip().endswith("</svg>")
+    assert "point 5" in page.read_text()
+
+
+def test_a_picture_of_another_kind_is_refused_before_the_work(
+    run: Run, path: str, tmp_path: Path
+) -> None:
+    out = tmp_path / "b.csv"
+    found = run("posture", MODEL, path, "--out", str(out), "--picture", str(tmp_path / "b.gif"))
+    assert found.code == 2
+    assert ".svg" in found.stderr
+    assert not out.exists()
+
+
 def test_people_see_what_there_was_to_gain(run: Run, path: str, tmp_path: Path) -> None:
     found = run("posture", MODEL, path, "--out", str(tmp_path / "best.csv"))
     assert found.code == 0, found.stderr

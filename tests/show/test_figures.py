@@ -51,6 +51,13 @@ def every_figure() -> dict[str, Figure]:
         "residual_suspects": f.residual_suspects(
             gap, [f.Suspect("torque [N·m]", gap * 1e7), f.Suspect("q [deg]", gap[::-1] ** 2)]
         ),
+        "posture_choice": f.posture_choice(
+            np.array([1e-4, 2e-4]),
+            compliance=False,
+            landscape=(X, 3e-4 + 1e-4 * X**2),
+            chosen=(0.0, 2e-4),
+            blind=np.array([3e-4, 4e-4]),
+        ),
         "parameter_forest": f.parameter_forest(
             [f.Estimate("a.b", 2.0, 0.1, "N·m/rad", 1.9), f.Estimate("c.d", 3.0, None, "m/N")]
         ),

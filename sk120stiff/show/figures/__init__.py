@@ -6,6 +6,7 @@ from sk120stiff.show.figures.ellipses import PlaneEllipse, plane_ellipses
 from sk120stiff.show.figures.gaps import GapStep, gap_per_pose, gap_waterfall
 from sk120stiff.show.figures.parameters import Estimate, parameter_forest
 from sk120stiff.show.figures.parts import curve_parts, surface_parts
+from sk120stiff.show.figures.postures import posture_choice
 from sk120stiff.show.figures.residuals import Suspect, residual_suspects
 from sk120stiff.show.figures.slices import stiffness_slice
 
@@ -22,6 +23,7 @@ __all__ = [
     "gap_waterfall",
     "parameter_forest",
     "plane_ellipses",
+    "posture_choice",
     "residual_suspects",
     "stiffness_slice",
     "surface_parts",
