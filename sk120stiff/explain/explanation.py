@@ -118,7 +118,7 @@ class Explanation:
     noise_reasons
         What was decided about it beyond the data's own words.
     set_aside
-        Rows (of the readings in use) treated as outliers.
+        Rows of the readings, masked ones counted, that were treated as outliers.
     adequacy
         Tests of what the final model leaves over.
     where

@@ -5,6 +5,8 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.adequacy import Adequacy, adequacy
@@ -57,7 +59,8 @@ def explain(
     wish = options or Options()
     tell = progress or _silent
     _refuse_unexplainable(model, measurements)
-    used = _sound(model, measurements)
+    sound = _sound(model, measurements)
+    used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
     found, reasons = _best_attempt(model, used, wish)
     left = _adequacy(found)
@@ -84,7 +87,7 @@ def explain(
                 steps=gap_steps(found.base, (), holdout, seed=wish.seed),
                 noise=found.base.problem.noise,
                 noise_reasons=tuple(reasons),
-                set_aside=tuple(int(row) for row in found.aside),
+                set_aside=tuple(rows[found.aside].tolist()),
                 adequacy=left,
                 suspects=tuple(dict.fromkeys([*nearest, *named.doubted])),
             ),
@@ -101,7 +104,7 @@ def explain(
         steps=gap_steps(found.base, effects, holdout, seed=wish.seed),
         noise=found.base.problem.noise,
         noise_reasons=tuple(reasons),
-        set_aside=tuple(int(row) for row in found.aside),
+        set_aside=tuple(rows[found.aside].tolist()),
         adequacy=left,
     )
     tell("what these readings cannot tell", 0.85)
@@ -153,7 +156,7 @@ def _best_attempt(
 
 
 def _sound(model: Model, measurements: Measurements) -> Measurements:
-    """The rows to be explained, once nothing in them looks like a slip of the pen."""
+    """The readings with copied rows masked, once nothing in them looks like a slip of the pen."""
     for said in mistakes(model, measurements):
         raise Refusal(
             said,
@@ -163,7 +166,7 @@ def _sound(model: Model, measurements: Measurements) -> Measurements:
     single, told = without_copies(measurements)
     if told:
         warnings.warn(told, ToolkitWarning, stacklevel=3)
-    return single.masked()
+    return single
 
 
 def _silent(phrase: str, share: float) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff import InputError, Model, base_model, load_robot
+from sk120stiff import InputError, Model, ToolkitWarning, base_model, load_robot
 from sk120stiff.effects import effect
 from sk120stiff.explain import explain
 from sk120stiff.explain.aliases import exact_aliases
@@ -20,6 +20,20 @@ def springs() -> Model:
     model = base_model(load_robot("motoman_sk120"))
     assert model is not None
     return model
+
+
+def test_outliers_are_told_by_their_row_in_the_file_whatever_is_masked(springs):
+    """Row 0 is masked, row 2 is a copy of row 1; row 40 stays row 40."""
+    clean = hidden()
+    order = [0, 1, 1, *range(2, clean.n_readings)]
+    readings = clean.select(np.array(order))
+    moved = np.array(readings.displacement)
+    moved[40] += [0.0, 400e-6, 0.0]
+    use = np.array(readings.use)
+    use[0] = False
+    with pytest.warns(ToolkitWarning, match="repeat earlier ones"):
+        answer = explain(springs, replace(readings, displacement=moved, use=use))
+    assert answer.set_aside == (40,)
 
 
 def test_a_plan_is_refused_as_bad_input(springs):

@@ -40,14 +40,13 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
 
 
 def _set_aside(answer: Explanation, readings: Measurements) -> Note:
-    used = readings.masked()
     told = []
     for row in answer.set_aside:
-        line = int(used.line[row])
-        told.append(f"pose {used.pose[row]}" + (f", line {line}" if line else ""))
+        line = int(readings.line[row])
+        told.append(f"pose {readings.pose[row]}" + (f", line {line}" if line else ""))
     return Note(
-        f"{counted(len(told), 'reading')} of {used.n_readings} no smooth cause can have made, and "
-        f"no fit used: {'; '.join(told)}. Look for a disturbed reading or a slip of the pen. "
+        f"{counted(len(told), 'reading')} of {readings.use.sum()} no smooth cause can have made, "
+        f"and no fit used: {'; '.join(told)}. Look for a disturbed reading or a slip of the pen. "
         "Nothing was deleted.",
         "caution",
         "Set aside",
