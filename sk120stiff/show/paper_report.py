@@ -20,6 +20,7 @@ from sk120stiff.show.figures import (
     force_deflection,
     gap_per_pose,
     parameter_forest,
+    relief_parts,
     surface_parts,
 )
 from sk120stiff.show.report import (
@@ -123,7 +124,11 @@ def report_of(
                 "Figs. 7 to 9",
                 [
                     block["diagonal_parts"],
-                    *(picture[f"figure_{s.figure}"] for s in found.parts.surfaces),
+                    *(
+                        picture[f"figure_{s.figure}{ending}"]
+                        for s in found.parts.surfaces
+                        for ending in ("_surface", "")
+                    ),
                 ],
             ),
             Section(
@@ -276,20 +281,27 @@ def _pulls(found: Reproduction) -> list[PaperFigure]:
 
 
 def _parts(found: Reproduction) -> list[PaperFigure]:
-    return [
-        PaperFigure(
-            f"figure_{surface.figure}",
-            surface_parts(
+    """Each of Figs. 7 to 9 twice: as surfaces in perspective, and as maps to read values from."""
+    figures = []
+    for surface in found.parts.surfaces:
+        held = f"{_JOINT[surface.held[0]]} = {np.degrees(surface.held[1]):.0f}°"
+        drawings = (("_surface", relief_parts, "as surfaces"), ("", surface_parts, "as maps"))
+        for ending, draw, kind in drawings:
+            figure = draw(
                 surface.x,
                 surface.y,
                 surface.parts,
                 element=surface.element,
                 x_label=_JOINT[surface.joints[0]],
                 y_label=_JOINT[surface.joints[1]],
-            ),
-            f"Parts of {surface.element} for unit forces over two joints.",
-            f"Fig. {surface.figure}: parts of {surface.element} for unit forces, at "
-            f"{_JOINT[surface.held[0]]} = {np.degrees(surface.held[1]):.0f}°.",
-        )
-        for surface in found.parts.surfaces
-    ]
+            )
+            figures.append(
+                PaperFigure(
+                    f"figure_{surface.figure}{ending}",
+                    figure,
+                    f"Parts of {surface.element} for unit forces over two joints, {kind}.",
+                    f"Fig. {surface.figure} {kind}: parts of {surface.element} for unit forces, at "
+                    f"{held}.",
+                )
+            )
+    return figures

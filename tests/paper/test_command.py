@@ -45,6 +45,7 @@ def test_report_figures_and_csv_files(written):
         "table2_gaps",
         "table4",
         "identified",
+        *(f"figure_{k}_surface" for k in (7, 8, 9)),
     }
     assert {f"{f}.{end}" for f in figures for end in ("svg", "png")} <= names
     assert {"table2.csv", "table3.csv", "table4.csv", "claims.csv", "report.html"} <= names

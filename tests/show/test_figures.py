@@ -30,6 +30,9 @@ def every_figure() -> dict[str, Figure]:
         "surface_parts": f.surface_parts(
             X, Y, np.stack([GRID, 0 * GRID, -GRID]), element="C22", x_label="q2", y_label="q3"
         ),
+        "relief_parts": f.relief_parts(
+            X, Y, np.stack([GRID, 0 * GRID, -GRID]), element="C22", x_label="q2", y_label="q3"
+        ),
         "curve_parts": f.curve_parts(
             np.degrees(X), {"a": np.stack([X, X, X])}, element="C11", x_label="joint_2_l"
         ),

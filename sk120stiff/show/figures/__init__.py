@@ -7,6 +7,7 @@ from sk120stiff.show.figures.gaps import GapStep, gap_per_pose, gap_waterfall
 from sk120stiff.show.figures.parameters import Estimate, parameter_forest
 from sk120stiff.show.figures.parts import curve_parts, surface_parts
 from sk120stiff.show.figures.postures import posture_choice
+from sk120stiff.show.figures.relief import relief_parts
 from sk120stiff.show.figures.residuals import Suspect, residual_suspects
 from sk120stiff.show.figures.slices import stiffness_slice
 
@@ -24,6 +25,7 @@ __all__ = [
     "parameter_forest",
     "plane_ellipses",
     "posture_choice",
+    "relief_parts",
     "residual_suspects",
     "stiffness_slice",
     "surface_parts",

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError
@@ -13,7 +14,7 @@ from sk120stiff.show import palette
 from sk120stiff.show.style import styled, subplots
 
 Array = NDArray[np.float64]
-_COMPONENTS = ("Fx", "Fy", "Fz")
+COMPONENTS = ("Fx", "Fy", "Fz")
 DIVERGING = "PuOr"  # its two hues are told apart with every kind of colour vision
 
 
@@ -52,9 +53,10 @@ def surface_parts(
                     np.degrees(x), np.degrees(y), values[k], levels=5, colors=palette.INK,
                     linewidths=0.5,
                 )  # fmt: skip
-                panel.clabel(lines, fontsize=6.5, fmt="%.2g")
+                for text in panel.clabel(lines, fontsize=6.5, fmt="%.2g"):
+                    text.set_path_effects([withStroke(linewidth=1.6, foreground=palette.PAPER)])
             panel.grid(visible=False)
-            panel.set_title(f"part {k + 1}: ∂{element}/∂{_COMPONENTS[k]}")
+            panel.set_title(f"part {k + 1}: ∂{element}/∂{COMPONENTS[k]}")
             panel.set_xlabel(f"{x_label} [deg]")
         axes[0].set_ylabel(f"{y_label} [deg]")
         figure.colorbar(drawn[0], ax=axes, label="N·m/rad per N", shrink=0.9, pad=0.02)
@@ -85,7 +87,7 @@ def curve_parts(
             panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
             for case, colour in zip(cases, palette.SERIES * 9, strict=False):
                 panel.plot(x, np.asarray(parts[case])[k], color=colour, label=case)
-            panel.set_title(f"part {k + 1}: ∂{element}/∂{_COMPONENTS[k]}")
+            panel.set_title(f"part {k + 1}: ∂{element}/∂{COMPONENTS[k]}")
             panel.set_ylabel("N·m/rad per N")
         axes[-1].set_xlabel(f"{x_label} [{x_unit}]")
         if len(cases) > 1:
