@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -99,14 +100,14 @@ def _slices(
             stiffness_slice(
                 x, y, stable, x_label=first, y_label=second, units=units,
                 marks={"softest": (place[first], place[second])} if marked else None,
-                title=f"Least principal stiffness\n{where}{white}",
+                title=f"Least principal stiffness\n{fill(where + white, 52)}",
             ),
         ),
         MapFigure(
             f"{name}_definiteness",
             definiteness_map(
                 x, y, np.stack([K, K_C]), x_label=first, y_label=second, units=units,
-                titles=[f"K_θ − K_C\n{where}", "K_C alone"],
+                titles=[f"K_θ − K_C\n{fill(where, 42)}", "K_C alone"],
             ),
         ),
     ]  # fmt: skip
