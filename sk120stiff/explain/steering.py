@@ -42,10 +42,18 @@ class Options:
 def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Model:
     """The model with the effects that the user takes for granted, to be fitted with it."""
     everything = all_effects(model.robot, poses=used.poses, timed=used.time is not None)
+    situation = situation_of(model.robot, used)
     for wanted in assumed:
         found = [effect for effect in everything if _matches(effect, wanted)]
         if not found:
             raise _unknown(wanted, model)
+        found = [effect for effect in found if effect.applies_to(situation)]
+        if not found:
+            raise InputError(
+                f"these readings do not hold what {wanted!r} needs",
+                where=str(used.path or "measurements"),
+                remedy="Drift needs a column order or time[s], hysteresis a column branch.",
+            )
         for effect in found:
             if effect.id not in {present.id for present in model.effects}:
                 model = model + effect

@@ -65,6 +65,9 @@ class LackOfFit:
         )
 
 
+ROUNDING = 1e-12  # share of the misfit that is rounding, not scatter
+
+
 def lack_of_fit(fit: Fit) -> tuple[LackOfFit, ...]:
     """Every test that the readings allow; none for a robust fit, whose misfit is no sum of squares.
 
@@ -119,7 +122,7 @@ def _against(fit: Fit, columns: Array, against: Yardstick) -> LackOfFit | None:
     rest, rank = left_over(fit.residual, orthonormal(fit.jacobian), local, group)
     freedom = len(fit.residual) - rank
     taken = fit.degrees_of_freedom - freedom
-    if freedom < FEWEST or taken < 1:
-        return None
+    if freedom < FEWEST or taken < 1 or rest <= ROUNDING * fit.chi_square:
+        return None  # readings that do not scatter at all are no yardstick
     ratio = max(fit.chi_square - rest, 0.0) / taken / (rest / freedom)
     return LackOfFit(against, ratio, (taken, freedom), float(stats.f.sf(ratio, taken, freedom)))
