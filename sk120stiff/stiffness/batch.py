@@ -206,6 +206,13 @@ def _poses(a: ArrayLike, folded: Fold) -> Array:
             f"poses of shape {poses.shape} given, but this mechanism has {n} actuated coordinates",
             remedy=f"Give an array of shape (N, {n}).",
         )
+    if not poses.size:
+        return poses
+    # One pass without copies settles nearly every call; only a doubt looks at each joint.
+    reach = max(float(poses.max()), -float(poses.min()))
+    angles = np.abs(folded.pose_map[:, :n]).sum(axis=1)[folded.slides == 0.0]
+    if np.isfinite(reach) and reach * angles.max(initial=0.0) <= LARGEST_ANGLE:
+        return poses
     largest = np.abs(poses).max(axis=0, initial=0.0)
     if not np.isfinite(largest).all():
         raise InputError(
