@@ -56,17 +56,27 @@ def mistakes(model: Model, measurements: Measurements) -> tuple[str, ...]:
 def repeated_rows(measurements: Measurements) -> NDArray[np.intp]:
     """(k,) rows that repeat an earlier one to the last digit, load and all three axes.
 
-    Such rows are copies, not repeats: the noise that they claim to show is zero.
+    Such rows are copies, not repeats: the noise that they claim to show is zero. Rows that the file
+    itself tells apart, by order, time, branch or repeat, are readings of their own.
     """
     if measurements.displacement is None:
         return np.zeros(0, dtype=np.intp)
     whole = np.column_stack([measurements.joints, measurements.wrench, measurements.displacement])
-    first: dict[bytes, int] = {}
+    first: dict[tuple[bytes, tuple[object, ...]], int] = {}
     copies = []
     for row in np.flatnonzero(measurements.use):
         if not measurements.displacement[row].all():
             continue
-        key = (whole[row] + 0.0).tobytes()
+        told_apart = tuple(
+            None if column is None else column[row]
+            for column in (
+                measurements.order,
+                measurements.time,
+                measurements.branch,
+                measurements.repeat,
+            )
+        )
+        key = ((whole[row] + 0.0).tobytes(), told_apart)
         if first.setdefault(key, int(row)) != row:
             copies.append(row)
     return np.array(copies, dtype=np.intp)

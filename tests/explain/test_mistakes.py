@@ -84,6 +84,14 @@ def test_copied_rows_are_masked_and_told(model: Model, good: Measurements) -> No
     assert "2 rows repeat" in told
 
 
+def test_repeats_that_coincide_on_a_coarse_instrument_are_kept(good: Measurements) -> None:
+    """Equal to the last digit, but read at another time: a reading of its own."""
+    rows = np.r_[np.arange(len(good.pose)), 3, 17]
+    count = np.arange(len(rows), dtype=float)
+    assert len(repeated_rows(replace(good.select(rows), order=None, time=None))) == 2
+    assert not len(repeated_rows(replace(good.select(rows), order=None, time=count)))
+
+
 def test_a_soft_foundation_is_no_mistake(model: Model) -> None:
     soft = hidden(BaseRocking("base_link", {"x": 5e-7, "y": 1e-6}), poses=8)
     assert mistakes(model, soft) == ()
