@@ -18,7 +18,7 @@ So a misread force can never pose as a spring. Adding an effect is one new file 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Self
@@ -235,6 +235,13 @@ class Effect(ABC):
     def applies_to(self, situation: Situation) -> bool:
         """Do these readings hold what the law needs (an order, branches, a weight)?"""
         return True
+
+    def other_laws(self, situation: Situation, soft: Collection[str]) -> tuple[Effect, ...]:
+        """The same effect at the same place by other laws, where more than one is usual.
+
+        `soft` names the actuated joints that have a spring.
+        """
+        return ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -23,6 +23,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 
+STEPS = (0.1, 0.2, 0.4, 0.7)  # of the largest torque: where the gear may change its stiffness
 BELOW = "extra_below_"  # extra_below_150: softer by the value of this parameter below 150 N·m
 
 
@@ -56,11 +57,13 @@ class GearHardening(GearEffect):
 
         e = −κ₂ τ|τ| − κ₃ τ³
 
-    The two terms together come within a fifth of any stiffness that rises in steps. Where a data
-    sheet gives the torques T_k of the steps, they are told to the effect, which is then piecewise
-    linear: the gear is softer by c_k as long as |τ| < T_k::
+    The two terms together come within a fifth of any stiffness that rises in steps. The other usual
+    law is piecewise linear: the gear is softer by c_k as long as |τ| < T_k::
 
         e = Σ c_k min(max(τ, −T_k), T_k)
+
+    The torques T_k of the steps come from a data sheet; where a search has none, it tries steps
+    over the torques that were measured.
     """
 
     breaks: tuple[float, ...] = ()
@@ -94,6 +97,22 @@ class GearHardening(GearEffect):
                 "cubic", cube, cube, plausible=1e-11 * size**3, typical=3e-13 * size**3
             ),
         )  # fmt: skip
+
+    def other_laws(self, situation: Situation, soft: Collection[str]) -> tuple[GearHardening, ...]:
+        """The series, or steps at `STEPS` of the largest torque among the readings.
+
+        A joint without a spring has nothing that could be softer: steps would be its spring.
+        """
+        if self.where not in soft:
+            return ()
+        if self.breaks:
+            return (replace(self, breaks=()),)
+        index = situation.robot.actuated.index(self.where)
+        load = situation.nominal.at(situation.force_point).torques(situation.wrench)
+        largest = float(np.abs(load + situation.gravity_torque)[:, index].max(initial=0.0))
+        if largest <= 0.0:
+            return ()
+        return (replace(self, breaks=tuple(float(f"{share * largest:.3g}") for share in STEPS)),)
 
     def sentence(self) -> str:
         """What happens."""

@@ -7,13 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from sk120stiff.explain.localise import localise
 from sk120stiff.explain.regression import Index, Regression
 from sk120stiff.identify import Fit
-from sk120stiff.identify.left_over import left_over, orthonormal
-from sk120stiff.identify.saturated import load_basis, pose_columns
-from sk120stiff.robot.coupling import Array
+from sk120stiff.identify.left_over import orthonormal
 
 LEVEL = 1e-3
+ORDERS = {
+    "linear": "in proportion to the load",
+    "constant": "constant at single poses",
+    "curved": "curved in the load at single poses",
+}
 
 
 @dataclass(frozen=True)
@@ -44,11 +48,12 @@ class Adequacy:
 
 
 def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
-    """Test the whitened gap of a fitted model.
+    """Test the gap that a fitted model leaves.
 
-    Two tests where the noise is known: the whole misfit (χ²), and the part that goes in proportion
-    to the load at single poses, where every elastic cause shows. Where the noise is estimated, the
-    second is an F test against what the pose-by-pose regression leaves.
+    Tested are the whole misfit (χ²) where the noise is stated; the parts that go at single poses in
+    proportion to the load, as every elastic cause does, known or not, that are constant there, that
+    are curved, or go with the order; and whatever the gap goes with most closely of all that
+    `localise` suspects. Whoever took a cause for noise is caught by these: noise goes with nothing.
 
     Parameters
     ----------
@@ -59,33 +64,27 @@ def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
     columns
         Its columns in the regression.
     """
-    inside = orthonormal(regression.X[:, columns])
-    r = fit.residual - inside @ (inside.T @ fit.residual)
-    total, freedom = float(r @ r), max(len(r) - inside.shape[1], 1)
-    rest, rest_freedom = _beyond_poses(fit, r, inside)
-    structured, dimension = total - rest, freedom - rest_freedom
-    tests: dict[str, float] = {}
-    scale = 1.0
+    found = localise(fit)
+    tests: dict[str, tuple[float, float]] = {}  # probability, excess
     if regression.sigma_known:
-        tests["whole misfit"] = float(stats.chi2.sf(total, freedom))
-        if dimension:
-            tests["in proportion to the load"] = float(stats.chi2.sf(structured, dimension))
-    elif dimension and rest_freedom >= 5:
-        scale = rest / rest_freedom
-        ratio = structured / dimension / scale
-        tests["in proportion to the load"] = float(stats.f.sf(ratio, dimension, rest_freedom))
-    probability = min(1.0, len(tests) * min(tests.values(), default=1.0))
-    beyond = max(structured / scale - dimension, total / scale - freedom, 0.0)
-    return Adequacy(probability, float(np.sqrt(beyond)), _explained(regression, columns), tests)
-
-
-def _beyond_poses(fit: Fit, r: Array, inside: Array) -> tuple[float, int]:
-    """Sum of squares that model and pose-by-pose regression together leave, and its freedom."""
-    situation = fit.problem.situation
-    local = fit.problem.whitener.apply(pose_columns(load_basis(situation)))
-    group = np.repeat(situation.pose, 3)
-    rest, rank = left_over(r, inside, local, group)
-    return rest, len(r) - rank
+        freedom = max(fit.degrees_of_freedom, 1)
+        chance = float(stats.chi2.sf(fit.chi_square, freedom))
+        tests["whole misfit"] = chance, fit.chi_square - freedom
+    for order in found.orders:
+        if order.probability is not None:
+            tests[ORDERS[order.name]] = order.probability, order.excess
+    for own in found.own:
+        tests[own.name] = own.probability, own.excess
+    if found.suspects:
+        closest = min(found.suspects, key=lambda suspicion: suspicion.probability)
+        beyond = closest.statistic - closest.freedom
+        tests[f"together with {closest.name}"] = closest.probability, beyond
+    chances = {name: chance for name, (chance, _) in tests.items()}
+    probability = min(1.0, len(tests) * min(chances.values())) if tests else 1.0
+    excess = max((beyond for _, beyond in tests.values()), default=0.0)
+    return Adequacy(
+        probability, float(np.sqrt(max(excess, 0.0))), _explained(regression, columns), chances
+    )
 
 
 def _explained(regression: Regression, columns: Index) -> float:

@@ -10,7 +10,7 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.explanation import Detectable, Explanation
 from sk120stiff.explain.localise import localise
 from sk120stiff.explain.regression import Regression
-from sk120stiff.explain.search import score_set
+from sk120stiff.explain.score import score_set
 from sk120stiff.explain.where_words import where_sentences
 from sk120stiff.plan import discriminating_readings, random_pool
 

@@ -65,13 +65,35 @@ class OrderShare:
         ``linear``, ``constant`` or ``curved``.
     share
         Its part of what exceeds the noise.
+    excess
+        By how much it exceeds the noise, as a sum of squares [noise variances].
     probability
         That chance makes it, corrected for three looks; None where the readings do not allow it.
     """
 
     name: Literal["linear", "constant", "curved"]
     share: float
+    excess: float
     probability: float | None
+
+
+@dataclass(frozen=True)
+class OwnAtPoses:
+    """Something of its own at every pose, beside the model: is it more than noise?
+
+    Attributes
+    ----------
+    name
+        ``a constant of its own at every pose``, ``a drift of its own at every pose``.
+    excess
+        By how much it exceeds the noise, as a sum of squares [noise variances].
+    probability
+        That chance makes it.
+    """
+
+    name: str
+    excess: float
+    probability: float
 
 
 @dataclass(frozen=True)
@@ -149,6 +171,8 @@ class Localisation:
     poses, levels, directions, orders, postures
         By pose, by size of the load, by direction in several axes, by order in the load, by
         posture.
+    own
+        What poses may have of their own.
     suspects
         All that it may go with, the strongest first.
     beside
@@ -167,6 +191,7 @@ class Localisation:
     directions: tuple[DirectionShare, ...]
     orders: tuple[OrderShare, ...]
     postures: tuple[PostureTrend, ...]
+    own: tuple[OwnAtPoses, ...]
     suspects: tuple[Suspicion, ...]
     beside: tuple[Suspicion, ...]
     clocked: bool

@@ -9,13 +9,14 @@ scatter within poses). Probabilities are corrected for the number of looks by Ho
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from scipy import stats
 
+from sk120stiff.explain.drawn import Drawn
 from sk120stiff.explain.localisation import (
     DirectionShare,
     LoadLevel,
@@ -58,6 +59,7 @@ def localise(fit: Fit) -> Localisation:
         directions=_directions(look),
         orders=look.within.orders,
         postures=_postures(look, poses),
+        own=look.within.own,
         suspects=suspects,
         beside=beside,
         clocked=situation.order is not None or situation.time is not None,
@@ -73,6 +75,7 @@ class _Look:
     gap: Array  # (N, 3) base axes [m]
     predicted: Array  # (N, 3) base axes [m]
     derivative: Array  # (3N, p) of the model's moving parameters, reading axes [m]
+    whiten: Callable[[Array], Array]  # (N, 3, ...) reading axes [m] to (3N, ...)
     inside: Array  # (3N, rank) orthonormal basis of what the model's parameters can do, whitened
     white: Array  # (3N,) whitened gap, `inside` projected out
     variance: Array  # (N,) noise variance of a displacement per axis [m²]
@@ -83,19 +86,22 @@ def _look(fit: Fit) -> _Look:
     problem = fit.problem
     axes = problem.situation.reading_axes
     predicted, full = fit.model.predict_with_sensitivities(problem.situation)
-    moving = ~fit.at_bound
+    drawn = Drawn(fit, full)
+    moving = ~fit.at_bound & ~drawn.columns[problem.free]
     derivative = full[:, :, problem.free[moving]] * problem.scale[moving]
-    inside = orthonormal(problem.whitener.apply(derivative))
+    inside = orthonormal(drawn.whiten(derivative))
+    predicted = predicted - drawn.covered()
     raw = problem.measured - predicted
-    white = problem.whitener.apply(raw)
+    white = drawn.whiten(raw)
     white = white - inside @ (inside.T @ white)
-    within = within_poses(fit, white, inside)
+    within = within_poses(fit, white, inside, drawn.whiten)
     own, zero = problem.noise.variances(problem.measurements, problem.sizes)
     return _Look(
         fit=fit,
         gap=np.einsum("nij,nj->ni", axes, raw),
         predicted=np.einsum("nij,nj->ni", axes, predicted),
         derivative=derivative.reshape(len(white), -1),
+        whiten=drawn.whiten,
         inside=inside,
         white=white,
         variance=(own + zero).mean(axis=1) * within.scale,
@@ -195,7 +201,7 @@ def _lineup(look: _Look) -> _Lineup:
     return _Lineup(
         suspects=suspects,
         reading=reading,
-        white=look.fit.problem.whitener.apply(np.concatenate(reading, axis=2)),
+        white=look.whiten(np.concatenate(reading, axis=2)),
         parts=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
     )
 
@@ -279,7 +285,7 @@ def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: 
     problem = look.fit.problem
     S = reading.reshape(len(look.white), -1)
     both = np.hstack([look.derivative, S])
-    white = problem.whitener.apply(both.reshape(problem.situation.count, 3, -1))
+    white = look.whiten(both.reshape(problem.situation.count, 3, -1))
     norms = np.maximum(np.linalg.norm(white, axis=0), 1e-300)
     values = np.linalg.lstsq(white / norms, look.white, rcond=INDISTINCT)[0] / norms
     own = values[look.derivative.shape[1] :]

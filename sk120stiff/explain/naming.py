@@ -11,7 +11,8 @@ from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
 from sk120stiff.explain.explanation import Evidence, Finding
 from sk120stiff.explain.regression import Regression
-from sk120stiff.explain.search import Scored, gains, score_set
+from sk120stiff.explain.score import Scored, score_set
+from sk120stiff.explain.search import gains
 from sk120stiff.explain.settling import Attempt
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart

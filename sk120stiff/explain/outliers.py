@@ -11,6 +11,7 @@ from sk120stiff.robot.coupling import Array
 
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
 NEXT = 3.7  # the same once one outlier is certain
+LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to tell of the noise
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
 
 
@@ -42,7 +43,7 @@ def outlying_rows(regression: Regression, whitener: Whitener) -> NDArray[np.intp
         factor = np.linalg.cholesky(gram * np.outer(scale, scale) + 1e-12 * np.eye(len(gram)))
         half = np.linalg.solve(factor, (full * scale).T)  # (P, R)
         residual = y - half.T @ (half @ y)
-        noise = 1.0 if regression.sigma_known else _robust_scale(residual)
+        noise = 1.0 if regression.sigma_known else _robust_scale(residual, (half**2).sum(0))
         worst, where = 0.0, -1
         for row, (rows, block) in enumerate(shifts):
             if row in out:
@@ -82,5 +83,10 @@ def _shift_columns(
     return out
 
 
-def _robust_scale(residual: Array) -> float:
-    return float(1.4826 * np.median(np.abs(residual))) or 1.0
+def _robust_scale(residual: Array, leverage: Array) -> float:
+    """Scale of the noise from residuals, each put right for what the fit took of it."""
+    free = leverage < 1.0 - LEAST_LEFT
+    if not free.any():
+        return 1.0
+    fair = residual[free] / np.sqrt(1.0 - leverage[free])
+    return float(1.4826 * np.median(np.abs(fair))) or 1.0

@@ -9,8 +9,9 @@ that thousands of models cost no more than a blink. What wins is refitted at exa
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +19,11 @@ from scipy import stats
 
 from sk120stiff.effects import Effect
 from sk120stiff.identify import Fit
+from sk120stiff.model import Parameter
 from sk120stiff.robot.coupling import Array
 
 Index = NDArray[np.intp]
 
-FLOOR = 2.0  # least difference of scores for which an effect joins a model
 HIDDEN = 0.5  # standard errors by which all that is plausible of a parameter would show
 
 
@@ -45,8 +46,10 @@ class Regression:
     columns
         For each candidate the columns of its parameters.
     variants
-        For each candidate the sets of columns by which it may enter: its parameters, and where
-        some of them are often equal, one common column for those.
+        For each candidate the sets of columns by which it may enter: its parameters; where some of
+        them are often equal, one common column for those; the parameters of its other laws.
+    laws
+        For each of these variants the effect whose law it is.
     lower
         (P,) physical lower bounds in typical sizes (0 or -inf).
     plausible
@@ -55,6 +58,8 @@ class Regression:
         The noise's size is known; else it is estimated by every model for itself.
     alpha
         Probability at which a first effect may be named where nothing is missing.
+    tied
+        How many columns, the last ones, are common columns of tied parameters.
     """
 
     y: Array
@@ -64,25 +69,37 @@ class Regression:
     candidates: tuple[Effect, ...]
     columns: tuple[Index, ...]
     variants: tuple[tuple[Index, ...], ...]
+    laws: tuple[tuple[Effect, ...], ...]
     lower: Array
     plausible: Array
     sigma_known: bool
     alpha: float
 
-    def price_of_looking(self, rows: float) -> float:
-        """What every effect pays because so many were looked at.
-
-        With it, the fall of the misfit that one more parameter needs is the χ² quantile of
-        alpha over the number of candidates (Bonferroni) and a little more, never less than the
-        BIC asks for.
-        """
-        needed = stats.chi2.isf(self.alpha / max(len(self.candidates), 1), 1) + FLOOR
-        return max(float(needed - np.log(rows)), FLOOR)
-
     @property
     def rows(self) -> int:
         """Number of whitened readings R."""
         return len(self.y)
+
+    @cached_property
+    def in_base(self) -> NDArray[np.bool_]:
+        """(P,) which columns belong to the base model."""
+        out = np.zeros(self.X.shape[1], dtype=bool)
+        out[self.base] = True
+        return out
+
+    @cached_property
+    def least_fall(self) -> float:
+        """χ² quantile that one parameter has to reach at alpha over the number of candidates."""
+        return float(stats.chi2.isf(self.alpha / max(len(self.candidates), 1), 1))
+
+    def law(self, candidate: int, variant: int) -> Effect:
+        """The effect that a candidate is when it enters by one of its variants."""
+        return self.laws[candidate][variant]
+
+    @cached_property
+    def reach(self) -> tuple[Index, ...]:
+        """For each candidate the columns of all its laws."""
+        return tuple(np.unique(np.concatenate(parts)) for parts in self.variants)
 
     @cached_property
     def poses(self) -> int:
@@ -124,6 +141,18 @@ class Sums:
     square: float
     count: float
     _marginals: dict[tuple[bytes, float], Marginal] = field(default_factory=dict)
+    _inverses: dict[bytes, Array] = field(default_factory=dict)
+
+    def over(self, columns: Index, right: Array) -> Array:
+        """(XᵀX)⁻¹ of some columns, on the right-hand side (k,)."""
+        key = columns.tobytes()
+        if key not in self._inverses:
+            gram = self.gram[np.ix_(columns, columns)]
+            scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
+            self._inverses[key] = np.linalg.pinv(gram * np.outer(scale, scale)) * np.outer(
+                scale, scale
+            )
+        return np.asarray(self._inverses[key] @ right)
 
     def marginal(self, members: Index, size: float) -> Marginal:
         """The sums with columns integrated out whose values are draws of one size τ.
@@ -260,23 +289,33 @@ def regression_at(
         See `Regression`.
     """
     problem = fit.problem
-    model = fit.model
-    present = {effect.id for effect in model.effects}
-    full = model
+    full = fit.model
+    present = {effect.id for effect in full.effects}
     for effect in candidates:
         if effect.id not in present:
             full = full + effect
-    typical = np.array([parameter.spec.typical for parameter in full.parameters])
+    chosen = [effect for effect in full.effects if effect.id not in base_effects]
+    springs = np.isfinite(full.joint_stiffness())
+    soft = {joint for joint, yields in zip(full.robot.actuated, springs, strict=True) if yields}
+    others = [effect.other_laws(problem.situation, soft) for effect in chosen]
+    extra = tuple(Parameter(e, spec) for e in chain.from_iterable(others) for spec in e.parameters)
+    full = replace(full, parameters=full.parameters + extra)  # two laws of one effect, so no sum
+    specs = [parameter.spec for parameter in full.parameters]
+    typical = np.array([spec.typical for spec in specs])
     predicted, derivative = full.predict_with_sensitivities(problem.situation)
     X = problem.whitener.apply(derivative * typical)
     gap = problem.whitener.apply(problem.measured - predicted)
     fixed = np.array([not p.free for p in full.parameters])
     y = gap + X[:, ~fixed] @ (full.values / typical)[~fixed]
-    owner = np.array([parameter.effect.id for parameter in full.parameters])
-    base = np.flatnonzero(np.isin(owner, list(base_effects)) & ~fixed)
-    chosen = [effect for effect in full.effects if effect.id not in base_effects]
-    specs = [parameter.spec for parameter in full.parameters]
-    columns = tuple(np.flatnonzero((owner == effect.id) & ~fixed) for effect in chosen)
+
+    def columns_of(effect: Effect) -> Index:
+        return np.array(
+            [k for k, p in enumerate(full.parameters) if p.effect == effect and p.free],
+            dtype=np.intp,
+        )
+
+    base = [columns_of(effect) for effect in full.effects if effect.id in base_effects]
+    columns = tuple(columns_of(effect) for effect in chosen)
     lower = np.array([0.0 if spec.lower == 0.0 else -np.inf for spec in specs])
     plausible = np.array([spec.plausible / spec.typical for spec in specs])
     tied, sources, variants = _variants(chosen, columns, X)
@@ -284,10 +323,17 @@ def regression_at(
         y=y,
         X=np.hstack([X, tied]),
         group=np.repeat(problem.situation.pose, 3),
-        base=base,
+        base=np.concatenate([*base, np.zeros(0, dtype=np.intp)]),
         candidates=tuple(chosen),
         columns=columns,
-        variants=variants,
+        variants=tuple(
+            (*own, *(columns_of(law) for law in laws))
+            for own, laws in zip(variants, others, strict=True)
+        ),
+        laws=tuple(
+            (*(effect for _ in own), *laws)
+            for effect, own, laws in zip(chosen, variants, others, strict=True)
+        ),
         lower=np.concatenate([lower, lower[sources]]),
         plausible=np.concatenate([plausible, plausible[sources]]),
         sigma_known=fit.sigma_stated,

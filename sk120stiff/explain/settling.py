@@ -11,7 +11,8 @@ from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.outliers import outlying_rows
 from sk120stiff.explain.regression import Index, Regression, regression_at
-from sk120stiff.explain.search import Scored, beam_search, score_set
+from sk120stiff.explain.score import Scored, score_set
+from sk120stiff.explain.search import beam_search
 from sk120stiff.identify import Fit, Problem, fit, solve
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
@@ -150,15 +151,19 @@ def _settle(
 ) -> tuple[Fit, Regression, tuple[int, ...]]:
     """Linearise, search, refit exactly, until the search confirms the model it was made at."""
     final = base
-    chosen: tuple[int, ...] = ()
+    effects: list[Effect] = []
     for _ in range(ROUNDS):
         ranked = beam_search(regression, max_effects=max_effects)
-        if ranked[0].effects == chosen:
+        if set(laws_of(regression, ranked[0])) == set(effects):
             break
         effects, final = _first_that_fits(base, regression, ranked)
         regression = regression_at(final, candidates, ids, alpha=regression.alpha)
-        chosen = positions(regression, effects)
-    return final, regression, chosen
+    return final, regression, positions(regression, effects)
+
+
+def laws_of(regression: Regression, scored: Scored) -> list[Effect]:
+    """The effects of a model, each by the law by which it entered."""
+    return [regression.law(e, k) for e, k in zip(scored.effects, scored.variants, strict=True)]
 
 
 def _first_that_fits(
@@ -166,7 +171,7 @@ def _first_that_fits(
 ) -> tuple[list[Effect], Fit]:
     """The best model that can be fitted at exact equilibrium too."""
     for model in ranked:
-        effects = [regression.candidates[e] for e in model.effects]
+        effects = laws_of(regression, model)
         try:
             return effects, refit(base, effects)
         except Refusal:

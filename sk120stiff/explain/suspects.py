@@ -8,7 +8,7 @@ what a cause is called; suspects tell where a gap lives, also where the catalogu
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
@@ -39,6 +39,8 @@ class Suspect:
         Name and unit of the abscissa.
     direction
         (N, 3) direction in which it moves the point, base axes; None where the fit decides it.
+    carried
+        (N, k) load behind each column, where a place yields [N or N·m].
     """
 
     family: str
@@ -47,6 +49,7 @@ class Suspect:
     abscissa: Array
     label: str
     direction: Array | None = None
+    carried: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +114,7 @@ def suspects_of(model: Model, situation: Situation, predicted: Array) -> tuple[S
     return (
         *_places(situation),
         *_laws(situation),
+        *_bent_places(situation),
         *_angles(model, situation),
         *_loads_in_axes(situation),
         *_instruments(model, situation, predicted),
@@ -142,9 +146,29 @@ def _places(situation: Situation) -> Iterator[Suspect]:
             yield _turning("place", name, situation, middle, frames[..., 1:])
             name = f"the moment that twists {joint.link}"
             yield _turning("place", name, situation, at, frames[..., :1])
+        yield _pushing("place", f"the force that {joint.link} carries", situation, frames)
     tip = screws.frame_position
     yield _turning("place", "the moment that the tool carries", situation, tip, situation.rotation)
     yield _pushing("place", "the force that the tool carries", situation, situation.rotation)
+
+
+def _bent_places(situation: Situation) -> Iterator[Suspect]:
+    """Base and tool yield, but not in proportion: more and more, less and less, or one way only."""
+    base = np.broadcast_to(situation.robot.foundation, (situation.count, 3))
+    world = np.broadcast_to(np.eye(3), (situation.count, 3, 3))
+    rotation, tip = situation.rotation, situation.nominal.frame_position
+    for straight in (
+        _turning("law", "the moment that tips the base", situation, base, world[..., :2]),
+        _pushing("law", "the force that pushes the base", situation, world),
+        _turning("law", "the moment that the tool carries", situation, tip, rotation),
+        _pushing("law", "the force that the tool carries", situation, rotation),
+    ):
+        load = straight.carried
+        largest = np.maximum(np.abs(load).max(axis=0), 1e-300)
+        sign = np.sign(load)[:, None, :]
+        curved = straight.columns * (np.abs(load) / largest)[:, None, :]
+        columns = np.concatenate([straight.columns * sign, curved], axis=2)
+        yield replace(straight, name=f"{straight.name}, not in proportion to it", columns=columns)
 
 
 def _drives(situation: Situation) -> Iterator[Suspect]:
@@ -273,14 +297,16 @@ def _turning(family: str, name: str, at: Situation, origin: Array, about: Array)
     lever = screws.position - origin
     carried = np.einsum("nik,ni->nk", about, moment)
     columns = np.cross(about, lever[:, :, None], axis=1) * carried[:, None, :]
-    return Suspect(family, name, columns, np.linalg.norm(carried, axis=1), "moment there [N·m]")
+    size = np.linalg.norm(carried, axis=1)
+    return Suspect(family, name, columns, size, "moment there [N·m]", carried=carried)
 
 
 def _pushing(family: str, name: str, at: Situation, along: Array) -> Suspect:
     """A shift along the directions `along` (N, 3, k) under the force."""
     carried = np.einsum("nik,ni->nk", along, at.wrench[:, :3])
     columns = along * carried[:, None, :]
-    return Suspect(family, name, columns, np.linalg.norm(carried, axis=1), "force there [N]")
+    size = np.linalg.norm(carried, axis=1)
+    return Suspect(family, name, columns, size, "force there [N]", carried=carried)
 
 
 def _rotation(situation: Situation, joint: ArmJoint) -> Array:

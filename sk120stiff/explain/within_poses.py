@@ -7,13 +7,16 @@ gap is laid out, pose by pose, over the load (linear), a constant, and the cube 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import stats
 
-from sk120stiff.explain.localisation import OrderShare
+from sk120stiff.effects import Situation
+from sk120stiff.explain.localisation import OrderShare, OwnAtPoses
 from sk120stiff.identify import Fit
 from sk120stiff.identify.left_over import left_over
 from sk120stiff.identify.saturated import load_basis, pose_columns
@@ -36,13 +39,16 @@ class WithinPoses:
     misfit
         Probability that noise alone makes such a gap; None where nothing tells.
     orders
-        Linear, constant and curved parts.
+        Linear, constant and curved parts, each beyond the ones before it.
+    own
+        What poses may have of their own, each beyond the model alone.
     """
 
     scale: float
     freedom: float
     misfit: float | None
     orders: tuple[OrderShare, ...]
+    own: tuple[OwnAtPoses, ...]
 
     @property
     def noise_from(self) -> Literal["stated", "scatter", "gap"]:
@@ -61,7 +67,9 @@ class WithinPoses:
         return float(stats.f.sf(ratio, freedom, self.freedom or np.inf))
 
 
-def within_poses(fit: Fit, white: Array, inside: Array) -> WithinPoses:
+def within_poses(
+    fit: Fit, white: Array, inside: Array, whiten: Callable[[Array], Array]
+) -> WithinPoses:
     """Lay out a whitened gap over the loads of every pose.
 
     Parameters
@@ -72,13 +80,15 @@ def within_poses(fit: Fit, white: Array, inside: Array) -> WithinPoses:
         (3N,) its whitened gap, the model's columns projected out.
     inside
         (3N, k) orthonormal basis of those columns.
+    whiten
+        Whitens (N, 3, ...) in reading axes, noise and draws together.
     """
     situation = fit.problem.situation
     group = np.repeat(situation.pose, 3)
     left = [float(white @ white)]
     rank = [inside.shape[1]]
     for options in ({}, {"jump": True}, {"jump": True, "cubic": True}):
-        basis = fit.problem.whitener.apply(pose_columns(load_basis(situation, **options)))
+        basis = whiten(pose_columns(load_basis(situation, **options)))
         square, used = left_over(white, inside, basis, group)
         left.append(square)
         rank.append(used)
@@ -90,13 +100,15 @@ def within_poses(fit: Fit, white: Array, inside: Array) -> WithinPoses:
         scale, known = left[-1] / freedom, float(freedom)
     else:
         scale, known = left[0] / max(len(white) - rank[0], 1), 0.0
-    bare = WithinPoses(scale, known, None, ())
+    bare = WithinPoses(scale, known, None, (), ())
     steps = [(left[k] - left[k + 1], rank[k + 1] - rank[k]) for k in range(3)]
     excess = [max(square / scale - used, 0.0) for square, used in steps]
     total = max(left[0] / scale - (len(white) - rank[0]), sum(excess), 1e-300)
     names: tuple[Literal["linear", "constant", "curved"], ...] = ("linear", "constant", "curved")
     orders = tuple(
-        OrderShare(name, part / total, min(1.0, _LOOKS * bare.tail(square, used)) if used else None)
+        OrderShare(
+            name, part / total, part, min(1.0, _LOOKS * bare.tail(square, used)) if used else None
+        )
         for name, part, (square, used) in zip(names, excess, steps, strict=True)
     )
     misfit = None
@@ -105,4 +117,38 @@ def within_poses(fit: Fit, white: Array, inside: Array) -> WithinPoses:
         misfit = min(1.0, 2.0 * min(whole, bare.tail(*steps[0])))
     elif known and steps[0][1]:
         misfit = bare.tail(*steps[0])
-    return WithinPoses(scale, known, misfit, orders)
+    own = (
+        tuple(
+            _own(bare, name, columns, white, inside, group, left[0], rank[0])
+            for name, columns in _series(situation, whiten)
+        )
+        if known
+        else ()
+    )
+    return WithinPoses(scale, known, misfit, orders, own)
+
+
+def _series(situation: Situation, whiten: Callable[[Array], Array]) -> Iterator[tuple[str, Array]]:
+    """What a pose may have of its own, as whitened columns."""
+    one = np.ones((situation.count, 1))
+    yield "a constant of its own at every pose", whiten(pose_columns(one))
+    clock = situation.order if situation.order is not None else situation.time
+    if clock is not None and np.ptp(clock) > 0.0:
+        drift = clock[:, None] / np.abs(clock).max()
+        yield "a drift of its own at every pose", whiten(pose_columns(drift))
+
+
+def _own(
+    bare: WithinPoses,
+    name: str,
+    columns: Array,
+    white: Array,
+    inside: Array,
+    group: NDArray[np.intp],
+    left: float,
+    rank: int,
+) -> OwnAtPoses:
+    square, used = left_over(white, inside, columns, group)
+    taken, freedom = left - square, used - rank
+    excess = max(taken / bare.scale - freedom, 0.0)
+    return OwnAtPoses(name, excess, bare.tail(taken, freedom))

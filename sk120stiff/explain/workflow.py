@@ -14,10 +14,11 @@ from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.explanation import Explanation
 from sk120stiff.explain.mistakes import mistakes, without_copies
 from sk120stiff.explain.naming import SHADOW, Named, findings_of
+from sk120stiff.explain.noise_race import race
 from sk120stiff.explain.settling import Attempt, attempt, with_effects
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
 from sk120stiff.explain.steps import gap_steps
-from sk120stiff.identify import choose_noise, refuse_unusable
+from sk120stiff.identify import refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
@@ -124,15 +125,10 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
 def _best_attempt(
     model: Model, measurements: Measurements, wish: Options
 ) -> tuple[Attempt, Sequence[str]]:
-    """The attempt that explains most under the simplest noise model.
-
-    Scatter that looks like more noise, or like noise that grows, may be a cause that does not go in
-    proportion to the load. Where the readings raise that doubt both ways are tried in full.
-    """
+    """The attempt that explains most, under the noise model that the readings speak for."""
     base_model = with_assumed(model, measurements, wish.assume)
     candidates = candidates_for(base_model, measurements, wish)
     situation = situation_of(base_model.robot, measurements)
-    noise, reasons = choose_noise(measurements, situation, doubt=False)
 
     def under(chosen: NoiseModel) -> Attempt:
         return attempt(
@@ -144,15 +140,7 @@ def _best_attempt(
             alpha=wish.alpha,
         )
 
-    plain = under(noise)
-    clean = plain.base.problem
-    other, other_reasons = choose_noise(clean.measurements, clean.situation)
-    if not noise.stated and not len(plain.aside) and other.growth == noise.growth:
-        return plain, reasons
-    if (other.sigma, other.growth, other.zero) == (noise.sigma, noise.growth, noise.zero):
-        return plain, reasons
-    second = under(other)
-    return (second, other_reasons) if second.total < plain.total else (plain, reasons)
+    return race(measurements, situation, under)
 
 
 def _sound(model: Model, measurements: Measurements) -> Measurements:

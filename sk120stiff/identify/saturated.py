@@ -9,6 +9,7 @@ the yardstick for what a fitted model has left over.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,7 +117,11 @@ def pose_noise(
 
 
 def choose_noise(
-    measurements: Measurements, situation: Situation, *, doubt: bool = True
+    measurements: Measurements,
+    situation: Situation,
+    *,
+    doubt: bool = True,
+    zero: Literal["shared", "separate"] | None = None,
 ) -> tuple[NoiseModel, list[str]]:
     """The noise model that the data's description and the readings themselves ask for.
 
@@ -133,16 +138,16 @@ def choose_noise(
     noise, reasons
         The model, and what was decided beyond the description, in sentences.
     """
-    offered = candidates(measurements)
+    offered = [noise for noise in candidates(measurements) if zero in (None, noise.zero)]
     if not doubt:
         offered = [noise for noise in offered if noise.growth == offered[0].growth]
     reasons: list[str] = []
     if len({noise.zero for noise in offered}) > 1:
         plain = [noise for noise in offered if noise.growth == offered[0].growth]
         judged = [pose_noise(noise, measurements, situation, jump=False) for noise in plain]
-        zero = max(judged, key=lambda found: found.likelihood).noise.zero
-        offered = [noise for noise in offered if noise.zero == zero]
-        reasons.append(f"Nobody said how zero readings were shared; the scatter says: {zero}.")
+        kind = max(judged, key=lambda found: found.likelihood).noise.zero
+        offered = [noise for noise in offered if noise.zero == kind]
+        reasons.append(f"Nobody said how zero readings were shared; the scatter says: {kind}.")
     judged = [pose_noise(noise, measurements, situation, jump=True) for noise in offered]
     best = judged[0]
     if best.freedom >= 10:

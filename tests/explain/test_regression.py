@@ -9,7 +9,8 @@ from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
 from sk120stiff.explain.regression import Regression, solve_columns
-from sk120stiff.explain.search import beam_search, gains, score_set
+from sk120stiff.explain.score import score_set
+from sk120stiff.explain.search import beam_search, gains
 from sk120stiff.robot import load_robot
 
 POSES, AXES = 12, 15
@@ -34,6 +35,7 @@ def regression(seed: int = 0, *, known: bool = True, lower: float = -np.inf) -> 
         candidates=(*named, zero),
         columns=columns,
         variants=tuple((own,) for own in columns),
+        laws=tuple((each,) for each in (*named, zero)),
         lower=np.full(X.shape[1], lower),
         plausible=np.full(X.shape[1], 1e6),
         sigma_known=known,
@@ -127,7 +129,7 @@ def test_an_implausible_value_disqualifies():
 
 def vars_of(found: Regression) -> dict[str, object]:
     names = (
-        "y", "X", "group", "base", "candidates", "columns", "variants", "lower", "plausible",
+        "y", "X", "group", "base", "candidates", "columns", "variants", "laws", "lower", "plausible",
         "sigma_known", "alpha",
     )  # fmt: skip
     return {name: getattr(found, name) for name in names}

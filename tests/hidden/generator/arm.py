@@ -10,6 +10,9 @@ import numpy as np
 from .rotations import Array
 
 
+ROLLS = 0.96  # cosine between a link and the next joint's axis from which that joint rolls it
+
+
 @dataclass(frozen=True)
 class ArmJoint:
     """One joint of the chain. `before` leads from the moving frame of the joint before it."""
@@ -102,6 +105,23 @@ class Arm:
         out = {}
         for i, joint in enumerate(self.joints[:-1]):
             out[joint.link] = (i, self.joints[i + 1].before[:3, 3].copy())
+        return out
+
+    def shafts(self) -> dict[str, tuple[int, Array, Array]]:
+        """Link name -> (joint that moves it, start, vector to the end) of the tube that twists.
+
+        A link that carries a roll joint is a tube around the axis of that joint.
+        """
+        out = {}
+        for name, (i, span) in self.spans().items():
+            after, length = self.joints[i + 1], float(np.linalg.norm(span))
+            axis = after.before[:3, :3] @ after.axis
+            along = float(axis @ span)
+            if not after.slides and length > 0.0 and abs(along) > ROLLS * length:
+                tube = axis * np.sign(along) * length
+                out[name] = (i, span - tube, tube)
+            else:
+                out[name] = (i, np.zeros(3), span)
         return out
 
     def long_links(self, least: float = 0.2) -> list[str]:

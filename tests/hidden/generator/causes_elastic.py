@@ -143,19 +143,21 @@ class LinkBending(Cause):
 
 @dataclass(frozen=True)
 class LinkTorsion(Cause):
-    """A tapered shaft along the link. Sizes: flexibility = mean of 1/GJ."""
+    """A tapered shaft along the link's tube. Sizes: flexibility = mean of 1/GJ."""
 
     name: ClassVar[str] = "link_torsion"
 
     def inserts(self, arm: Arm) -> list[Insert]:
-        index, span = arm.spans()[self.where]
+        index, start, tube = arm.shafts()[self.where]
         pieces = int(self.options.get("pieces", 8))
-        length = float(np.linalg.norm(span))
+        length = float(np.linalg.norm(tube))
         stations = (np.arange(pieces) + 0.5) / pieces
         local = profile(float(self.options.get("taper", 0.0)), stations)
         compliance = self.size("flexibility") * length / pieces * local
         return [
-            Insert(f"twist:{self.where}:{i}", index, s * span, span / length, False, float(c), s)
+            Insert(
+                f"twist:{self.where}:{i}", index, start + s * tube, tube / length, False, float(c), s
+            )
             for i, (s, c) in enumerate(zip(stations, compliance, strict=True))
         ]
 

@@ -1,0 +1,71 @@
+"""Whitening in which the draws of exchangeable effects count as noise.
+
+Zero offsets, one for every pose, can imitate whatever is constant at single poses. As free
+parameters they leave nothing of it to look at; as draws of one size they must be as irregular as
+draws, and a cause that hides behind them stands out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.identify import Fit
+from sk120stiff.robot.coupling import Array
+
+Pick = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """The exchangeable parameters of a fitted model as part of its noise.
+
+    Attributes
+    ----------
+    fit
+        The fitted model.
+    derivative
+        (N, 3, P) its sensitivities, reading axes.
+    """
+
+    fit: Fit
+    derivative: Array
+
+    @cached_property
+    def columns(self) -> Pick:
+        """(P,) which parameters are draws."""
+        return np.array([p.effect.exchangeable for p in self.fit.model.parameters], dtype=bool)
+
+    def covered(self) -> Array:
+        """(N, 3) what the draws explain of the readings [m]."""
+        values = self.fit.model.values[self.columns]
+        return np.asarray(self.derivative[:, :, self.columns] @ values)
+
+    def whiten(self, x: Array) -> Array:
+        """As `Whitener.apply`, with the scatter of the draws besides."""
+        white = self.fit.problem.whitener.apply(x)
+        for rows, directions, shrink in self._blocks:
+            along = directions.T @ white[rows]
+            white[rows] -= directions @ (shrink[:, None] * along.reshape(len(shrink), -1)).reshape(
+                along.shape
+            )
+        return white
+
+    @cached_property
+    def _blocks(self) -> list[tuple[NDArray[np.intp], Array, Array]]:
+        if not self.columns.any():
+            return []
+        size = float(np.sqrt(np.mean(self.fit.model.values[self.columns] ** 2)))
+        spread = self.fit.problem.whitener.apply(size * self.derivative[:, :, self.columns])
+        group = np.repeat(self.fit.problem.situation.pose, 3)
+        blocks = []
+        for pose in np.unique(group):
+            rows = np.flatnonzero(group == pose)
+            part = spread[rows]
+            part = part[:, np.abs(part).max(axis=0) > 0.0]
+            U, singular, _ = np.linalg.svd(part, full_matrices=False)
+            blocks.append((rows, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
+        return blocks

@@ -1,0 +1,134 @@
+"""What keeps a wrong name out: prices, noise that must not hide a cause, tests of what is left."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from sk120stiff import Model, base_model, load_robot
+from sk120stiff.effects import effect, situation_of
+from sk120stiff.explain import Options, explain
+from sk120stiff.explain.noise_race import likeliest_growth
+from sk120stiff.explain.outliers import outlying_rows
+from sk120stiff.explain.regression import regression_at
+from sk120stiff.explain.score import price_of_sizes
+from sk120stiff.explain.steering import candidates_for
+from sk120stiff.identify import fit
+from sk120stiff.measurements import NoiseModel, NoiseStatement
+from tests.explain.readings import SIGMA, base_fit, hidden
+from tests.hidden.generator.causes_foreign import QuadraticMount
+from tests.hidden.generator.causes_joint import GearHardening
+from tests.hidden.generator.causes_sensor import ForceBias
+
+
+@pytest.fixture(scope="module")
+def springs() -> Model:
+    model = base_model(load_robot("motoman_sk120"))
+    assert model is not None
+    return model
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 6])
+def test_the_level_of_a_chance_finding_is_the_same_for_one_parameter_and_for_six(count):
+    """Where an effect just pays for its sizes and for looking, chance is as rare for all."""
+    chance = 2e-4
+    single = stats.chi2.isf(chance, 1)
+    looking = single - price_of_sizes(single, 1, 1e9)
+    gains = np.linspace(count + 0.1, 60.0, 4000)
+    left = np.array([gain - price_of_sizes(gain, count, 1e9) for gain in gains])
+    threshold = gains[np.argmax(left > looking)]
+    assert 0.3 < stats.chi2.sf(threshold, count) / chance < 3.0
+
+
+def test_strong_parameters_cost_what_the_information_criterion_asks():
+    assert price_of_sizes(1e6, 2, 300.0) == pytest.approx(2.0 * np.log(300.0))
+    assert price_of_sizes(0.5, 2, 300.0) == pytest.approx(2.0)
+
+
+def test_a_floor_that_yields_with_the_square_is_not_called_noise_that_grows(springs):
+    mount = QuadraticMount("base_link", {"x": 1.0e-7, "y": 1.4e-7}, {"full": 1500.0})
+    answer = explain(springs, hidden(mount))
+    assert answer.verdict == "outside"
+    assert answer.adequacy.tests[
+        "together with the moment that tips the base, not in proportion to it"
+    ] == min(answer.adequacy.tests.values())
+
+
+def test_a_bias_that_the_catalogue_lacks_does_not_hide_behind_zero_offsets(springs):
+    bias = ForceBias("sensor", {"x": -18.0, "y": 8.0, "z": 8.0})
+    readings = hidden(bias, stated=False)
+    assert explain(springs, readings).verdict == "named"
+    answer = explain(springs, readings, options=Options(exclude=("force_bias",)))
+    assert answer.verdict == "outside"
+    assert "a constant error of the load in tool axes" in " ".join(answer.adequacy.tests)
+
+
+def test_a_gear_that_stiffens_in_steps_is_named_by_steps(springs):
+    steps = GearHardening("joint_1_s", {"first": 0.6, "second": 0.2}, {"T1": 120.0, "T2": 320.0})
+    answer = explain(springs, hidden(steps, sigma=4e-6))
+    assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
+    assert answer.verdict == "named"
+    assert any("extra_below" in name for name in answer.final.model.names)
+    soft = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
+    assert soft.public_value == pytest.approx(1.41e6, rel=0.03)
+
+
+def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
+    answer = explain(
+        springs, hidden(GearHardening("joint_1_s", {"cubic": 0.8}, {"T": 700.0}), sigma=4e-6)
+    )
+    assert "gear_hardening:joint_1_s.cubic" in answer.final.model.names
+
+
+def test_the_two_laws_of_a_gear_lead_to_each_other(springs):
+    series = effect(springs.robot, "gear_hardening", "joint_2_l")
+    situation = situation_of(springs.robot, hidden())
+    (steps,) = series.other_laws(situation, {"joint_2_l"})
+    assert steps.id == series.id
+    assert len(steps.parameters) == 4
+    assert steps.other_laws(situation, {"joint_2_l"}) == (series,)
+    assert series.other_laws(situation, {"joint_1_s"}) == ()
+
+
+def test_readings_without_a_yardstick_are_not_held_to_be_lacking(springs):
+    """Three loads a pose, nobody stated the noise: nothing can tell what is left over."""
+    answer = explain(springs, hidden(loads=3, stated=False, seed=3))
+    assert answer.verdict == "none"
+    assert answer.adequacy.probability > 0.01
+
+
+@pytest.mark.parametrize("kind", ["shared", "separate"])
+def test_how_zeros_were_shared_is_found_where_nobody_said(springs, kind):
+    readings = hidden(seed=12)
+    if kind == "separate":
+        rng = np.random.default_rng(5)
+        clean = base_fit(readings)
+        displacement = clean.problem.measured - clean.gap
+        noise = np.sqrt(2.0) * SIGMA * rng.normal(size=displacement.shape)
+        readings = replace(readings, displacement=displacement + noise)
+    answer = explain(springs, replace(readings, zero="unknown"))
+    assert answer.noise.zero == kind
+    assert answer.verdict == "none"
+
+
+def test_clean_readings_without_a_stated_noise_have_no_outliers(springs):
+    """The whole catalogue is fitted before outliers are sought, and takes its share of the noise."""
+    found = 0
+    for seed in range(12):
+        readings = hidden(stated=False, seed=300 + seed)
+        base = base_fit(readings, noise=None)
+        candidates = candidates_for(springs, readings, Options())
+        regression = regression_at(base, candidates, ("joint_springs",), alpha=0.01)
+        found += bool(len(outlying_rows(regression, base.problem.whitener)))
+    assert found <= 1
+
+
+def test_the_growth_of_the_noise_is_found_again(springs):
+    readings = hidden(seed=9)
+    rng = np.random.default_rng(1)
+    size = np.linalg.norm(readings.displacement, axis=1, keepdims=True)
+    moved = readings.displacement + 0.02 * size * rng.normal(size=readings.displacement.shape)
+    readings = replace(readings, displacement=moved, noise=NoiseStatement(sigma=SIGMA))
+    start = fit(springs, readings, noise=NoiseModel(SIGMA, growth=0.05, zero="shared"))
+    assert likeliest_growth(start) == pytest.approx(0.02, rel=0.15)
