@@ -9,7 +9,6 @@ import numpy as np
 
 from .rotations import Array
 
-
 ROLLS = 0.96  # cosine between a link and the next joint's axis from which that joint rolls it
 
 

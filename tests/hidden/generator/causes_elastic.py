@@ -156,7 +156,13 @@ class LinkTorsion(Cause):
         compliance = self.size("flexibility") * length / pieces * local
         return [
             Insert(
-                f"twist:{self.where}:{i}", index, start + s * tube, tube / length, False, float(c), s
+                f"twist:{self.where}:{i}",
+                index,
+                start + s * tube,
+                tube / length,
+                False,
+                float(c),
+                s,
             )
             for i, (s, c) in enumerate(zip(stations, compliance, strict=True))
         ]
