@@ -113,7 +113,7 @@ def test_how_zeros_were_shared_is_found_where_nobody_said(springs, kind):
 
 
 def test_clean_readings_without_a_stated_noise_have_no_outliers(springs):
-    """The whole catalogue is fitted before outliers are sought, and takes its share of the noise."""
+    """The whole catalogue is fitted before outliers are sought, and takes some of the noise."""
     found = 0
     for seed in range(12):
         readings = hidden(stated=False, seed=300 + seed)

@@ -129,7 +129,7 @@ def test_an_implausible_value_disqualifies():
 
 def vars_of(found: Regression) -> dict[str, object]:
     names = (
-        "y", "X", "group", "base", "candidates", "columns", "variants", "laws", "lower", "plausible",
-        "sigma_known", "alpha",
+        "y", "X", "group", "base", "candidates", "columns", "variants", "laws", "lower",
+        "plausible", "sigma_known", "alpha",
     )  # fmt: skip
     return {name: getattr(found, name) for name in names}
