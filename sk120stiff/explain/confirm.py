@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass
 
@@ -30,6 +31,8 @@ class Confirmation:
         poses.
     frequency
         Share of resamplings of the poses in which the same name (or an alternative of it) wins.
+    rival_frequency
+        Share in which the most frequent of the other names wins.
     """
 
     folds_improved: int
@@ -37,17 +40,21 @@ class Confirmation:
     gain: float
     gain_error: float
     frequency: float
+    rival_frequency: float
 
     @property
     def holds(self) -> bool:
         """The name may be given: other poses gain by it, and it wins on most drawings of the poses.
 
         Four of five folds have to gain. Three will do if the gain of all is positive, and fewer if
-        it goes beyond its own scatter: few poses may carry a small effect.
+        it goes beyond its own scatter: few poses may carry a small effect. Where no other name
+        comes near, a third of the drawings is enough: a weak effect drowns in some of them.
         """
         mostly = self.folds_improved >= 0.6 * self.folds or self.gain > self.gain_error
         gains = self.folds_improved >= 0.8 * self.folds or (mostly and self.gain > 0.0)
-        return gains and self.frequency >= 0.5
+        wins = self.frequency >= 0.5
+        alone = self.frequency >= 0.33 and self.rival_frequency <= 0.5 * self.frequency
+        return gains and (wins or alone)
 
 
 def confirm(
@@ -80,15 +87,18 @@ def confirm(
     error = float(pose_gain.std(ddof=1) * np.sqrt(len(pose_gain))) if len(pose_gain) > 1 else np.inf
     same = {effect, *alternatives}
     rest = tuple(e for e in model if e != effect)
-    wins = sum(
+    wins = Counter(
         _winner(regression, rest, same, _resampled(regression, rng)) for _ in range(RESAMPLES)
     )
+    own = sum(count for winner, count in wins.items() if winner in same)
+    rivals = [count for winner, count in wins.items() if winner not in same and winner is not None]
     return Confirmation(
         folds_improved=int((fold_gain > 0.0).sum()),
         folds=folds,
         gain=float(pose_gain.sum() / axes),
         gain_error=error / axes,
-        frequency=wins / RESAMPLES,
+        frequency=own / RESAMPLES,
+        rival_frequency=max(rivals, default=0) / RESAMPLES,
     )
 
 
@@ -129,13 +139,11 @@ def _resampled(regression: Regression, rng: np.random.Generator) -> Sums:
 
 def _winner(
     regression: Regression, rest: tuple[int, ...], same: Collection[int], sums: Sums
-) -> bool:
-    """Is one of `same` the best single effect to add to `rest` on these poses?"""
+) -> int | None:
+    """The best single effect to add to `rest` on these poses; None if none is plausible."""
     promise = gains(regression, sums, score_set(regression, sums, rest).solved)
     order = [int(e) for e in np.argsort(-promise) if int(e) not in rest][:8]
     contenders = {*same, *(e for e in order if not regression.candidates[e].exchangeable)}
     scored = {e: score_set(regression, sums, (*rest, e)) for e in contenders}
     fair = {e: model.score for e, model in scored.items() if model.plausible}
-    if not fair:
-        return False
-    return min(fair, key=lambda e: fair[e]) in same
+    return min(fair, key=lambda e: fair[e], default=None)

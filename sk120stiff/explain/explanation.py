@@ -9,6 +9,7 @@ from typing import Any, Literal
 from sk120stiff.effects import Effect
 from sk120stiff.explain.adequacy import Adequacy
 from sk120stiff.explain.confirm import Confirmation
+from sk120stiff.explain.notebook import summary_html
 from sk120stiff.identify import Fit
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.robot.coupling import Array
@@ -150,3 +151,7 @@ class Explanation:
     smallest_detectable: tuple[Detectable, ...] = ()
     next_poses: tuple[Array, Array] | None = None
     details: Mapping[str, Any] = field(default_factory=dict)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return summary_html(self)

@@ -11,6 +11,7 @@ from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.adequacy import Adequacy, adequacy
 from sk120stiff.explain.consequences import completed
+from sk120stiff.explain.doubt import with_doubt
 from sk120stiff.explain.explanation import Explanation
 from sk120stiff.explain.mistakes import mistakes, without_copies
 from sk120stiff.explain.naming import SHADOW, Named, findings_of
@@ -101,7 +102,7 @@ def explain(
         verdict="none" if not findings else "named" if settled else "ambiguous",
         findings=findings,
         base=found.base,
-        final=found.final,
+        final=with_doubt(found, findings),
         steps=gap_steps(found.base, effects, holdout, seed=wish.seed),
         noise=found.base.problem.noise,
         noise_reasons=tuple(reasons),

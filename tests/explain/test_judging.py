@@ -1,6 +1,7 @@
 """What keeps a wrong name out: prices, noise that must not hide a cause, tests of what is left."""
 
 from dataclasses import replace
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from sk120stiff.explain.steering import candidates_for
 from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseModel, NoiseStatement
 from tests.explain.readings import SIGMA, base_fit, hidden
+from tests.hidden.generator.causes_elastic import BaseRocking
 from tests.hidden.generator.causes_foreign import QuadraticMount
 from tests.hidden.generator.causes_joint import GearHardening
 from tests.hidden.generator.causes_sensor import ForceBias
@@ -72,6 +74,16 @@ def test_a_gear_that_stiffens_in_steps_is_named_by_steps(springs):
     assert any("extra_below" in name for name in answer.final.model.names)
     soft = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
     assert soft.public_value == pytest.approx(1.41e6, rel=0.03)
+
+
+def test_a_notebook_shows_the_name_its_size_and_the_gap(springs):
+    answer = explain(springs, hidden(BaseRocking("base_link", {"x": 2e-7, "y": 2e-7})))
+    shown = answer._repr_html_()
+    page = ET.fromstring(shown.replace("<br>", "<br/>"))
+    cells = ["".join(cell.itertext()) for cell in page.iter("td")]
+    assert "base_rocking:base_link" in cells
+    assert any("stiffness_x = " in cell and "N*m/rad" in cell for cell in cells)
+    assert f"{1e6 * answer.steps[-1].heldout_rms:.3g}" in cells
 
 
 def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
