@@ -18,7 +18,7 @@ So a misread force can never pose as a spring. Adding an effect is one new file 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Self
@@ -184,6 +184,8 @@ class Effect(ABC):
         Public identifier (class attribute).
     exchangeable
         The parameters are draws of one size (class attribute).
+    bends_a_spring
+        It changes the spring of the joint at which it acts, so there must be one (class attribute).
     where
         URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
     scale
@@ -195,6 +197,7 @@ class Effect(ABC):
 
     name: ClassVar[str]
     exchangeable: ClassVar[bool] = False
+    bends_a_spring: ClassVar[bool] = False
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
@@ -236,11 +239,8 @@ class Effect(ABC):
         """Do these readings hold what the law needs (an order, branches, a weight)?"""
         return True
 
-    def other_laws(self, situation: Situation, soft: Collection[str]) -> tuple[Effect, ...]:
-        """The same effect at the same place by other laws, where more than one is usual.
-
-        `soft` names the actuated joints that have a spring.
-        """
+    def other_laws(self, situation: Situation) -> tuple[Effect, ...]:
+        """The same effect at the same place by other laws, where more than one is usual."""
         return ()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -68,6 +68,7 @@ class GearHardening(GearEffect):
 
     breaks: tuple[float, ...] = ()
     name: ClassVar[str] = "gear_hardening"
+    bends_a_spring: ClassVar[bool] = True
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
@@ -98,13 +99,8 @@ class GearHardening(GearEffect):
             ),
         )  # fmt: skip
 
-    def other_laws(self, situation: Situation, soft: Collection[str]) -> tuple[GearHardening, ...]:
-        """The series, or steps at `STEPS` of the largest torque among the readings.
-
-        A joint without a spring has nothing that could be softer: steps would be its spring.
-        """
-        if self.where not in soft:
-            return ()
+    def other_laws(self, situation: Situation) -> tuple[GearHardening, ...]:
+        """The series, or steps at `STEPS` of the largest torque among the readings."""
         if self.breaks:
             return (replace(self, breaks=()),)
         index = situation.robot.actuated.index(self.where)

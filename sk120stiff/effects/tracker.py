@@ -137,7 +137,7 @@ class ZeroOffset(TrackerEffect):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Offset of each pose along the base axes."""
         return tuple(
-            ParameterSpec(f"{pose}.{axis}", "m", "m", plausible=2e-4, typical=1e-5)
+            ParameterSpec(f"{pose}.{axis}", "m", "m", plausible=5e-4, typical=1e-5)
             for pose in self.poses
             for axis in AXES
         )

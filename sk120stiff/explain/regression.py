@@ -295,9 +295,7 @@ def regression_at(
         if effect.id not in present:
             full = full + effect
     chosen = [effect for effect in full.effects if effect.id not in base_effects]
-    springs = np.isfinite(full.joint_stiffness())
-    soft = {joint for joint, yields in zip(full.robot.actuated, springs, strict=True) if yields}
-    others = [effect.other_laws(problem.situation, soft) for effect in chosen]
+    others = [effect.other_laws(problem.situation) for effect in chosen]
     extra = tuple(Parameter(e, spec) for e in chain.from_iterable(others) for spec in e.parameters)
     full = replace(full, parameters=full.parameters + extra)  # two laws of one effect, so no sum
     specs = [parameter.spec for parameter in full.parameters]

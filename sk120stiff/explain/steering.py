@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from sk120stiff.effects import BY_NAME, Effect, all_effects, situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
@@ -64,7 +66,9 @@ def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Eff
     """Effects of the catalogue that the readings could show and the user does not exclude.
 
     Offsets of single poses are looked for among at most `POSES_WITH_OFFSETS` poses, unless the
-    user names them: beyond that they cost more time than all other effects together.
+    user names them: beyond that they cost more time than all other effects together. Gears that
+    change their stiffness are looked for, likewise, where the model has one: at a joint that it
+    holds rigid the spring itself is missing first.
     """
     situation = situation_of(model.robot, used)
     present = {effect.id for effect in model.effects}
@@ -72,16 +76,19 @@ def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Eff
     for wanted in (*wish.only, *wish.exclude):
         if not any(_matches(effect, wanted) for effect in everything):
             raise _unknown(wanted, model)
+    springs = np.isfinite(model.joint_stiffness())
+    soft = {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
+
+    def sensible(effect: Effect) -> bool:
+        few = not effect.exchangeable or len(used.poses) <= POSES_WITH_OFFSETS
+        return few and (not effect.bends_a_spring or effect.where in soft)
+
     return tuple(
         effect
         for effect in everything
         if effect.id not in present
         and effect.applies_to(situation)
-        and (
-            not effect.exchangeable
-            or len(used.poses) <= POSES_WITH_OFFSETS
-            or any(_matches(effect, wanted) for wanted in wish.only)
-        )
+        and (sensible(effect) or any(_matches(effect, wanted) for wanted in wish.only))
         and not any(_matches(effect, wanted) for wanted in wish.exclude)
         and (not wish.only or any(_matches(effect, wanted) for wanted in wish.only))
     )

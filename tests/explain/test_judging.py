@@ -96,11 +96,19 @@ def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
 def test_the_two_laws_of_a_gear_lead_to_each_other(springs):
     series = effect(springs.robot, "gear_hardening", "joint_2_l")
     situation = situation_of(springs.robot, hidden())
-    (steps,) = series.other_laws(situation, {"joint_2_l"})
+    (steps,) = series.other_laws(situation)
     assert steps.id == series.id
     assert len(steps.parameters) == 4
-    assert steps.other_laws(situation, {"joint_2_l"}) == (series,)
-    assert series.other_laws(situation, {"joint_1_s"}) == ()
+    assert steps.other_laws(situation) == (series,)
+
+
+def test_a_gear_that_stiffens_needs_a_spring_to_stiffen(springs):
+    readings = hidden()
+    offered = {e.id for e in candidates_for(springs, readings, Options())}
+    asked = candidates_for(springs, readings, Options(only=("gear_hardening:joint_4_r",)))
+    assert "gear_hardening:joint_1_s" in offered
+    assert "gear_hardening:joint_4_r" not in offered
+    assert [e.id for e in asked] == ["gear_hardening:joint_4_r"]
 
 
 def test_readings_without_a_yardstick_are_not_held_to_be_lacking(springs):
