@@ -186,6 +186,8 @@ class Effect(ABC):
         The parameters are draws of one size (class attribute).
     bends_a_spring
         It changes the spring of the joint at which it acts, so there must be one (class attribute).
+    inexact
+        Share of what it explains by which real parts depart from its law (class attribute).
     where
         URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
     scale
@@ -198,6 +200,7 @@ class Effect(ABC):
     name: ClassVar[str]
     exchangeable: ClassVar[bool] = False
     bends_a_spring: ClassVar[bool] = False
+    inexact: ClassVar[float] = 0.0
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:

@@ -51,6 +51,7 @@ class LinkBending(LinearElastic):
     """
 
     name: ClassVar[str] = "link_bending"
+    inexact: ClassVar[float] = 0.12  # links taper
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -33,6 +33,9 @@ class Confirmation:
         Share of resamplings of the poses in which the same name (or an alternative of it) wins.
     rival_frequency
         Share in which the most frequent of the other names wins.
+    foretells
+        The effect says something of poses that were not measured. Draws, one for every pose, do
+        not; no fold can gain by them, and their name rests on the resampling alone.
     """
 
     folds_improved: int
@@ -41,6 +44,7 @@ class Confirmation:
     gain_error: float
     frequency: float
     rival_frequency: float
+    foretells: bool = True
 
     @property
     def holds(self) -> bool:
@@ -51,7 +55,11 @@ class Confirmation:
         comes near, a third of the drawings is enough: a weak effect drowns in some of them.
         """
         mostly = self.folds_improved >= 0.6 * self.folds or self.gain > self.gain_error
-        gains = self.folds_improved >= 0.8 * self.folds or (mostly and self.gain > 0.0)
+        gains = (
+            not self.foretells
+            or self.folds_improved >= 0.8 * self.folds
+            or (mostly and self.gain > 0.0)
+        )
         wins = self.frequency >= 0.5
         alone = self.frequency >= 0.33 and self.rival_frequency <= 0.5 * self.frequency
         return gains and (wins or alone)
@@ -99,6 +107,7 @@ def confirm(
         gain_error=error / axes,
         frequency=own / RESAMPLES,
         rival_frequency=max(rivals, default=0) / RESAMPLES,
+        foretells=not regression.candidates[effect].exchangeable,
     )
 
 

@@ -57,18 +57,23 @@ def findings_of(found: Attempt, *, seed: int) -> Named:
 
 
 def _shadow(finding: Finding, before: list[Finding]) -> bool:
-    """Is this only what the law of a stronger effect of the same gear leaves over?
+    """Is this only what the law of a stronger effect leaves over?
 
-    No gear follows a cubic to the last digit; what is left looks like play or friction there.
+    No gear follows a cubic to the last digit; what is left looks like play or friction there. No
+    link is as thick at its end as at its root; what is left looks like a tilting bearing.
     """
-    if not isinstance(finding.effect, GearEffect):
-        return False
+    gain = finding.evidence.misfit_gain
     return any(
-        isinstance(other.effect, GearEffect)
-        and other.effect.where == finding.effect.where
-        and finding.evidence.misfit_gain < SHADOW**2 * other.evidence.misfit_gain
+        gain
+        < max(other.effect.inexact, _of_one_gear(finding, other)) ** 2 * other.evidence.misfit_gain
         for other in before
     )
+
+
+def _of_one_gear(finding: Finding, other: Finding) -> float:
+    """`SHADOW` if both effects are laws of one gear."""
+    gears = isinstance(finding.effect, GearEffect) and isinstance(other.effect, GearEffect)
+    return SHADOW if gears and finding.effect.where == other.effect.where else 0.0
 
 
 def _finding(found: Attempt, effect: int, seed: int) -> Finding:

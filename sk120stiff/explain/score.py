@@ -109,12 +109,11 @@ def _with_draws(
 ) -> tuple[Solved, float, float]:
     """Best solution and score over the common size of exchangeable parameters, and that size.
 
-    Such parameters (`drawn`, beside the `parts` of other effects) pay by their marginal likelihood,
-    and one parameter for their size τ.
+    Such parameters (`drawn`, beside the `parts` of other effects) pay by their marginal likelihood;
+    that they exist at all is held against chance like one parameter, their size τ.
     """
     members = np.concatenate(drawn)
-    n = max(sums.count, 2.0)
-    flat = len(drawn) * (np.log(n) + price_of_looking(regression, n))
+    flat = len(drawn) * (regression.least_fall + FLOOR)
 
     def at(size: float) -> tuple[float, Solved]:
         left = sums.marginal(members, size)

@@ -117,10 +117,11 @@ def within_poses(
         misfit = min(1.0, 2.0 * min(whole, bare.tail(*steps[0])))
     elif known and steps[0][1]:
         misfit = bare.tail(*steps[0])
+    drawn = any(effect.exchangeable for effect in fit.model.effects)
     own = (
         tuple(
             _own(bare, name, columns, white, inside, group, left[0], rank[0])
-            for name, columns in _series(situation, whiten)
+            for name, columns in _series(situation, whiten, drawn=drawn)
         )
         if known
         else ()
@@ -128,10 +129,13 @@ def within_poses(
     return WithinPoses(scale, known, misfit, orders, own)
 
 
-def _series(situation: Situation, whiten: Callable[[Array], Array]) -> Iterator[tuple[str, Array]]:
-    """What a pose may have of its own, as whitened columns."""
-    one = np.ones((situation.count, 1))
-    yield "a constant of its own at every pose", whiten(pose_columns(one))
+def _series(
+    situation: Situation, whiten: Callable[[Array], Array], *, drawn: bool
+) -> Iterator[tuple[str, Array]]:
+    """What a pose may have of its own, as whitened columns; `drawn` constants are noise already."""
+    if not drawn:
+        one = np.ones((situation.count, 1))
+        yield "a constant of its own at every pose", whiten(pose_columns(one))
     clock = situation.order if situation.order is not None else situation.time
     if clock is not None and np.ptp(clock) > 0.0:
         drift = clock[:, None] / np.abs(clock).max()

@@ -19,6 +19,7 @@ from .sk120 import sk120
 from .world import Cause, World
 
 Rng = np.random.Generator
+PAIR = 12.0  # degrees between two causes below which they are a near pair
 
 
 class NotThisTime(RuntimeError):
@@ -150,8 +151,8 @@ def single(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
         raise NotThisTime(chosen.name)
     hidden = hide(at, cause, seen, blocks(seen, unit_causes(at.arm)))
     nearest = hidden.rivals[0]
-    # near aliases are the business of L4 and L5
-    if nearest.separation < (4.0 if level != "L3" else 0.05 * hidden.visibility):
+    # pairs under 12 degrees and exact aliases are the business of L4 and L5
+    if nearest.angle < PAIR or (level != "L3" and nearest.separation < 4.0):
         raise NotThisTime(f"{cause.name} looks like {nearest.name}")
     return at.case([cause], hidden=[hidden])
 
@@ -174,7 +175,7 @@ def pair(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
             continue
         hidden = hide(at, cause, seen, table)
         nearest = hidden.rivals[0]
-        if 3.0 < nearest.angle < 12.0 and 0.8 < nearest.separation < 2.4:
+        if 3.0 < nearest.angle < PAIR and 0.8 < nearest.separation < 2.4:
             return at.case(
                 [cause], hidden=[hidden], expected="ambiguous",
                 truth_extra={"pair": [f"{nearest.name}:{nearest.where}"]},
