@@ -16,7 +16,6 @@ from sk120stiff.explain.search import gains
 from sk120stiff.explain.settling import Attempt
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
-TIE = 2.0  # parts are as often as stiff one way as the other as they are not
 SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice of law explains
 CONTENDERS = 24  # rivals looked at for every effect
 
@@ -84,12 +83,14 @@ def _finding(found: Attempt, effect: int, seed: int) -> Finding:
     chosen = regression.candidates[effect]
     rivals = _rivals(regression, rest, effect)
     exact = _aliases(found, effect, with_it, rivals)
+    # A rival is compared with the effect in full: that some of its parameters may be equal is no
+    # evidence against the rival, nor is one parameter more.
     full = score_set(regression, regression.sums(), found.chosen, untied=effect).score
-    own = min(full, _with_tie(regression, with_it, effect))
+    margin = max(MARGIN, np.log(regression.rows) + 0.5)
     same = [
         e
         for e, model in rivals
-        if _with_tie(regression, model, e) - own < MARGIN or regression.candidates[e].id in exact
+        if model.score - full < margin or regression.candidates[e].id in exact
     ]
     others = [(e, model.score) for e, model in rivals if e not in same]
     runner_up = min(others, key=lambda pair: pair[1], default=None)
@@ -106,16 +107,6 @@ def _finding(found: Attempt, effect: int, seed: int) -> Finding:
             confirmation=confirm(regression, found.chosen, effect, same, seed=seed),
         ),
     )
-
-
-def _with_tie(regression: Regression, model: Scored, effect: int) -> float:
-    """The score, and what it costs to hold that some parameters of one effect are equal.
-
-    That saves a parameter, but is no evidence against another effect that has one fewer.
-    """
-    variant = model.variants[model.effects.index(effect)]
-    tied = variant > 0 and regression.law(effect, variant) == regression.candidates[effect]
-    return model.score + (TIE if tied else 0.0)
 
 
 def _aliases(
