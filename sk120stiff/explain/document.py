@@ -39,6 +39,7 @@ def verdict_document(answer: Explanation, next_poses: str | None = None) -> dict
         },
         "where": list(answer.where),
         "suspects": list(answer.suspects),
+        "not_named": list(answer.unnamed),
         "noise": {
             "model": answer.noise.describe(),
             "sigma_um": answer.final.sigma * 1e6,
@@ -48,6 +49,7 @@ def verdict_document(answer: Explanation, next_poses: str | None = None) -> dict
         "adequacy": {
             "probability": answer.adequacy.probability,
             "left_over": answer.adequacy.excess,
+            "explained": answer.adequacy.explained,
             "tests": dict(answer.adequacy.tests),
         },
         "not_observable": list(answer.not_observable),

@@ -122,6 +122,8 @@ class Explanation:
         Rows of the readings, masked ones counted, that were treated as outliers.
     adequacy
         Tests of what the final model leaves over.
+    unnamed
+        What fitted but is not named, and why, in sentences.
     where
         Plain statements on where the gap of the base model lives.
     suspects
@@ -145,6 +147,7 @@ class Explanation:
     noise_reasons: tuple[str, ...]
     set_aside: tuple[int, ...]
     adequacy: Adequacy
+    unnamed: tuple[str, ...] = ()
     where: tuple[str, ...] = ()
     suspects: tuple[str, ...] = ()
     not_observable: tuple[str, ...] = ()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.effects import Effect
 from sk120stiff.effects.gear import GearEffect
 from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
@@ -17,6 +18,7 @@ from sk120stiff.explain.settling import Attempt
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
 SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice of law explains
+CHANCE = 2.0  # by which noise lengthens what a law leaves over
 CONTENDERS = 24  # rivals looked at for every effect
 
 
@@ -32,11 +34,14 @@ class Named:
         Ids of effects that other poses do not confirm.
     shadows
         Ids of effects that only mend the law of a stronger one.
+    reasons
+        Why these are not named, in sentences.
     """
 
-    findings: tuple[Finding, ...]
-    doubted: tuple[str, ...]
-    shadows: tuple[str, ...]
+    findings: tuple[Finding, ...] = ()
+    doubted: tuple[str, ...] = ()
+    shadows: tuple[str, ...] = ()
+    reasons: tuple[str, ...] = ()
 
 
 def findings_of(found: Attempt, *, seed: int) -> Named:
@@ -44,29 +49,54 @@ def findings_of(found: Attempt, *, seed: int) -> Named:
     findings: list[Finding] = []
     doubted: list[str] = []
     shadows: list[str] = []
+    reasons: list[str] = []
     for effect in by_weight(found.regression, found.chosen):
         finding = _finding(found, effect, seed)
-        if _shadow(finding, findings):
+        caster = _caster(found, finding, findings)
+        if caster is not None:
             shadows.append(finding.effect.id)
+            reasons.append(
+                f"{finding.effect.id} would take away a little more of the gap, but no more than "
+                f"the law of {caster.effect.id} leaves over; it is not named."
+            )
         elif finding.evidence.confirmation.holds:
             findings.append(finding)
         else:
             doubted.append(finding.effect.id)
-    return Named(tuple(findings), tuple(doubted), tuple(shadows))
+            seen = finding.evidence.confirmation
+            reasons.append(
+                f"{finding.effect.id} fits best, but other poses do not confirm it (better in "
+                f"{seen.folds_improved} of {seen.folds} folds, the same name in "
+                f"{100.0 * seen.frequency:.0f} % of resamplings); it is not named."
+            )
+    return Named(tuple(findings), tuple(doubted), tuple(shadows), tuple(reasons))
 
 
-def _shadow(finding: Finding, before: list[Finding]) -> bool:
-    """Is this only what the law of a stronger effect leaves over?
+def _caster(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
+    """The stronger effect whose law leaves over what this one explains.
 
     No gear follows a cubic to the last digit; what is left looks like play or friction there. No
     link is as thick at its end as at its root; what is left looks like a tilting bearing.
     """
-    gain = finding.evidence.misfit_gain
-    return any(
-        gain
-        < max(other.effect.inexact, _of_one_gear(finding, other)) ** 2 * other.evidence.misfit_gain
-        for other in before
+    gain = np.sqrt(max(finding.evidence.misfit_gain, 0.0))
+    for other in before:
+        if gain < _of_one_gear(finding, other) * np.sqrt(other.evidence.misfit_gain):
+            return other
+        share = other.effect.inexact
+        if share and gain < share * _length_alone(found, other.effect) + CHANCE:
+            return other
+    return None
+
+
+def _length_alone(found: Attempt, effect: Effect) -> float:
+    """Fall of the misfit that one effect alone brings, as a length √λ."""
+    regression, sums = found.regression, found.regression.sums()
+    place = next(k for k, e in enumerate(regression.candidates) if e.id == effect.id)
+    fall = (
+        score_set(regression, sums, ()).solved.rss
+        - score_set(regression, sums, (place,)).solved.rss
     )
+    return float(np.sqrt(max(fall, 0.0)))
 
 
 def _of_one_gear(finding: Finding, other: Finding) -> float:

@@ -66,7 +66,7 @@ def explain(
     tell("searching the catalogue", 0.05)
     found, reasons = _best_attempt(model, used, wish)
     left = _adequacy(found)
-    named = Named((), (), ())
+    named = Named()
     allowed = LEFT_OVER
     if not _too_much(left, allowed):
         tell("confirming on other poses", 0.5)
@@ -91,6 +91,7 @@ def explain(
                 noise_reasons=tuple(reasons),
                 set_aside=tuple(rows[found.aside].tolist()),
                 adequacy=left,
+                unnamed=named.reasons,
                 suspects=tuple(dict.fromkeys([*nearest, *named.doubted])),
             ),
             wish,
@@ -108,6 +109,7 @@ def explain(
         noise_reasons=tuple(reasons),
         set_aside=tuple(rows[found.aside].tolist()),
         adequacy=left,
+        unnamed=named.reasons,
     )
     tell("what these readings cannot tell", 0.85)
     return _finished(found, answer, wish)

@@ -10,6 +10,7 @@ from scipy import stats
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, situation_of
 from sk120stiff.explain import Options, explain
+from sk120stiff.explain.confirm import Confirmation
 from sk120stiff.explain.noise_race import likeliest_growth
 from sk120stiff.explain.outliers import outlying_rows
 from sk120stiff.explain.regression import regression_at
@@ -18,7 +19,7 @@ from sk120stiff.explain.steering import candidates_for
 from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseModel, NoiseStatement
 from tests.explain.readings import SIGMA, base_fit, hidden
-from tests.hidden.generator.causes_elastic import BaseRocking
+from tests.hidden.generator.causes_elastic import BaseRocking, LinkBending
 from tests.hidden.generator.causes_foreign import QuadraticMount
 from tests.hidden.generator.causes_joint import GearHardening
 from tests.hidden.generator.causes_sensor import ForceBias
@@ -152,3 +153,45 @@ def test_the_growth_of_the_noise_is_found_again(springs):
     readings = replace(readings, displacement=moved, noise=NoiseStatement(sigma=SIGMA))
     start = fit(springs, readings, noise=NoiseModel(SIGMA, growth=0.05, zero="shared"))
     assert likeliest_growth(start) == pytest.approx(0.02, rel=0.15)
+
+
+def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
+    """Torque that moves the other joint looks like a bending column, with other springs beside."""
+    answer = explain(springs, hidden(LinkBending("link_1_s", {"flexibility": 1e-7})))
+    (finding,) = answer.findings
+    assert answer.verdict == "ambiguous"
+    names = {finding.effect.id, *finding.alternatives}
+    assert {"closure_coupling:joint_2_l,joint_3_u", "link_bending:link_1_s"} <= names
+    alone = {
+        p.name: p.std for p in fit(answer.final.model, hidden(), noise=answer.noise).parameters
+    }
+    for joint, stiffness in {"joint_1_s": 1.41e6, "joint_2_l": 4.0e5, "joint_3_u": 9.4e5}.items():
+        spring = answer.final.model.parameter(f"joint_springs:{joint}.stiffness")
+        assert abs(spring.value - 1.0 / stiffness) <= 1.96 * spring.std
+        assert spring.std >= 0.9 * alone[spring.name]
+
+
+def test_what_the_law_of_a_beam_leaves_over_is_no_second_cause(springs):
+    beam = LinkBending("link_2_l", {"flexibility": 4e-7}, {"taper": 0.5})
+    answer = explain(springs, hidden(beam, sigma=4e-6))
+    assert [finding.effect.id for finding in answer.findings] == ["link_bending:link_2_l"]
+    assert "the law of link_bending:link_2_l leaves over" in " ".join(answer.unnamed)
+
+
+@pytest.mark.parametrize(
+    ("improved", "gain", "frequency", "rival", "foretells", "holds"),
+    [
+        (5, 0.1, 0.9, 0.05, True, True),
+        (4, -0.5, 0.9, 0.05, True, True),  # one fold far outside decides nothing
+        (3, 0.1, 0.9, 0.05, True, True),
+        (3, -0.1, 0.9, 0.05, True, False),
+        (2, 0.1, 0.9, 0.05, True, False),
+        (5, 0.1, 0.4, 0.1, True, True),  # nothing else comes near
+        (5, 0.1, 0.4, 0.3, True, False),
+        (5, 0.1, 0.2, 0.0, True, False),
+        (1, -0.2, 0.9, 0.05, False, True),  # draws say nothing of other poses
+    ],
+)
+def test_a_name_has_to_be_confirmed(improved, gain, frequency, rival, foretells, holds):
+    found = Confirmation(improved, 5, gain, 0.2, frequency, rival, foretells)
+    assert found.holds is holds
