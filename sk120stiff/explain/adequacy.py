@@ -13,9 +13,13 @@ from sk120stiff.identify import Fit
 from sk120stiff.identify.left_over import orthonormal
 
 LEVEL = 1e-3
-ORDERS = {
-    "linear": "in proportion to the load",
+OWN = {
+    "proportional": "in proportion to the load at single poses",
     "constant": "constant at single poses",
+    "drift": "drifting at single poses",
+}
+ORDERS = {
+    "constant": "constant at single poses, beyond what is in proportion to the load",
     "curved": "curved in the load at single poses",
 }
 
@@ -71,10 +75,10 @@ def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
         chance = float(stats.chi2.sf(fit.chi_square, freedom))
         tests["whole misfit"] = chance, fit.chi_square - freedom
     for order in found.orders:
-        if order.probability is not None:
+        if order.probability is not None and order.name in ORDERS:
             tests[ORDERS[order.name]] = order.probability, order.excess
     for own in found.own:
-        tests[own.name] = own.probability, own.excess
+        tests[OWN[own.name]] = own.probability, own.statistic - own.freedom
     if found.suspects:
         closest = min(found.suspects, key=lambda suspicion: suspicion.probability)
         beyond = closest.statistic - closest.freedom

@@ -84,15 +84,16 @@ class OwnAtPoses:
     Attributes
     ----------
     name
-        ``a constant of its own at every pose``, ``a drift of its own at every pose``.
-    excess
-        By how much it exceeds the noise, as a sum of squares [noise variances].
+        ``constant``, ``drift`` or ``proportional`` to the load.
+    statistic, freedom
+        What it takes away of the misfit [noise variances], and its degrees of freedom.
     probability
         That chance makes it.
     """
 
-    name: str
-    excess: float
+    name: Literal["constant", "drift", "proportional"]
+    statistic: float
+    freedom: int
     probability: float
 
 

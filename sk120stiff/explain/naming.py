@@ -11,10 +11,12 @@ from sk120stiff.effects.gear import GearEffect
 from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
 from sk120stiff.explain.explanation import Evidence, Finding
+from sk120stiff.explain.localisation import OwnAtPoses
+from sk120stiff.explain.localise import localise
 from sk120stiff.explain.regression import Regression
-from sk120stiff.explain.score import Scored, score_set
+from sk120stiff.explain.score import Scored, price_of_sizes, score_set
 from sk120stiff.explain.search import gains
-from sk120stiff.explain.settling import Attempt
+from sk120stiff.explain.settling import Attempt, refit
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
 SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice of law explains
@@ -59,6 +61,12 @@ def findings_of(found: Attempt, *, seed: int) -> Named:
                 f"{finding.effect.id} would take away a little more of the gap, but no more than "
                 f"the law of {caster.effect.id} leaves over; it is not named."
             )
+        elif finding.effect.exchangeable and not _constant(found, finding.effect):
+            doubted.append(finding.effect.id)
+            reasons.append(
+                f"{finding.effect.id} fits, but something in proportion to the load at every pose "
+                "would fit as well; it is not named."
+            )
         elif finding.evidence.confirmation.holds:
             findings.append(finding)
         else:
@@ -70,6 +78,22 @@ def findings_of(found: Attempt, *, seed: int) -> Named:
                 f"{100.0 * seen.frequency:.0f} % of resamplings); it is not named."
             )
     return Named(tuple(findings), tuple(doubted), tuple(shadows), tuple(reasons))
+
+
+def _constant(found: Attempt, effect: Effect) -> bool:
+    """Is what single poses have of their own a constant, and not in proportion to the load?
+
+    Draws, one for every pose, can imitate part of any cause that the catalogue lacks.
+    """
+    rest = [other for other in found.effects if other != effect]
+    own = {each.name: each for each in localise(refit(found.base, rest)).own}
+    if not {"constant", "proportional"} <= own.keys():
+        return True
+
+    def evidence(each: OwnAtPoses) -> float:
+        return each.statistic - price_of_sizes(each.statistic, each.freedom, np.inf)
+
+    return evidence(own["constant"]) > evidence(own["proportional"])
 
 
 def _caster(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:

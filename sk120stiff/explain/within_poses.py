@@ -118,33 +118,32 @@ def within_poses(
     elif known and steps[0][1]:
         misfit = bare.tail(*steps[0])
     drawn = any(effect.exchangeable for effect in fit.model.effects)
-    own = (
-        tuple(
-            _own(bare, name, columns, white, inside, group, left[0], rank[0])
-            for name, columns in _series(situation, whiten, drawn=drawn)
-        )
+    own = tuple(
+        _own(bare, name, columns, white, inside, group, left[0], rank[0])
+        for name, columns in _of_own(situation, whiten, drawn=drawn)
         if known
-        else ()
     )
     return WithinPoses(scale, known, misfit, orders, own)
 
 
-def _series(
+Own = Literal["constant", "drift", "proportional"]
+
+
+def _of_own(
     situation: Situation, whiten: Callable[[Array], Array], *, drawn: bool
-) -> Iterator[tuple[str, Array]]:
+) -> Iterator[tuple[Own, Array]]:
     """What a pose may have of its own, as whitened columns; `drawn` constants are noise already."""
+    yield "proportional", whiten(pose_columns(load_basis(situation)))
     if not drawn:
-        one = np.ones((situation.count, 1))
-        yield "a constant of its own at every pose", whiten(pose_columns(one))
+        yield "constant", whiten(pose_columns(np.ones((situation.count, 1))))
     clock = situation.order if situation.order is not None else situation.time
     if clock is not None and np.ptp(clock) > 0.0:
-        drift = clock[:, None] / np.abs(clock).max()
-        yield "a drift of its own at every pose", whiten(pose_columns(drift))
+        yield "drift", whiten(pose_columns(clock[:, None] / np.abs(clock).max()))
 
 
 def _own(
     bare: WithinPoses,
-    name: str,
+    name: Own,
     columns: Array,
     white: Array,
     inside: Array,
@@ -154,5 +153,4 @@ def _own(
 ) -> OwnAtPoses:
     square, used = left_over(white, inside, columns, group)
     taken, freedom = left - square, used - rank
-    excess = max(taken / bare.scale - freedom, 0.0)
-    return OwnAtPoses(name, excess, bare.tail(taken, freedom))
+    return OwnAtPoses(name, taken / bare.scale, freedom, bare.tail(taken, freedom))

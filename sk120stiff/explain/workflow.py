@@ -21,6 +21,7 @@ from sk120stiff.explain.steering import Options, candidates_for, with_assumed
 from sk120stiff.explain.steps import gap_steps
 from sk120stiff.identify import refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
 
 LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
@@ -131,14 +132,17 @@ def _best_attempt(
     """The attempt that explains most, under the noise model that the readings speak for."""
     base_model = with_assumed(model, measurements, wish.assume)
     candidates = candidates_for(base_model, measurements, wish)
+    plain = tuple(effect for effect in candidates if not effect.exchangeable)
     situation = situation_of(base_model.robot, measurements)
+    undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
     def under(chosen: NoiseModel) -> Attempt:
+        # Constants of single poses are what a shared zero brings; it need not have been separate.
         return attempt(
             base_model,
             measurements,
             chosen,
-            candidates,
+            plain if undescribed and chosen.zero == "separate" else candidates,
             max_effects=wish.max_effects,
             alpha=wish.alpha,
         )
