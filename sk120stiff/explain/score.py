@@ -78,12 +78,18 @@ def score_set(
         added = ~regression.in_base[solved.columns]
         limits = regression.plausible[solved.columns[added]]
         plausible = bool((np.abs(solved.values[added]) <= limits).all())
-        score += sum(LESS_USUAL.get(regression.candidates[e].name, 0.0) for e in chosen)
+        score += sum(_price_of_choice(regression, e) for e in chosen)
         if best is None or (plausible, -score) > (best.plausible, -best.score):
             best = Scored(chosen, score, solved, plausible, variants)
     if best is None:
         raise ValueError("a model without variants")
     return best
+
+
+def _price_of_choice(regression: Regression, effect: int) -> float:
+    """What an effect pays for the variants that it may choose from, and for being less usual."""
+    name = regression.candidates[effect].name
+    return 2.0 * float(np.log(len(regression.variants[effect]))) + LESS_USUAL.get(name, 0.0)
 
 
 def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> tuple[Solved, float]:
