@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff import load_robot
-from sk120stiff.measurements import Measurements, read_measurements
+from sk120stiff.measurements import Measurements, NoiseModel, read_measurements
 from sk120stiff.model import Model, base_model
 
 TABLE_2 = Path(__file__).resolve().parents[1] / "robots/motoman_sk120/data/table2_measured.csv"
@@ -60,7 +60,7 @@ def readings(count: int, model: Model) -> Measurements:
         )
         path.with_suffix(".yaml").write_text(settings)
         plan = read_measurements(path, robot.actuated)
-    return simulate(model, plan, seed=1).measurements
+    return simulate(model, plan, noise=NoiseModel(10e-6), seed=1).measurements
 
 
 def identification(count: int, budget: float) -> float:

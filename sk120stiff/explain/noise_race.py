@@ -21,6 +21,8 @@ from sk120stiff.measurements import Measurements, NoiseModel, candidates
 
 SETTLED = 0.2  # change of the growth, in natural logarithms, that needs no further attempt
 
+COMPUTED = 1e-8  # m; a smaller scatter is that of computed readings, which know no noise to race
+
 Try = Callable[[NoiseModel], Attempt]
 Found = tuple[Attempt, Sequence[str]]
 
@@ -41,6 +43,8 @@ def race(measurements: Measurements, situation: Situation, under: Try) -> Found:
     if not noise.stated and not len(plain.aside) and other.growth == noise.growth:
         return plain, reasons
     if (other.sigma, other.growth, other.zero) == (noise.sigma, noise.growth, noise.zero):
+        return plain, reasons
+    if other.sigma < COMPUTED:
         return plain, reasons
     second, said = _regrown(under(other), other_reasons, under)
     if second.total < plain.total:
