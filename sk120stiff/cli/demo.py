@@ -122,7 +122,7 @@ def _write(
     write_model(model, out / "model.yaml")
     if following is not None:
         write_measurements(plan_of(made.answer, readings), out / following)
-    verdict = verdict_document(made.answer, following)
+    verdict = verdict_document(made.answer, readings, following)
     write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
     tell(100, 100)
     return written

@@ -94,7 +94,7 @@ def write_answer(
     gaps = io.StringIO()
     predicted = fitted.predict(situation_of(fitted.robot, task.readings))
     prediction_table(task.readings, predicted).to_csv(gaps, index=False)
-    document = verdict_document(answer, following)
+    document = verdict_document(answer, task.readings, following)
     # An old verdict must not stand beside new files, nor old proposals and pages beside a new one.
     remove_stale(out)
     write_model(fitted, out / "model.yaml")

@@ -8,16 +8,21 @@ import numpy as np
 
 from sk120stiff.explain.explanation import Explanation, Finding
 from sk120stiff.identify import Fit
+from sk120stiff.measurements import Measurements
 from sk120stiff.model import Parameter
 
 
-def verdict_document(answer: Explanation, next_poses: str | None = None) -> dict[str, Any]:
+def verdict_document(
+    answer: Explanation, readings: Measurements, next_poses: str | None = None
+) -> dict[str, Any]:
     """The content of `verdict.json`.
 
     Parameters
     ----------
     answer
         The explanation.
+    readings
+        What was explained.
     next_poses
         Name of the file that holds the poses to measure next.
     """
@@ -44,7 +49,10 @@ def verdict_document(answer: Explanation, next_poses: str | None = None) -> dict
             "model": answer.noise.describe(),
             "sigma_um": answer.final.sigma * 1e6,
             "decided": list(answer.noise_reasons),
-            "set_aside": list(answer.set_aside),
+            "set_aside": [
+                {"pose": readings.pose[row], "line": int(readings.line[row])}
+                for row in answer.set_aside
+            ],
         },
         "adequacy": {
             "probability": answer.adequacy.probability,
@@ -96,7 +104,9 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
             "folds": evidence.confirmation.folds,
             "heldout_gain": evidence.confirmation.gain,
             "heldout_gain_std": evidence.confirmation.gain_error,
+            "folds_count": evidence.confirmation.foretells,
             "name_frequency": evidence.confirmation.frequency,
+            "rival_frequency": evidence.confirmation.rival_frequency,
         },
     }
 

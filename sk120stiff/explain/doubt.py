@@ -17,13 +17,14 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.explanation import Finding
 from sk120stiff.explain.settling import Attempt, refit
 from sk120stiff.identify import Fit
+from sk120stiff.identify.fit import with_values
 
-REFUTED = 10.0  # rise of the misfit from which another law is out of the question
+REFUTED = 10.0  # twice the log-likelihood by which another law may be worse at most
 LOOKED_AT = 8  # alternatives of one name
 
 
 def with_doubt(found: Attempt, findings: Sequence[Finding]) -> Fit:
-    """The final fit, its standard errors widened by the models that remain possible.
+    """The final fit, its standard errors and intervals widened by the models that remain possible.
 
     Parameters
     ----------
@@ -33,24 +34,20 @@ def with_doubt(found: Attempt, findings: Sequence[Finding]) -> Fit:
         The named effects with their alternatives.
     """
     final = found.final
-    values = {parameter.name: parameter.value for parameter in final.model.parameters}
-    spread = dict.fromkeys(values, 0.0)
+    place = {parameter.name: k for k, parameter in enumerate(final.parameters)}
+    doubt = np.zeros(len(final.x))
     for effects, must_fit in _others(found, findings):
         try:
             other = refit(found.base, effects)
         except Refusal:
             continue
-        if must_fit and other.chi_square > final.chi_square + REFUTED:
+        if must_fit and 2.0 * (final.log_likelihood - other.log_likelihood) > REFUTED:
             continue
-        for parameter in other.model.parameters:
-            if parameter.name in values:
-                apart = abs(parameter.value - values[parameter.name])
-                spread[parameter.name] = max(spread[parameter.name], apart)
-    widened = tuple(
-        p if p.std is None else replace(p, std=float(np.hypot(p.std, spread[p.name])))
-        for p in final.model.parameters
-    )
-    return replace(final, model=replace(final.model, parameters=widened))
+        for parameter, value in zip(other.parameters, other.x, strict=True):
+            if parameter.name in place:
+                k = place[parameter.name]
+                doubt[k] = max(doubt[k], abs(value - final.x[k]))
+    return with_values(replace(final, doubt=doubt))
 
 
 def _others(found: Attempt, findings: Sequence[Finding]) -> Iterator[tuple[list[Effect], bool]]:

@@ -36,8 +36,8 @@ class Drawn:
 
     @cached_property
     def columns(self) -> Pick:
-        """(P,) which parameters are draws."""
-        return np.array([p.effect.exchangeable for p in self.fit.model.parameters], dtype=bool)
+        """(P,) which parameters are draws; offsets that are known and held are none."""
+        return np.array([p.effect.exchangeable and p.free for p in self.fit.model.parameters])
 
     def covered(self) -> Array:
         """(N, 3) what the draws explain of the readings [m]."""

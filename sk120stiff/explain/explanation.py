@@ -134,7 +134,7 @@ class Explanation:
         For every parameter of the catalogue what would have shown.
     next_poses
         (K, n) coordinates and (K, 6) wrenches to measure next, or None.
-    dispersion
+    details
         Further figures for reports.
     """
 

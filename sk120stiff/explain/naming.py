@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.effects import Effect
+from sk120stiff.effects.base import Elastic
 from sk120stiff.effects.gear import GearEffect
 from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
@@ -16,10 +17,12 @@ from sk120stiff.explain.localise import localise
 from sk120stiff.explain.regression import Regression
 from sk120stiff.explain.score import Scored, price_of_sizes, score_set
 from sk120stiff.explain.search import gains
-from sk120stiff.explain.settling import Attempt, refit
+from sk120stiff.explain.settling import Attempt, refit, with_effects
+from sk120stiff.robot.anatomy import arm_joints
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
 SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice of law explains
+NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 CONTENDERS = 24  # rivals looked at for every effect
 
@@ -46,8 +49,28 @@ class Named:
     reasons: tuple[str, ...] = ()
 
 
+def judged(found: Attempt, *, seed: int) -> tuple[Attempt, Named]:
+    """The attempt with those effects alone that may be named, and what was said of each.
+
+    Where some may not, the others are judged anew without them: their evidence is that of the model
+    that is written.
+    """
+    named = findings_of(found, seed=seed)
+    said = named
+    while named.doubted or named.shadows:
+        found = with_effects(found, [finding.effect for finding in named.findings])
+        named = findings_of(found, seed=seed)
+        said = Named(
+            named.findings,
+            (*said.doubted, *named.doubted),
+            (*said.shadows, *named.shadows),
+            (*said.reasons, *named.reasons),
+        )
+    return found, said
+
+
 def findings_of(found: Attempt, *, seed: int) -> Named:
-    """Judge every chosen effect."""
+    """Judge every chosen effect, beside all the others."""
     findings: list[Finding] = []
     doubted: list[str] = []
     shadows: list[str] = []
@@ -71,13 +94,15 @@ def findings_of(found: Attempt, *, seed: int) -> Named:
             findings.append(finding)
         else:
             doubted.append(finding.effect.id)
-            seen = finding.evidence.confirmation
-            reasons.append(
-                f"{finding.effect.id} fits best, but other poses do not confirm it (better in "
-                f"{seen.folds_improved} of {seen.folds} folds, the same name in "
-                f"{100.0 * seen.frequency:.0f} % of resamplings); it is not named."
-            )
+            reasons.append(_unconfirmed(finding))
     return Named(tuple(findings), tuple(doubted), tuple(shadows), tuple(reasons))
+
+
+def unit(regression: Regression, model: Scored) -> float:
+    """Noise variance over the one assumed; where nobody stated it, what the model leaves tells."""
+    if regression.sigma_known:
+        return 1.0
+    return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
 
 
 def _constant(found: Attempt, effect: Effect) -> bool:
@@ -96,6 +121,16 @@ def _constant(found: Attempt, effect: Effect) -> bool:
     return evidence(own["constant"]) > evidence(own["proportional"])
 
 
+def _unconfirmed(finding: Finding) -> str:
+    seen = finding.evidence.confirmation
+    folds = f"better in {seen.folds_improved} of {seen.folds} folds, " if seen.foretells else ""
+    return (
+        f"{finding.effect.id} fits best, but other poses do not confirm it ({folds}the same name "
+        f"in {100.0 * seen.frequency:.0f} % of resamplings, the next in "
+        f"{100.0 * seen.rival_frequency:.0f} %); it is not named."
+    )
+
+
 def _caster(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
     """The stronger effect whose law leaves over what this one explains.
 
@@ -107,19 +142,33 @@ def _caster(found: Attempt, finding: Finding, before: list[Finding]) -> Finding 
         if gain < _of_one_gear(finding, other) * np.sqrt(other.evidence.misfit_gain):
             return other
         share = other.effect.inexact
-        if share and gain < share * _length_alone(found, other.effect) + CHANCE:
+        if (
+            share
+            and _beside(found, finding.effect, other.effect)
+            and gain < share * _length_alone(found, other.effect) + CHANCE
+        ):
             return other
     return None
 
 
+def _beside(found: Attempt, effect: Effect, link: Effect) -> bool:
+    """Does this yield in proportion to its load, at the link or at a neighbour of it?"""
+    if not isinstance(effect, Elastic) or isinstance(effect, GearEffect):
+        return False
+    place: dict[str, int] = {}
+    for number, joint in enumerate(arm_joints(found.final.model.robot)):
+        place |= {joint.name: number, joint.link: number}
+    both = effect.where in place and link.where in place
+    return both and abs(place[effect.where] - place[link.where]) <= NEIGHBOURS
+
+
 def _length_alone(found: Attempt, effect: Effect) -> float:
-    """Fall of the misfit that one effect alone brings, as a length √λ."""
+    """Fall of the misfit that one effect alone brings, as a length √λ in units of the noise."""
     regression, sums = found.regression, found.regression.sums()
     place = next(k for k, e in enumerate(regression.candidates) if e.id == effect.id)
-    fall = (
-        score_set(regression, sums, ()).solved.rss
-        - score_set(regression, sums, (place,)).solved.rss
-    )
+    whole = score_set(regression, sums, found.chosen)
+    alone = score_set(regression, sums, (place,)).solved.rss
+    fall = (score_set(regression, sums, ()).solved.rss - alone) / unit(regression, whole)
     return float(np.sqrt(max(fall, 0.0)))
 
 
@@ -155,7 +204,7 @@ def _finding(found: Attempt, effect: int, seed: int) -> Finding:
         exact=exact,
         evidence=Evidence(
             score_gain=without.score - with_it.score,
-            misfit_gain=without.solved.rss - with_it.solved.rss,
+            misfit_gain=(without.solved.rss - with_it.solved.rss) / unit(regression, with_it),
             runner_up=None if runner_up is None else regression.candidates[runner_up[0]].id,
             runner_up_gap=np.inf if runner_up is None else runner_up[1] - with_it.score,
             confirmation=confirm(regression, found.chosen, effect, same, seed=seed),

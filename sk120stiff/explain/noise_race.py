@@ -19,6 +19,7 @@ from sk120stiff.explain.settling import Attempt
 from sk120stiff.identify import Fit, choose_noise
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 
+SURE = 2.5  # standard errors of the scatter that let another σ into the race
 SETTLED = 0.2  # change of the growth, in natural logarithms, that needs no further attempt
 
 COMPUTED = 1e-8  # m; a smaller scatter is that of computed readings, which know no noise to race
@@ -37,35 +38,40 @@ def race(measurements: Measurements, situation: Situation, under: Try) -> Found:
     under
         Makes an attempt under one noise model.
     """
-    plain, reasons, zero = _plain(measurements, situation, under)
-    noise, clean = plain.base.problem.noise, plain.base.problem
-    other, other_reasons = choose_noise(clean.measurements, clean.situation, zero=zero)
-    if not noise.stated and not len(plain.aside) and other.growth == noise.growth:
-        return plain, reasons
-    if (other.sigma, other.growth, other.zero) == (noise.sigma, noise.growth, noise.zero):
-        return plain, reasons
-    if other.sigma < COMPUTED:
-        return plain, reasons
-    second, said = _regrown(under(other), other_reasons, under)
-    if second.total < plain.total:
-        return second, [*reasons, *said]
-    return plain, reasons
+    plain, reasons, told, zero = _plain(measurements, situation, under)
+    clean = plain.base.problem  # without its outliers
+    found: list[Found] = [(plain, reasons)]
+    tried = [clean.noise]
+    for grows in (True, False):
+        other, said = choose_noise(
+            clean.measurements, clean.situation, grows=grows, sure=SURE, zero=zero
+        )
+        same = not (clean.noise.stated or len(plain.aside)) and other.growth == clean.noise.growth
+        if same or other in tried or other.sigma < COMPUTED:
+            continue
+        tried.append(other)
+        if other.growth == clean.noise.growth:
+            other = replace(other, stated=False)  # the scatter tells a σ, but no better than a fit
+        found.append(_regrown(under(other), said, under))
+    best, why = min(found, key=lambda each: each[0].total)
+    return best, [*told, *why]
 
 
 def _plain(
     measurements: Measurements, situation: Situation, under: Try
-) -> tuple[Attempt, list[str], Literal["shared", "separate"]]:
-    """The best attempt under the noise that the data describe; a zero nobody described is raced."""
+) -> tuple[Attempt, list[str], list[str], Literal["shared", "separate"]]:
+    """The best attempt under the noise that the data describe; a zero nobody described is raced.
+
+    With it the reasons for its noise, what is to be said of the zero, and the zero.
+    """
     kinds = list(dict.fromkeys(noise.zero for noise in candidates(measurements)))
     found = []
     for kind in kinds:
         noise, reasons = choose_noise(measurements, situation, doubt=False, zero=kind)
         found.append((under(noise), reasons, kind))
     best, reasons, kind = min(found, key=lambda each: each[0].total)
-    if len(kinds) > 1:
-        said = f"Nobody said how zero readings were shared; {kind} ones explain the readings best."
-        reasons = [said, *reasons]
-    return best, reasons, kind
+    said = f"Nobody said how zero readings were shared; {kind} ones explain the readings best."
+    return best, reasons, [said] if len(kinds) > 1 else [], kind
 
 
 def _regrown(found: Attempt, reasons: Sequence[str], under: Try) -> Found:

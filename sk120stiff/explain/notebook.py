@@ -23,7 +23,10 @@ FULL = 160.0  # width of the longest bar [px]
 
 def summary_html(answer: Explanation) -> str:
     """A fragment of HTML without scripts; every text in it is escaped."""
-    parts = [f"<h4>{HEADINGS[answer.verdict]}</h4>"]
+    heading = HEADINGS[answer.verdict]
+    if answer.verdict == "none" and answer.unnamed:
+        heading = "No effect can be named"
+    parts = [f"<h4>{heading}</h4>"]
     if answer.findings:
         parts.append(
             _table(
@@ -39,7 +42,7 @@ def summary_html(answer: Explanation) -> str:
             (_step(answer, k) for k in range(len(answer.steps))),
         )
     )
-    parts.append(_list(answer.where))
+    parts.append(_list((*answer.unnamed, *answer.where)))
     if answer.next_poses is not None:
         count = len(answer.next_poses[0])
         parts.append(f"<p><code>next_poses</code> holds {count} readings that would settle it.</p>")

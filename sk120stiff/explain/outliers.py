@@ -51,7 +51,7 @@ def outlying_rows(regression: Regression, whitener: Whitener) -> NDArray[np.intp
             total = (block**2).sum(0)
             left = total - ((half[:, rows] @ block) ** 2).sum(0)
             score = np.abs(block.T @ residual[rows]) / (noise * np.sqrt(np.maximum(left, 1e-9)))
-            highest = float(score[left > 0.05 * total].max(initial=0.0))
+            highest = float(score[left > LEAST_LEFT * total].max(initial=0.0))
             if highest > worst:
                 worst, where = highest, row
         if worst <= (NEXT if out else LIMIT):

@@ -24,7 +24,7 @@ from sk120stiff.robot.coupling import Array
 
 Index = NDArray[np.intp]
 
-HIDDEN = 0.5  # standard errors by which all that is plausible of a parameter would show
+DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +58,6 @@ class Regression:
         The noise's size is known; else it is estimated by every model for itself.
     alpha
         Probability at which a first effect may be named where nothing is missing.
-    tied
-        How many columns, the last ones, are common columns of tied parameters.
     """
 
     y: Array
@@ -234,8 +232,7 @@ def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) ->
     Values are drawn towards zero as if their plausible range were a standard deviation, which only
     counts in directions that the readings do not show; `rss` holds that share too.
 
-    Columns that would be negative are dropped, the worst first. So are columns whose part that the
-    ones before them cannot imitate would not show at any plausible value.
+    Columns that would be negative are dropped, the worst first.
     """
     active = columns
     while len(active):
@@ -251,9 +248,8 @@ def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) ->
         except np.linalg.LinAlgError:
             active = np.delete(active, _dependent(scaled))
             continue
-        own = np.diag(factor) * scale * plausible[active]
-        if own.min() < HIDDEN or np.diag(factor).min() < 1e-6:
-            active = np.delete(active, int(np.argmin(own)))
+        if np.diag(factor).min() < DEPENDENT:
+            active = np.delete(active, int(np.argmin(np.diag(factor))))
             continue
         half = np.linalg.solve(factor, right)
         values = np.linalg.solve(factor.T, half) / scale

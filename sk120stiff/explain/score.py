@@ -41,7 +41,7 @@ class Scored:
     plausible
         No parameter lies beyond its plausible range.
     variants
-        By which of its variants each effect entered; 0 has all its parameters, 1 ties some.
+        By which of its variants each effect entered, see `Regression.variants`.
     """
 
     effects: tuple[int, ...]
@@ -78,7 +78,7 @@ def score_set(
         added = ~regression.in_base[solved.columns]
         limits = regression.plausible[solved.columns[added]]
         plausible = bool((np.abs(solved.values[added]) <= limits).all())
-        score += sum(_price_of_choice(regression, e) for e in chosen)
+        score += sum(_price_of_choice(regression, e, tied=e != untied) for e in chosen)
         if best is None or (plausible, -score) > (best.plausible, -best.score):
             best = Scored(chosen, score, solved, plausible, variants)
     if best is None:
@@ -86,10 +86,10 @@ def score_set(
     return best
 
 
-def _price_of_choice(regression: Regression, effect: int) -> float:
-    """What an effect pays for the variants that it may choose from, and for being less usual."""
-    name = regression.candidates[effect].name
-    return 2.0 * float(np.log(len(regression.variants[effect]))) + LESS_USUAL.get(name, 0.0)
+def _price_of_choice(regression: Regression, effect: int, *, tied: bool) -> float:
+    """What an effect pays for the variants that are open to it, and for being less usual."""
+    count = len(regression.variants[effect]) if tied else 1
+    return 2.0 * float(np.log(count)) + LESS_USUAL.get(regression.candidates[effect].name, 0.0)
 
 
 def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> tuple[Solved, float]:

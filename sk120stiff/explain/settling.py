@@ -98,6 +98,10 @@ def attempt(
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     axes = np.log(3.0 * measurements.n_readings)
+    if (
+        not regression.sigma_known
+    ):  # its part of the likelihood that no model changes, and its price
+        score += regression.rows + axes
     return Attempt(
         base=base,
         final=final,

@@ -14,7 +14,7 @@ from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.doubt import with_doubt
 from sk120stiff.explain.explanation import Explanation
 from sk120stiff.explain.mistakes import mistakes, without_copies
-from sk120stiff.explain.naming import SHADOW, Named, findings_of
+from sk120stiff.explain.naming import SHADOW, Named, judged
 from sk120stiff.explain.noise_race import race
 from sk120stiff.explain.settling import Attempt, attempt, with_effects
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
@@ -71,12 +71,10 @@ def explain(
     allowed = LEFT_OVER
     if not _too_much(left, allowed):
         tell("confirming on other poses", 0.5)
-        named = findings_of(found, seed=wish.seed)
+        found, named = judged(found, seed=wish.seed)
+        left = _adequacy(found)
         if named.shadows:
             allowed = SHADOW
-        if named.doubted or named.shadows:
-            found = with_effects(found, [finding.effect for finding in named.findings])
-            left = _adequacy(found)
     findings = named.findings
     if _too_much(left, allowed):
         nearest = [effect.id for effect in found.effects]

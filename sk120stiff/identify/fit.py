@@ -46,6 +46,8 @@ class Fit:
         Noise seen over noise assumed, where a robust fit found it without its outliers.
     inflation
         Variance of the estimates over that of least squares with the same weights (robust fits).
+    doubt
+        (P_free,) by how much other possible models move the estimates; None: by nothing.
     """
 
     problem: Problem
@@ -58,6 +60,7 @@ class Fit:
     reasons: tuple[str, ...] = ()
     spread: float | None = None
     inflation: float = 1.0
+    doubt: Array | None = None
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -148,7 +151,8 @@ class Fit:
         """(P_free, P_free) covariance of `x`; zero for estimates on a bound, infinite: unknown."""
         covariance = covariance_of(self.jacobian, self.at_bound, self.problem.span)
         if np.isfinite(self.unit):
-            return covariance * self.unit**2
+            beside = np.zeros(len(self.x)) if self.doubt is None else self.doubt
+            return np.asarray(covariance * self.unit**2 + np.diag(beside**2))
         return np.where(covariance != 0.0, np.inf, 0.0)
 
     @property
@@ -201,6 +205,10 @@ class Fit:
             self.reach(level),
             self.unit,
         )
+        if self.doubt is not None:
+            low, high = self.problem.bounds
+            ends = ends + np.outer(self.doubt, [-1.0, 1.0])
+            ends = np.clip(ends, low[:, None], high[:, None])
         scaled = ends * self.problem.scale[:, None]
         return tuple(
             public_interval(parameter.spec, float(low), float(high))

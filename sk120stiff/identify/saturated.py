@@ -121,6 +121,8 @@ def choose_noise(
     situation: Situation,
     *,
     doubt: bool = True,
+    grows: bool = True,
+    sure: float = 4.0,
     zero: Literal["shared", "separate"] | None = None,
 ) -> tuple[NoiseModel, list[str]]:
     """The noise model that the data's description and the readings themselves ask for.
@@ -130,8 +132,13 @@ def choose_noise(
     measurements, situation
         The readings.
     doubt
-        Let the scatter overrule a stated σ, or add a part that grows with the displacement where
-        none is stated.
+        Let the scatter overrule what was stated.
+    grows
+        In doubt, let it also ask for a part that grows with the displacement.
+    sure
+        Standard errors by which the scatter must differ from a stated σ to overrule it.
+    zero
+        How zero readings were shared; None takes the description's word, or the scatter's.
 
     Returns
     -------
@@ -139,7 +146,7 @@ def choose_noise(
         The model, and what was decided beyond the description, in sentences.
     """
     offered = [noise for noise in candidates(measurements) if zero in (None, noise.zero)]
-    if not doubt:
+    if not (doubt and grows):
         offered = [noise for noise in offered if noise.growth == offered[0].growth]
     reasons: list[str] = []
     if len({noise.zero for noise in offered}) > 1:
@@ -161,7 +168,7 @@ def choose_noise(
         )
     if best.noise.stated and not doubt:
         return best.noise, reasons
-    return _scaled(best, reasons), reasons
+    return _scaled(best, reasons, sure), reasons
 
 
 def _finest_growth(best: PoseNoise, measurements: Measurements, situation: Situation) -> PoseNoise:
@@ -179,11 +186,11 @@ def _finest_growth(best: PoseNoise, measurements: Measurements, situation: Situa
     return pose_noise(noise, measurements, situation, jump=True)
 
 
-def _scaled(best: PoseNoise, reasons: list[str]) -> NoiseModel:
+def _scaled(best: PoseNoise, reasons: list[str], sure: float) -> NoiseModel:
     """The noise model with the size that the scatter within poses shows."""
     noise = best.noise
     if noise.stated:
-        unsure = 4.0 / np.sqrt(2.0 * max(best.freedom, 1))
+        unsure = sure / np.sqrt(2.0 * max(best.freedom, 1))
         more = best.factor > 1.0 + max(unsure, 0.1)
         less = best.factor < 1.0 - max(unsure, 0.25) and noise.growth == 0.0
         if best.freedom < 30 or not (more or less):

@@ -160,6 +160,7 @@ def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
     answer = explain(springs, hidden(LinkBending("link_1_s", {"flexibility": 1e-7})))
     (finding,) = answer.findings
     assert answer.verdict == "ambiguous"
+    ends = dict(zip(answer.final.parameters, answer.final.intervals(), strict=True))
     names = {finding.effect.id, *finding.alternatives}
     assert {"closure_coupling:joint_2_l,joint_3_u", "link_bending:link_1_s"} <= names
     alone = {
@@ -169,6 +170,8 @@ def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
         spring = answer.final.model.parameter(f"joint_springs:{joint}.stiffness")
         assert abs(spring.value - 1.0 / stiffness) <= 1.96 * spring.std
         assert spring.std >= 0.9 * alone[spring.name]
+        low, high = ends[spring]
+        assert low <= stiffness <= high
 
 
 def test_what_the_law_of_a_beam_leaves_over_is_no_second_cause(springs):
@@ -195,3 +198,30 @@ def test_what_the_law_of_a_beam_leaves_over_is_no_second_cause(springs):
 def test_a_name_has_to_be_confirmed(improved, gain, frequency, rival, foretells, holds):
     found = Confirmation(improved, 5, gain, 0.2, frequency, rival, foretells)
     assert found.holds is holds
+
+
+def test_a_bias_beside_a_strong_beam_is_still_named(springs):
+    """No taper of a link makes a force sensor read wrong."""
+    beam = LinkBending("link_2_l", {"flexibility": 4e-7}, {"taper": 0.3})
+    answer = explain(springs, hidden(beam, ForceBias("sensor", {"x": 8.0, "y": 4.0, "z": 0.0})))
+    assert {finding.effect.name for finding in answer.findings} == {"link_bending", "force_bias"}
+
+
+def test_noise_that_was_stated_too_small_is_no_cause(springs):
+    alarms = 0
+    for seed in range(6):
+        readings = hidden(seed=100 + seed, loads=6)
+        answer = explain(springs, replace(readings, noise=NoiseStatement(sigma=0.5 * SIGMA)))
+        alarms += answer.verdict != "none"
+        assert answer.final.sigma == pytest.approx(SIGMA, rel=0.1)
+    assert alarms <= 1
+
+
+def test_another_law_that_the_readings_refute_leaves_no_doubt(springs):
+    """Nobody stated the noise, and it is far finer than what a fit starts from."""
+    steps = GearHardening("joint_1_s", {"first": 0.6, "second": 0.2}, {"T1": 120.0, "T2": 320.0})
+    answer = explain(springs, hidden(steps, sigma=1e-6, stated=False))
+    assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
+    assert answer.final.doubt is not None
+    spring = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
+    assert spring.std < 0.05 * spring.value
