@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from tests.hidden.answers import identity, read_answer, read_predictions
 from tests.hidden.generator.build import build
 from tests.hidden.generator.design import plan
 from tests.hidden.judge import coverage, heldout_ratio, mark
+from tests.hidden.make_cases import counts, names
 from tests.hidden.settling import settles
 
 TILT = {
@@ -213,3 +215,11 @@ def test_good_poses_settle_a_near_pair(tmp_path: Path) -> None:
         assert settles(case.truth(), tmp_path) is settled
     (tmp_path / "next_poses.csv").write_text("pose\n1\n")
     assert not settles(case.truth(), tmp_path)
+
+
+def test_levels_may_have_counts_of_their_own():
+    wished = counts("L0=3,L1", 2)
+    assert wished == {"L0": 3, "L1": 2}
+    listed = names(wished, 5)
+    assert [name for name, _, _ in listed] == [f"case_{k:04d}" for k in range(5)]
+    assert Counter(level for _, level, _ in listed) == wished
