@@ -7,7 +7,13 @@ from typing import Annotated
 
 import typer
 
-from sk120stiff.cli.explain_output import Task, check_folder, parts, write_answer
+from sk120stiff.cli.explain_output import (
+    Task,
+    check_folder,
+    parts,
+    warn_of_known_poses,
+    write_answer,
+)
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_data, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, SeedOption
@@ -41,7 +47,7 @@ def command(
     max_effects: Annotated[int, typer.Option(min=0, max=8, help="Name no more than this.")] = 4,
     alpha: Annotated[
         float,
-        typer.Option(min=1e-6, max=0.5, help="Chance of a name where nothing is missing."),
+        typer.Option(min=1e-6, max=0.5, help="Largest chance of a name where nothing is missing."),
     ] = 0.01,
     seed: SeedOption = 0,
     no_report: Annotated[
@@ -58,6 +64,8 @@ def command(
     """
     readings, robot = open_data(data)
     others = None if holdout is None else open_data(holdout).data
+    if others is not None:
+        warn_of_known_poses(readings, others)
     check_folder(out)
     options = Options(
         only=tuple(only or ()),
@@ -78,4 +86,4 @@ def command(
         )
         task = Task(readings, data, inputs, holdout, seed)
         document = write_answer(answer, task, out, report=not no_report, progress=report)
-    return Answer(document, parts(answer, out, report=not no_report))
+    return Answer(document, parts(answer, readings, out, report=not no_report))

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.cli.document import as_json_text
+from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.predict import prediction_table
 from sk120stiff.cli.tables import table
@@ -22,6 +23,7 @@ from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import write_model
 from sk120stiff.show.wording import with_error
 
+FEW_POSES = 8  # below this other poses confirm little
 MANY = 12  # parameters of one effect beyond which only the largest is printed
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
@@ -164,15 +166,25 @@ def plan_of(answer: Explanation, readings: Measurements) -> Measurements:
     )
 
 
-def parts(answer: Explanation, out: Path, *, report: bool) -> list[object]:
+def parts(answer: Explanation, readings: Measurements, out: Path, *, report: bool) -> list[object]:
     """The answer for people."""
-    shown: list[object] = [said(answer), *findings(answer)]
+    shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
     shown += answer.where[:TOLD]
     if answer.suspects:
-        shown.append(f"Nearest, but not it: {', '.join(answer.suspects)}.")
+        lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
+        shown.append(f"{lead}: {', '.join(answer.suspects)}.")
+    shown += answer.unnamed
+    if answer.findings and answer.adequacy.lacking:
+        p = answer.adequacy.probability
+        shown.append(f"That is not all: more is left than the noise makes (p = {p:.1g}).")
     shown += answer.noise_reasons
+    shown += [
+        f"Set aside as no smooth cause can have made it: pose {readings.pose[row]}, "
+        f"line {readings.line[row]}."
+        for row in answer.set_aside
+    ]
     if answer.next_poses is not None:
         shown.append(f"Measure next what stands in {out / 'next_poses.csv'}.")
     if report:
@@ -193,8 +205,17 @@ def said(answer: Explanation) -> str:
         "none": "Model and data agree within the noise: nothing is missing that they could show.",
         "named": "Something was missing, and it has a name.",
         "ambiguous": "Something is missing; these readings cannot tell which of several names.",
-        "outside": "Something is missing that no effect of the catalogue explains.",
+        "outside": _outside(answer),
     }[answer.verdict]
+
+
+def _outside(answer: Explanation) -> str:
+    if answer.unnamed:
+        poses = len(answer.base.problem.situation.poses)
+        few = f" {poses} poses are few: measure at more." if poses < FEW_POSES else ""
+        return f"Something is missing, and no name for it is confirmed by other poses.{few}"
+    allowed = "that was looked for" if answer.limits else "of the catalogue"
+    return f"Something is missing that no effect {allowed} explains."
 
 
 def findings(answer: Explanation) -> list[str]:
@@ -214,3 +235,12 @@ def findings(answer: Explanation) -> list[str]:
             value = with_error(p.public_value, p.public_std, p.spec.unit)
             lines.append(f"  {p.spec.name} {value}")
     return lines
+
+
+def warn_of_known_poses(readings: Measurements, others: Measurements) -> None:
+    """Say which held-out readings are of poses that are fitted: they prove less."""
+    known = np.unique(np.round(readings.joints, 9), axis=0)
+    same = (np.round(others.joints, 9)[:, None] == known).all(axis=2).any(axis=1)
+    if same.any():
+        labels = dict.fromkeys(np.array(others.pose)[same])
+        note(f"Held-out readings of poses that are fitted too: {', '.join(labels)}.")

@@ -28,6 +28,31 @@ class Opened(NamedTuple):
     robot: Robot
 
 
+def refuse_overwriting(out: Path | None, *inputs: Path | None, beside: bool = False) -> None:
+    """Refuse an output that would replace an input; `beside`: a YAML file is written beside it too.
+
+    Raises
+    ------
+    InputError
+        It would.
+    """
+    if out is None:
+        return
+    written = {out.resolve()} | ({out.with_suffix(".yaml").resolve()} if beside else set())
+    for file in inputs:
+        if file is None:
+            continue
+        read = {file.resolve()}
+        if file.suffix.lower() == ".csv":
+            read.add(file.with_suffix(".yaml").resolve())
+        for clash in sorted(written & read):
+            raise InputError(
+                f"this would overwrite {clash.name}, which is an input",
+                where=f"--out {out}",
+                remedy="Choose another name.",
+            )
+
+
 def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
     """Load a robot; frames that nobody named are told on stderr."""
     robot = load_robot(source, base=base, tool=tool)

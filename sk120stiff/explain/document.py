@@ -45,6 +45,7 @@ def verdict_document(
         "where": list(answer.where),
         "suspects": list(answer.suspects),
         "not_named": list(answer.unnamed),
+        "limits": list(answer.limits),
         "noise": {
             "model": answer.noise.describe(),
             "sigma_um": answer.final.sigma * 1e6,

@@ -124,6 +124,8 @@ class Explanation:
         Tests of what the final model leaves over.
     unnamed
         What fitted but is not named, and why, in sentences.
+    limits
+        How the user limited the search, in sentences; empty if not at all.
     where
         Plain statements on where the gap of the base model lives.
     suspects
@@ -148,6 +150,7 @@ class Explanation:
     set_aside: tuple[int, ...]
     adequacy: Adequacy
     unnamed: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
     where: tuple[str, ...] = ()
     suspects: tuple[str, ...] = ()
     not_observable: tuple[str, ...] = ()

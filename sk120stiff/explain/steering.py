@@ -13,6 +13,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
 POSES_WITH_OFFSETS = 60
+MOST_EFFECTS = 4  # looked for unless the user says otherwise
 
 
 @dataclass(frozen=True)
@@ -36,9 +37,21 @@ class Options:
     only: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
     assume: tuple[str, ...] = ()
-    max_effects: int = 4
+    max_effects: int = MOST_EFFECTS
     alpha: float = 0.01
     seed: int = 0
+
+    @property
+    def limits(self) -> tuple[str, ...]:
+        """How this limits the search, in sentences."""
+        said = []
+        if self.only:
+            said.append(f"Only these were looked for: {', '.join(self.only)}.")
+        if self.exclude:
+            said.append(f"These were not looked for: {', '.join(self.exclude)}.")
+        if self.max_effects < MOST_EFFECTS:
+            said.append(f"No more than {self.max_effects} effects were looked for.")
+        return tuple(said)
 
 
 def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Model:
@@ -83,7 +96,7 @@ def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Eff
         few = not effect.exchangeable or len(used.poses) <= POSES_WITH_OFFSETS
         return few and (not effect.bends_a_spring or effect.where in soft)
 
-    return tuple(
+    found = tuple(
         effect
         for effect in everything
         if effect.id not in present
@@ -92,6 +105,13 @@ def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Eff
         and not any(_matches(effect, wanted) for wanted in wish.exclude)
         and (not wish.only or any(_matches(effect, wanted) for wanted in wish.only))
     )
+    if not found:
+        raise InputError(
+            "no effect is left to look for",
+            where="--only, --exclude, --assume",
+            remedy="Name fewer, or other ones: these readings may not show what they need.",
+        )
+    return found
 
 
 def _matches(effect: Effect, wanted: str) -> bool:

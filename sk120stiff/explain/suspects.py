@@ -198,13 +198,13 @@ def _laws(situation: Situation) -> Iterator[Suspect]:
         tau, push = torque[:, i], J[:, :, i]
         what, unit = _effort(situation, i)
         label = f"{what} of {joint} [{unit}]"
-        largest = max(float(np.abs(tau).max(initial=0.0)), 1e-300)
+        largest = float(np.abs(tau).max(initial=0.0)) or 1.0
         size = np.linalg.norm(push, axis=1, keepdims=True)
         along = push / np.where(size > 0.0, size, 1.0)
         sign = np.sign(tau) - np.sign(situation.gravity_torque[:, i])
         jump = f"the sign of the {what} of {joint}"
         yield Suspect("law", jump, (push * sign[:, None])[..., None], tau, label, along)
-        curved = np.stack([tau * np.abs(tau) / largest, tau**3 / largest**2], axis=-1)
+        curved = tau[:, None] * np.stack([np.abs(tau) / largest, (tau / largest) ** 2], axis=-1)
         name = f"the {what} of {joint}, not in proportion to it"
         yield Suspect("law", name, push[:, :, None] * curved[:, None, :], tau, label, along)
         if both:

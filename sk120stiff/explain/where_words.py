@@ -100,7 +100,7 @@ def _strongest(found: Localisation) -> Iterator[str]:
             f"{_percent(second.explained)}."
         )
     elif best.explained > WHOLE:
-        yield "Nothing else is needed beside it."
+        yield "Of the rest nothing goes with a single suspect as closely."
 
 
 def _as_place(found: Localisation, named: Sequence[Suspicion]) -> Iterator[str]:

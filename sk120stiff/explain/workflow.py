@@ -91,6 +91,7 @@ def explain(
                 set_aside=tuple(rows[found.aside].tolist()),
                 adequacy=left,
                 unnamed=named.reasons,
+                limits=wish.limits,
                 suspects=tuple(dict.fromkeys([*nearest, *named.doubted])),
             ),
             wish,
@@ -109,6 +110,7 @@ def explain(
         set_aside=tuple(rows[found.aside].tolist()),
         adequacy=left,
         unnamed=named.reasons,
+        limits=wish.limits,
     )
     tell("what these readings cannot tell", 0.85)
     return _finished(found, answer, wish)

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -185,3 +186,49 @@ def test_what_to_measure_next_is_a_plan(data, tmp_path) -> None:
     assert np.allclose(plan.joints, a)
     assert np.allclose(plan.wrench, wrench)
     assert np.allclose(plan.point, readings.point)
+
+
+def test_a_limited_search_says_so(data, tmp_path, run) -> None:
+    done = run("explain", str(data), "--only", "reading_drift", "--no-report",
+               "--out", str(tmp_path / "o"))  # fmt: skip
+    assert done.code == 0
+    assert "no effect that was looked for explains" in done.stdout
+    assert "Only these were looked for: reading_drift." in done.stdout
+    verdict = json.loads((tmp_path / "o" / "verdict.json").read_text(encoding="utf-8"))
+    assert (verdict["verdict"], len(verdict["limits"])) == ("outside", 1)
+
+
+def test_a_search_for_nothing_is_refused(data, tmp_path, run) -> None:
+    done = run("explain", str(data), "--only", "joint_tilt", "--exclude", "joint_tilt",
+               "--out", str(tmp_path / "o"))  # fmt: skip
+    assert done.code == 2
+    assert "no effect is left to look for" in done.stderr
+    assert not (tmp_path / "o").exists()
+
+
+def test_held_out_readings_of_fitted_poses_are_told(data, tmp_path, run) -> None:
+    done = run("explain", str(data), "--holdout", str(data), "--no-report",
+               "--out", str(tmp_path / "o"))  # fmt: skip
+    assert done.code == 0
+    assert "Held-out readings of poses that are fitted too: 1, 2" in done.stderr
+
+
+def test_a_reading_set_aside_is_told_on_the_terminal(data, tmp_path, run) -> None:
+    readings = read_measurements(data)
+    moved = readings.displacement.copy()
+    moved[30, 1] += 1e-3
+    write_measurements(replace(readings, displacement=moved), tmp_path / "bumped.csv")
+    done = run("explain", str(tmp_path / "bumped.csv"), "--no-report", "--out", str(tmp_path / "o"))
+    assert done.code == 0
+    assert f"pose {readings.pose[30]}, line 32." in done.stdout
+    verdict = json.loads((tmp_path / "o" / "verdict.json").read_text(encoding="utf-8"))
+    assert verdict["noise"]["set_aside"] == [{"pose": readings.pose[30], "line": 32}]
+
+
+def test_few_poses_confirm_nothing_and_that_is_said(tmp_path, run) -> None:
+    """Two poses: what explains the gap is in the catalogue, but no other pose can speak for it."""
+    readings = hidden(TILT, schedule="ascending", poses=2, seed=4)
+    write_measurements(readings, tmp_path / "two.csv")
+    done = run("explain", str(tmp_path / "two.csv"), "--no-report", "--out", str(tmp_path / "o"))
+    assert done.code == 0
+    assert "no effect of the catalogue explains" not in done.stdout

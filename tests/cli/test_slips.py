@@ -71,3 +71,27 @@ def test_a_pose_beyond_the_limits_is_computed_and_told(run, angle: str, beyond: 
     assert outcome.code == 0
     told = "Warning: joint_2_l stands at 70.1 deg, beyond its limits -70 .. 70." in outcome.stderr
     assert told == beyond
+
+
+@pytest.mark.parametrize("arguments", [
+    ("simulate", "MODEL", "plan.csv", "--out", "truth.csv"),  # its YAML would be the model
+    ("simulate", "MODEL", "plan.csv", "--out", "plan.csv"),
+    ("plan", "--model", "MODEL", "--count", "3", "--out", "truth.csv"),
+    ("identify", "plan.csv", "--out", "plan.yaml"),
+])  # fmt: skip
+def test_no_output_replaces_an_input(run, tmp_path: Path, arguments: tuple[str, ...]) -> None:
+    (tmp_path / "truth.yaml").write_text(Path(MODEL).read_text(encoding="utf-8"), encoding="utf-8")
+    for suffix in (".csv", ".yaml"):
+        text = DATA.with_suffix(suffix).read_text(encoding="utf-8")
+        (tmp_path / "plan").with_suffix(suffix).write_text(text, encoding="utf-8")
+    before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
+    words = [
+        str(tmp_path / word.replace("MODEL", "truth.yaml"))
+        if "." in word or word == "MODEL"
+        else word
+        for word in arguments
+    ]
+    outcome = run(*words)
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert "would overwrite" in outcome.stderr
+    assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before

@@ -34,7 +34,8 @@ def gap_section(
     blocks: list[Block] = [
         "The gap is measured minus predicted displacement, root mean square over readings and "
         f"axes. The held-out gap is taken {heldout}: readings that had no part in the fit. "
-        f"Noise alone makes {um(floor)} µm; no honest model gets below that on held-out readings.",
+        f"Noise alone makes about {um(floor)} µm; a model that is right comes near that, by chance "
+        "a little below or above.",
         steps_table(answer),
     ]
     if len(answer.steps) > 1:

@@ -28,7 +28,7 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
         )
     else:
         blocks.append("The noise is estimated from the gap itself, so no test of it is possible.")
-    blocks += answer.unnamed
+    blocks += [*answer.unnamed, *answer.limits]
     blocks += [answer.noise.describe(), *answer.noise_reasons]
     if not answer.final.sigma_stated:
         blocks.append(

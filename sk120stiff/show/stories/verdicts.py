@@ -15,7 +15,7 @@ def title_of(answer: Explanation) -> str:
         "none": "Model and measurement agree",
         "named": "Why model and measurement disagree",
         "ambiguous": "Why model and measurement disagree: more than one name fits",
-        "outside": "Model and measurement disagree, and no known cause explains it",
+        "outside": "Model and measurement disagree, and no cause is confirmed",
     }[answer.verdict]
 
 
@@ -63,8 +63,13 @@ def _ambiguous(answer: Explanation) -> str:
 
 def _outside(answer: Explanation) -> str:
     step = answer.steps[0]
+    why = "no effect of the catalogue explains it"
+    if answer.unnamed:
+        why = "no name for it is confirmed by other poses"
+    elif answer.limits:
+        why = "no effect that was looked for explains it"
     return (
-        f"Something is missing, and no effect of the catalogue explains it. The model misses the "
+        f"Something is missing, and {why}. The model misses the "
         f"readings by {um(step.fit_rms)} µm rms per axis; the noise alone makes "
         f"{um(noise_of(answer))} µm. Where it lives is told below."
     )
