@@ -24,6 +24,7 @@ from sk120stiff.model import write_model
 from sk120stiff.show.wording import with_error
 
 FEW_POSES = 8  # below this other poses confirm little
+STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
@@ -234,6 +235,10 @@ def findings(answer: Explanation) -> list[str]:
         for p in own:
             value = with_error(p.public_value, p.public_std, p.spec.unit)
             lines.append(f"  {p.spec.name} {value}")
+        evidence = finding.evidence
+        if evidence.runner_up is not None:
+            worse = f"worse by {evidence.runner_up_gap:.0f} (BIC; {STRONG} is strong)"
+            lines.append(f"  next best: {evidence.runner_up}, {worse}")
     return lines
 
 

@@ -38,6 +38,7 @@ def detectable(
     """Smallest size of every parameter that would have shown, and effects that never would."""
     sums = regression.sums()
     chosen = {finding.effect.id for finding in answer.findings}
+    named = chosen.union(*(finding.alternatives for finding in answer.findings))
     inside = [k for k, e in enumerate(regression.candidates) if e.id in chosen]
     columns = score_set(regression, sums, inside).solved.columns
     basis, _ = np.linalg.qr(_unit(regression.X[:, columns]))
@@ -54,7 +55,7 @@ def detectable(
             seen = seen or bool(visible)
             value = spec.public(need * spec.typical) if visible else None
             found.append(Detectable(f"{candidate.id}.{spec.name}", value, spec.unit))
-        if not seen and candidate.id not in chosen:
+        if not seen and candidate.id not in named:
             invisible.append(candidate.id)
     return tuple(found), tuple(invisible)
 
