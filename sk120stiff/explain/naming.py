@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.effects import Effect
 from sk120stiff.effects.base import Elastic
 from sk120stiff.effects.gear import GearEffect
+from sk120stiff.errors import Refusal
 from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
 from sk120stiff.explain.explanation import Evidence, Finding
@@ -58,7 +59,7 @@ def judged(found: Attempt, *, seed: int) -> tuple[Attempt, Named]:
     named = findings_of(found, seed=seed)
     said = named
     while named.doubted or named.shadows:
-        found = with_effects(found, [finding.effect for finding in named.findings])
+        found = _without_the_weakest(found, [finding.effect for finding in named.findings])
         named = findings_of(found, seed=seed)
         said = Named(
             named.findings,
@@ -67,6 +68,15 @@ def judged(found: Attempt, *, seed: int) -> tuple[Attempt, Named]:
             (*said.reasons, *named.reasons),
         )
     return found, said
+
+
+def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
+    """The attempt with these effects, or with as many of the strongest as a fit holds."""
+    while True:
+        try:
+            return with_effects(found, effects)
+        except Refusal:
+            effects = effects[:-1]
 
 
 def findings_of(found: Attempt, *, seed: int) -> Named:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
 from sk120stiff.explain.confirm import pose_folds
 from sk120stiff.explain.explanation import Step
 from sk120stiff.explain.settling import refit
@@ -18,6 +19,9 @@ def gap_steps(
     base: Fit, effects: Sequence[Effect], holdout: Measurements | None, *, seed: int
 ) -> tuple[Step, ...]:
     """The base model, then one effect more at each step.
+
+    Halfway, where an effect is still missing, a fit may have no answer; that step is told together
+    with the next.
 
     Parameters
     ----------
@@ -31,9 +35,18 @@ def gap_steps(
         Of the folds.
     """
     steps = []
+    joined: list[str] = []
     for count in range(len(effects) + 1):
-        found = refit(base, effects[:count])
-        label = f"+ {effects[count - 1].id}" if count else _base_name(base)
+        if count:
+            joined.append(f"+ {effects[count - 1].id}")
+        try:
+            found = refit(base, effects[:count])
+        except Refusal:
+            if count == len(effects):
+                raise
+            continue
+        label = " ".join(joined) if count else _base_name(base)
+        joined.clear()
         held = _on_poses_left_out(found, seed) if holdout is None else _on_file(found, holdout)
         steps.append(Step(label, found.rms, held))
     return tuple(steps)
@@ -56,10 +69,14 @@ def _on_poses_left_out(found: Fit, seed: int) -> float:
     measurements, noise = found.problem.measurements, found.problem.noise
     folds = pose_folds(len(measurements.poses), np.random.default_rng(seed))
     fold = folds[measurements.pose_index]
-    squares = 0.0
+    squares, axes = 0.0, 0
     for k in np.unique(fold):
         train = Problem(found.model, measurements.select(fold != k), noise)
-        part = solve_near(train, found.x)
+        try:
+            part = solve_near(train, found.x)
+        except Refusal:
+            continue  # the poses that are left do not hold the model; the other folds speak
         test = Problem(part.model, measurements.select(fold == k), noise)
         squares += float(((test.measured - part.model.predict(test.situation)) ** 2).sum())
-    return float(np.sqrt(squares / (3 * measurements.n_readings)))
+        axes += test.measured.size
+    return float(np.sqrt(squares / axes)) if axes else float("nan")

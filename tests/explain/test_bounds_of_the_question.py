@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff import InputError, Model, ToolkitWarning, base_model, load_robot
+from sk120stiff import InputError, Model, Refusal, ToolkitWarning, base_model, load_robot
 from sk120stiff.effects import effect
-from sk120stiff.explain import explain
+from sk120stiff.explain import explain, steps
 from sk120stiff.explain.aliases import exact_aliases
+from sk120stiff.explain.settling import refit
 from sk120stiff.explain.steering import with_assumed
 from sk120stiff.explain.steps import gap_steps
 from sk120stiff.identify import fit
@@ -85,3 +86,21 @@ def test_the_first_step_is_called_by_all_effects_of_the_base_model(springs):
     more = springs + effect(springs.robot, "base_rocking", "base_link")
     found = fit(more, readings, noise=NOISE)
     assert gap_steps(found, (), None, seed=0)[0].label == "joint_springs + base_rocking"
+
+
+def test_a_step_that_has_no_answer_is_told_together_with_the_next(springs, monkeypatch):
+    """Halfway, where an effect is still missing, a fit may not converge."""
+    readings = hidden(poses=6)
+    more = [effect(springs.robot, name, where) for name, where in
+            (("base_rocking", "base_link"), ("joint_tilt", "joint_2_l"))]  # fmt: skip
+
+    def stubborn(base, effects):
+        if len(effects) == 1:
+            raise Refusal("the least-squares fit did not converge")
+        return refit(base, effects)
+
+    monkeypatch.setattr(steps, "refit", stubborn)
+    told = gap_steps(base_fit(readings), more, None, seed=0)
+    assert [step.label for step in told] == [
+        "joint_springs", "+ base_rocking:base_link + joint_tilt:joint_2_l",
+    ]  # fmt: skip
