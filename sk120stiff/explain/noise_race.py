@@ -21,7 +21,6 @@ from sk120stiff.measurements import Measurements, NoiseModel, candidates
 
 SURE = 2.5  # standard errors of the scatter that let another σ into the race
 SETTLED = 0.2  # change of the growth, in natural logarithms, that needs no further attempt
-
 COMPUTED = 1e-8  # m; a smaller scatter is that of computed readings, which know no noise to race
 
 Try = Callable[[NoiseModel], Attempt]

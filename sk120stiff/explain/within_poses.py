@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from sk120stiff.effects import Situation
@@ -118,39 +117,23 @@ def within_poses(
     elif known and steps[0][1]:
         misfit = bare.tail(*steps[0])
     drawn = any(effect.exchangeable for effect in fit.model.effects)
-    own = tuple(
-        _own(bare, name, columns, white, inside, group, left[0], rank[0])
-        for name, columns in _of_own(situation, whiten, drawn=drawn)
-        if known
-    )
-    return WithinPoses(scale, known, misfit, orders, own)
-
-
-Own = Literal["constant", "drift", "proportional"]
+    own: list[OwnAtPoses] = []
+    if known:
+        taken, more = steps[0]
+        own.append(OwnAtPoses("proportional", taken / scale, more, bare.tail(taken, more)))
+        for name, basis in _of_own(situation, drawn=drawn):
+            square, used = left_over(white, inside, whiten(pose_columns(basis)), group)
+            taken, more = left[0] - square, used - rank[0]
+            own.append(OwnAtPoses(name, taken / scale, more, bare.tail(taken, more)))
+    return WithinPoses(scale, known, misfit, orders, tuple(own))
 
 
 def _of_own(
-    situation: Situation, whiten: Callable[[Array], Array], *, drawn: bool
-) -> Iterator[tuple[Own, Array]]:
-    """What a pose may have of its own, as whitened columns; `drawn` constants are noise already."""
-    yield "proportional", whiten(pose_columns(load_basis(situation)))
+    situation: Situation, *, drawn: bool
+) -> Iterator[tuple[Literal["constant", "drift"], Array]]:
+    """(N, 1) what a pose may have of its own; `drawn` constants are noise already."""
     if not drawn:
-        yield "constant", whiten(pose_columns(np.ones((situation.count, 1))))
+        yield "constant", np.ones((situation.count, 1))
     clock = situation.order if situation.order is not None else situation.time
     if clock is not None and np.ptp(clock) > 0.0:
-        yield "drift", whiten(pose_columns(clock[:, None] / np.abs(clock).max()))
-
-
-def _own(
-    bare: WithinPoses,
-    name: Own,
-    columns: Array,
-    white: Array,
-    inside: Array,
-    group: NDArray[np.intp],
-    left: float,
-    rank: int,
-) -> OwnAtPoses:
-    square, used = left_over(white, inside, columns, group)
-    taken, freedom = left - square, used - rank
-    return OwnAtPoses(name, taken / bare.scale, freedom, bare.tail(taken, freedom))
+        yield "drift", clock[:, None] / np.abs(clock).max()

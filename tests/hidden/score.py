@@ -1,4 +1,4 @@
-"""Scores frozen answers: `python -m tests.hidden.score FOLDER [--failures]`.
+"""Scores frozen answers: `python -m tests.hidden.score FOLDER ... [--failures]`.
 
 Opens the truth, prints one line per level beside the goals of EVIDENCE.md, writes score.json.
 """
@@ -147,13 +147,19 @@ def table(rows: list[dict[str, Any]]) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("folder", type=Path, nargs="+", help="several are counted as one table")
     parser.add_argument("--failures", action="store_true", help="list every case that lost points")
     given = parser.parse_args(arguments)
-    folder = given.folder
-    frozen = check_frozen(folder)
-    names = sorted(path.stem for path in (folder / "truth").glob("*.json"))
-    judged = {name: judge_case(folder, name) for name in names}
+    folders: list[Path] = given.folder
+    frozen, *others = [check_frozen(folder) for folder in folders]
+    for other in others:
+        if (other["program"], other["batched"]) != (frozen["program"], frozen["batched"]):
+            raise NotFrozen("the folders were answered by different programs, or not in one way")
+    judged = {}
+    for folder in folders:
+        lead = f"{folder.name}/" if others else ""
+        for path in sorted((folder / "truth").glob("*.json")):
+            judged[lead + path.stem] = judge_case(folder, path.stem)
     rows = []
     for level in GOALS:
         cases = [entry for entry in judged.values() if level_of(entry[0]) == level]
@@ -175,7 +181,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             for name, (truth, answer, result) in judged.items()
         },
     }  # fmt: skip
-    (folder / "score.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
+    (folders[0] / "score.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
     if given.failures:
         for name, (truth, _, result) in judged.items():
             if result.right < 1.0:
