@@ -172,6 +172,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for row in rows:
         if row["settled"][1]:
             print(f"{row['level']}: next poses settle {row['settled'][0]} of {row['settled'][1]}")
+    results = [result for _, _, result in judged.values()]
+    for what, hits in (
+        ("effect parameters", [hit for result in results for hit in result.effects_covered]),
+        ("springs", [hit for result in results for hit in result.springs_covered]),
+    ):
+        if hits:
+            held = 100.0 * sum(hits) / len(hits)
+            print(f"over all levels 95 % intervals hold {held:.1f} % of {len(hits)} {what}")
     document = {
         "frozen": {key: frozen[key] for key in ("program", "when", "batched")},
         "levels": rows,

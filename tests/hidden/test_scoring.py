@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sys
 from collections import Counter
 from pathlib import Path
@@ -198,6 +199,13 @@ def test_runner_resumes_and_freezes(  # type: ignore[no-untyped-def]
     assert len(log.read_text().splitlines()) == 2
     score.main([str(folder), "--failures"])
     assert "| L0 | clean | 2 | 100" in capsys.readouterr().out
+    twin = shutil.copytree(folder, tmp_path / "twin")
+    score.main([str(folder), str(twin)])
+    assert "| L0 | clean | 4 | 100" in capsys.readouterr().out
+    frozen = json.loads((twin / "frozen.json").read_text())
+    (twin / "frozen.json").write_text(json.dumps({**frozen, "program": "another"}))
+    with pytest.raises(score.NotFrozen, match="different programs"):
+        score.main([str(folder), str(twin)])
     (folder / "answers/case_0000/verdict.json").write_text('{"verdict": "named"}')
     with pytest.raises(score.NotFrozen):
         score.main([str(folder)])
