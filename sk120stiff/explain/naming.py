@@ -121,7 +121,11 @@ def _constant(found: Attempt, effect: Effect) -> bool:
     Draws, one for every pose, can imitate part of any cause that the catalogue lacks.
     """
     rest = [other for other in found.effects if other != effect]
-    own = {each.name: each for each in localise(refit(found.base, rest)).own}
+    try:
+        without = refit(found.base, rest)
+    except Refusal:
+        return True  # the other effects need it beside them, so there is nothing to compare
+    own = {each.name: each for each in localise(without).own}
     if not {"constant", "proportional"} <= own.keys():
         return True
 
