@@ -20,7 +20,7 @@ from sk120stiff.cli.options import (
     ToolOption,
 )
 from sk120stiff.cli.tables import progress_bar, table
-from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import Model
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
@@ -32,6 +32,7 @@ from sk120stiff.workspace import (
     MapJob,
     MapReport,
     PositionGrid,
+    damaged_map,
     elastic_arm,
     open_map,
     parse_axes,
@@ -120,7 +121,8 @@ def command(
         ),
     ] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace another map of that name.")
+        bool,
+        typer.Option("--overwrite", help="Replace another map of that name, and nothing else."),
     ] = False,
     base: BaseOption = None,
     tool: ToolOption = None,
@@ -128,8 +130,8 @@ def command(
     """Stiffness over the workspace: extremes, directions, stability.
 
     The map is a Zarr store with units and labels. A run that was stopped in whatever way goes on
-    where it was when the same command is given again. A finished map is checked against the
-    checksums of when it was written.
+    where it was when the same command is given again. A finished map is checked, every file,
+    against the checksums of when it was written; what is damaged is made again.
 
     Example: sk120stiff map motoman_sk120 --grid 'joint_2_l=::2; joint_3_u=::2 deg'
     --wrench '0,0,-490 N' --out sk120.zarr --figures sk120_slices
@@ -151,13 +153,7 @@ def command(
         written = write_map(job, out, scheduler=scheduler, overwrite=overwrite, progress=report)
     check = verify_map(out)
     if not check.intact:
-        damaged = [*check.missing, *check.damaged]
-        raise Refusal(
-            f"{len(damaged)} of {check.files} files of this map are not as they were written, the "
-            f"first is {damaged[0]}",
-            where=str(out),
-            remedy="Make it anew with --overwrite.",
-        )
+        raise damaged_map(out, check)
     loads_found, status = summarise_map(out)
     if page is not None:
         _write_page(page, out, believed, pose)
@@ -170,6 +166,7 @@ def command(
         "seconds": written.seconds,
         "chunks": written.chunks,
         "files_verified": check.files,
+        "mended": written.mended,
         "status": status,
         "page": page,
         "figures": drawn,
@@ -277,6 +274,11 @@ def _parts(
         f"{written.path}: {written.points:,} points, {written.computed:,} of them computed now in "
         f"{written.seconds:.1f} s{rate}; {files} files verified."
     ]
+    if written.mended:
+        parts.append(
+            f"{len(written.mended)} files were not as an earlier run had written them and were "
+            f"made again, the first is {written.mended[0]}."
+        )
     if any(count for label, count in status.items() if label != "reached"):
         counts = [f"{count:,} {label}" for label, count in status.items() if count]
         parts.append("Points: " + "; ".join(counts) + ".")

@@ -4,7 +4,14 @@ from sk120stiff.workspace.arm import ElasticArm, elastic_arm
 from sk120stiff.workspace.compensate import Compensation, Standing, compensate, standing
 from sk120stiff.workspace.export import FORMATS, mjcf_text, sdf_text
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
-from sk120stiff.workspace.finished import LoadSummary, MapCheck, open_map, summarise_map, verify_map
+from sk120stiff.workspace.finished import (
+    LoadSummary,
+    MapCheck,
+    damaged_map,
+    open_map,
+    summarise_map,
+    verify_map,
+)
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
@@ -43,6 +50,7 @@ __all__ = [
     "Task",
     "best_posture",
     "compensate",
+    "damaged_map",
     "elastic_arm",
     "joints_along",
     "mjcf_text",

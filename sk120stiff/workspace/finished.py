@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 import os
 from dataclasses import dataclass
@@ -12,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, Refusal
 from sk120stiff.workspace.field import STATUS, UNKNOWN_CLASS
-from sk120stiff.workspace.store import MANIFEST, sha256_of, zarr_or_explain
+from sk120stiff.workspace.manifest import MANIFEST, as_written, read_manifest
+from sk120stiff.workspace.skeleton import zarr_or_explain
 
 if TYPE_CHECKING:
     import xarray
@@ -27,7 +27,7 @@ class MapCheck:
     Attributes
     ----------
     files
-        Number of files that the manifest names.
+        Number of files that were looked at: those of the manifest, and it itself.
     missing, damaged
         Those that are not there, and those whose content is another.
     """
@@ -42,8 +42,15 @@ class MapCheck:
         return not self.missing and not self.damaged
 
 
-def verify_map(path: str | os.PathLike[str]) -> MapCheck:
+def verify_map(path: str | os.PathLike[str], *, results: bool = True) -> MapCheck:
     """Compare every file of a finished map with the SHA-256 of when it was written.
+
+    Parameters
+    ----------
+    path
+        The map.
+    results
+        Read the results too, which are nearly all of it; else only what describes them.
 
     Raises
     ------
@@ -51,21 +58,35 @@ def verify_map(path: str | os.PathLike[str]) -> MapCheck:
         There is no finished map.
     """
     folder = Path(path)
-    try:
-        digests: dict[str, str] = json.loads((folder / MANIFEST).read_text())["sha256"]
-    except (OSError, ValueError, KeyError) as error:
+    if not (folder / MANIFEST).is_file():
         raise InputError(
             "there is no finished map here",
             where=str(folder),
             remedy="Run the command that makes it again: it takes up where it stopped.",
-        ) from error
+        )
+    manifest = read_manifest(folder)
+    if manifest is None:
+        return MapCheck(1, (), (MANIFEST,))
+    digests = manifest.describing | (manifest.results if results else {})
     missing = tuple(file for file in digests if not (folder / file).is_file())
     damaged = tuple(
         file
         for file, digest in digests.items()
-        if file not in missing and sha256_of(folder / file) != digest
+        if file not in missing and not as_written(folder, file, digest)
     )
-    return MapCheck(len(digests), missing, damaged)
+    return MapCheck(len(digests) + 1, missing, damaged)
+
+
+def damaged_map(path: Path, check: MapCheck) -> Refusal:
+    """What is said about a map that is not as it was written."""
+    damaged = [*check.missing, *check.damaged]
+    return Refusal(
+        f"{len(damaged)} of {check.files} files of this map are not as they were written, the "
+        f"first is {damaged[0]}",
+        where=str(path),
+        remedy="Give the command that made the map again: it makes what is damaged anew, and "
+        "nothing else.",
+    )
 
 
 def open_map(path: str | os.PathLike[str]) -> xarray.Dataset:
@@ -75,13 +96,17 @@ def open_map(path: str | os.PathLike[str]) -> xarray.Dataset:
     ------
     InputError
         There is no finished map.
+    Refusal
+        Its loads, coordinates or descriptions are not as they were written. The results are not
+        looked at here, see `verify_map`.
     """
     import xarray
 
     zarr_or_explain()
     folder = Path(path)
-    if not (folder / MANIFEST).is_file():
-        verify_map(folder)  # says so
+    check = verify_map(folder, results=False)
+    if not check.intact:
+        raise damaged_map(folder, check)
     dataset: xarray.Dataset = xarray.open_zarr(folder, consolidated=True)
     return dataset
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from sk120stiff.errors import InputError, MissingPart, Refusal, ToolkitError
 from sk120stiff.workspace.field import MapJob
+from sk120stiff.workspace.lock import only_writer
 from sk120stiff.workspace.store import MapStore
 
 Progress = Callable[[int, int], None]
@@ -38,6 +39,8 @@ class MapReport:
         How long this run took.
     chunks
         Number of chunks of the map.
+    mended
+        Files that were not as an earlier run had written them, and were made again.
     """
 
     path: Path
@@ -45,6 +48,7 @@ class MapReport:
     computed: int
     seconds: float
     chunks: int
+    mended: tuple[str, ...] = ()
 
 
 def write_map(
@@ -60,7 +64,8 @@ def write_map(
     """Write a map, or what is missing of it.
 
     Only a few chunks are in memory at a time. A run that was killed is taken up by calling this
-    again with the same job and path.
+    again with the same job and path; so is a finished map, of which whatever is not as it was
+    written is made again.
 
     Parameters
     ----------
@@ -84,36 +89,39 @@ def write_map(
     Raises
     ------
     InputError
-        The place is taken, the disk has not enough room, or there is no such scheduler.
+        The place is taken, another run writes there, the disk has not enough room, or there is no
+        such scheduler.
     Refusal
         The disk is full, or the cluster is gone; what is done is kept.
     """
     begin = time.perf_counter()
-    client = None if scheduler is None else _connect(scheduler)
-    try:
-        store = MapStore(Path(path).absolute(), job, chunk_points or _chunk_points(job))
-        done = store.prepare(overwrite=overwrite)
-        size, number = job.points.grid.size, store.chunks.number
-        missing = [chunk for chunk in range(number) if chunk not in done]
-        counted = size - sum(_points(store, chunk) for chunk in missing)
-        computed = 0
-        if progress:
-            progress(counted, size)
-        written = (
-            (store.write_chunk(chunk, threads=threads) for chunk in missing)
-            if client is None
-            else _on_cluster(client, store, missing, threads)
-        )
-        for points in written:
-            computed += points
+    store = MapStore(Path(path).resolve(), job, chunk_points or _chunk_points(job))
+    size, number = job.points.grid.size, store.chunks.number
+    with only_writer(store.path):
+        client = None if scheduler is None else _connect(scheduler)
+        try:
+            found = store.prepare(overwrite=overwrite)
+            missing = [chunk for chunk in range(number) if chunk not in found.done]
+            counted = size - sum(_points(store, chunk) for chunk in missing)
+            computed = 0
             if progress:
-                progress(counted + computed, size)
-        if not store.complete:
-            store.finish()
-    finally:
-        if client is not None:
-            client.close()
-    return MapReport(store.path, size, computed, time.perf_counter() - begin, number)
+                progress(counted, size)
+            written = (
+                (store.write_chunk(chunk, threads=threads) for chunk in missing)
+                if client is None
+                else _on_cluster(client, store, missing, threads)
+            )
+            for points in written:
+                computed += points
+                if progress:
+                    progress(counted + computed, size)
+            if missing or found.damaged or not store.complete:
+                store.finish()
+        finally:
+            if client is not None:
+                client.close()
+    seconds = time.perf_counter() - begin
+    return MapReport(store.path, size, computed, seconds, number, found.damaged)
 
 
 def _chunk_points(job: MapJob) -> int:

@@ -2,17 +2,17 @@
 
 While a map is being written, a folder of small files beside the arrays says which chunks are done,
 with the SHA-256 of every file they consist of; such a file is written after the data, so a killed
-run loses only what it was working on. When all chunks are there, the digests go into
-``manifest.json`` and the group gets the attribute ``complete``.
+run loses only what it was working on. When all chunks are there, the digests of these and of all
+other files go into ``manifest.json``: a map that has one is finished. Whatever is not as it was
+written is made again when the same map is asked for, and nothing else is.
 """
 
 from __future__ import annotations
 
 import errno
-import hashlib
 import json
 import shutil
-import warnings
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,13 +21,44 @@ from typing import Any
 
 import numpy as np
 
-from sk120stiff.errors import InputError, MissingPart, Refusal
+from sk120stiff.errors import InputError, Refusal
 from sk120stiff.files import write_atomically
-from sk120stiff.workspace.field import UNKNOWN_CLASS, MapJob, Numbers, Variable
+from sk120stiff.workspace.field import MapJob, Variable
 from sk120stiff.workspace.grid import Chunks
+from sk120stiff.workspace.manifest import (
+    MANIFEST,
+    Digests,
+    Manifest,
+    as_written,
+    read_manifest,
+    sha256_of,
+    write_manifest,
+)
+from sk120stiff.workspace.skeleton import (
+    VERSION,
+    identity_of,
+    stored_identities,
+    write_skeleton,
+    zarr_or_explain,
+)
 
-PROGRESS, MANIFEST = ".progress", "manifest.json"
-VERSION = 1  # of the layout and of what the numbers mean
+PROGRESS = ".progress"
+
+
+@dataclass(frozen=True)
+class Found:
+    """What `MapStore.prepare` found in the place.
+
+    Attributes
+    ----------
+    done
+        Chunks that are there as they were written.
+    damaged
+        Files of an earlier run that are not; they are made again.
+    """
+
+    done: frozenset[int]
+    damaged: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,29 +84,46 @@ class MapStore:
         """How the grid is cut."""
         return Chunks(self.job.points.grid.shape, self.chunk_points)
 
-    def prepare(self, *, overwrite: bool = False) -> frozenset[int]:
-        """Make the folder or take up what an earlier run left; the chunks that are done.
+    def prepare(self, *, overwrite: bool = False) -> Found:
+        """Make the folder or take up what an earlier run left.
+
+        Damaged files that hold no results are made again here; damaged chunks are removed, so
+        that they count as missing.
 
         Raises
         ------
         InputError
             Something else is in that place, or the disk has not enough room.
         """
-        if overwrite and self.path.exists():
+        self._remove_leftovers()
+        if overwrite and self._is_there():
             self._remove()
-        if not self.path.exists():
+        if not self._is_there():
             self._check_room(self.job.points.grid.size)
             with full_disk_explained(self.path):
                 self._create()
-            return frozenset()
+            return Found(frozenset())
         self._check_identity()
-        if self.complete:
-            return frozenset(range(self.chunks.number))
-        self._remove_partial_files()
-        done = frozenset(self._records())
+        finished = (self.path / MANIFEST).is_file()
+        manifest = read_manifest(self.path)
+        if finished and manifest is None:
+            (self.path / MANIFEST).unlink()
+        files = (manifest.results if manifest else {}) | self._records()
+        done: set[int] = set()
+        damaged: list[str] = [MANIFEST] if finished and manifest is None else []
+        for chunk in range(self.chunks.number):
+            bad = [
+                f for f in self._chunk_files(chunk) if not as_written(self.path, f, files.get(f))
+            ]
+            damaged += [file for file in bad if file in files]
+            if not bad:
+                done.add(chunk)
+            for file in bad:
+                (self.path / file).unlink(missing_ok=True)
+        damaged += self._mended_skeleton(manifest)
         rest = self.chunks.number - len(done)
         self._check_room(rest * self.job.points.grid.size // self.chunks.number)
-        return done
+        return Found(frozenset(done), tuple(damaged))
 
     def write_chunk(self, chunk: int, *, threads: int | None = None) -> int:
         """Compute a chunk, write it, and record that it is done; the number of its points."""
@@ -83,7 +131,7 @@ class MapStore:
         values = self.job.compute(begin, end, threads=threads)
         region = self.chunks.region(chunk)
         shape = tuple(part.stop - part.start for part in region)
-        digests: dict[str, str] = {}
+        digests: Digests = {}
         with full_disk_explained(self.path):
             group = self._open()
             for variable in self.job.variables:
@@ -93,16 +141,18 @@ class MapStore:
                 block = values[variable.name].reshape(*leading, *shape, *trailing)
                 where = (*(slice(None) for _ in leading), *region, *(slice(None) for _ in trailing))
                 array[where] = block
-                for file in self._files(variable, chunk):
-                    digests[file] = sha256_of(self.path / file)
+                file = self._file(variable, chunk)
+                digests[file] = sha256_of(self.path / file)
             record = {"points": end - begin, "files": digests}
             write_atomically(self.path / PROGRESS / f"{chunk}.json", json.dumps(record))
         return end - begin
 
     def finish(self) -> None:
-        """Turn the records of all chunks into the manifest, and mark the group complete."""
-        records = self._records()
-        missing = sorted(set(range(self.chunks.number)) - set(records))
+        """Turn the records of all chunks into the manifest: from then on the map is finished."""
+        manifest = read_manifest(self.path)
+        files = (manifest.results if manifest else {}) | self._records()
+        wanted = {f: c for c in range(self.chunks.number) for f in self._chunk_files(c)}
+        missing = sorted({c for f, c in wanted.items() if f not in files})
         if missing:
             raise Refusal(
                 f"{len(missing)} of {self.chunks.number} chunks are not there, the first is "
@@ -111,139 +161,98 @@ class MapStore:
                 remedy="If a cluster wrote them: its workers must see the same folder as you. "
                 "Run the same command again.",
             )
-        files = {file: digest for record in records.values() for file, digest in record.items()}
         with full_disk_explained(self.path):
-            text = json.dumps({"version": VERSION, "sha256": files}, indent=0, sort_keys=True)
-            write_atomically(self.path / MANIFEST, text)
-            self._open().attrs["complete"] = True
-            self._consolidate()
+            with self._new_skeleton() as (_, names):
+                describing = {file: sha256_of(self.path / file) for file in names}
+            results = {file: files[file] for file in wanted}
+            write_manifest(self.path, VERSION, Manifest(describing, results))
         shutil.rmtree(self.path / PROGRESS, ignore_errors=True)
 
     @property
     def complete(self) -> bool:
         """Was the map finished?"""
-        return bool(self._open().attrs.get("complete")) and (self.path / MANIFEST).is_file()
+        return read_manifest(self.path) is not None and not (self.path / PROGRESS).exists()
 
-    def _files(self, variable: Variable, chunk: int) -> list[str]:
-        """Files of one variable that hold a chunk, relative to the store."""
+    def _chunk_files(self, chunk: int) -> list[str]:
+        return [self._file(variable, chunk) for variable in self.job.variables]
+
+    def _file(self, variable: Variable, chunk: int) -> str:
+        """The file of one variable that holds a chunk, relative to the store."""
         where = np.unravel_index(chunk, self.chunks.counts)
         index = [str(int(i)) for i in where]
         leading = ["0"] if variable.per_load else []
         trailing = ["0"] if variable.extra else []
-        return ["/".join([variable.name, "c", *leading, *index, *trailing])]
+        return "/".join([variable.name, "c", *leading, *index, *trailing])
 
-    def _records(self) -> dict[int, dict[str, str]]:
-        """The files of every chunk that an earlier run finished; half-written records are void."""
-        found: dict[int, dict[str, str]] = {}
+    def _records(self) -> Digests:
+        """Digests of the chunks that a run finished; half-written records are void."""
+        found: Digests = {}
         for path in (self.path / PROGRESS).glob("*.json"):
             try:
-                files = json.loads(path.read_text())["files"]
-                number = int(path.stem)
-            except (ValueError, KeyError):
+                files = json.loads(path.read_text(encoding="utf-8"))["files"]
+                known = set(files) == set(self._chunk_files(int(path.stem)))
+                if known and all((self.path / file).is_file() for file in files):
+                    found |= files
+            except (ValueError, KeyError, TypeError):
                 continue
-            if all((self.path / file).is_file() for file in files):
-                found[number] = files
         return found
 
     def _create(self) -> None:
-        zarr = zarr_or_explain()
-        from zarr.codecs import BloscCodec
+        with self._new_skeleton() as (folder, _):
+            (folder / PROGRESS).mkdir()
+            folder.chmod((folder / PROGRESS).stat().st_mode)  # mkdtemp made it for us alone
+            folder.rename(self.path)
 
-        job = self.job
-        temporary = self.path.with_name(f".{self.path.name}.new")
-        shutil.rmtree(temporary, ignore_errors=True)
-        temporary.mkdir(parents=True)
-        group = zarr.create_group(temporary, attributes=self._attributes())
-        grid = job.points.grid
-        names = tuple(axis.name for axis in grid.axes)
-        for variable in job.variables:
-            leading = (len(job.loads),) if variable.per_load else ()
-            trailing = (len(variable.extra[1]),) if variable.extra else ()
-            group.create_array(
-                variable.name,
-                shape=(*leading, *grid.shape, *trailing),
-                chunks=(*leading, *self.chunks.chunk_shape, *trailing),
-                dtype=variable.kind,
-                compressors=BloscCodec(cname="lz4", clevel=3, shuffle="shuffle"),
-                fill_value=UNKNOWN_CLASS if variable.kind == "u1" else np.nan,
-                dimension_names=(
-                    *(["load"] if variable.per_load else []),
-                    *names,
-                    *([variable.extra[0]] if variable.extra else []),
-                ),
-                attributes=_attributes_of(variable),
-                config={"write_empty_chunks": True},
-            )
-        self._create_coordinates(group)
-        (temporary / PROGRESS).mkdir()
-        temporary.rename(self.path)
+    def _mended_skeleton(self, manifest: Manifest | None) -> list[str]:
+        """Put back what holds no results and is not as it was written; names of these files."""
+        with self._new_skeleton() as (folder, names):
+            fresh = {file: sha256_of(folder / file) for file in names}
+            told = manifest.describing if manifest else fresh
+            bad = [file for file in names if not as_written(self.path, file, told.get(file))]
+            for file in bad:
+                target = self.path / file
+                if target.is_dir():
+                    shutil.rmtree(target)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                (folder / file).replace(target)
+        return bad
 
-    def _create_coordinates(self, group: Any) -> None:
-        job = self.job
-        slides = dict(zip(job.arm.joints, job.arm.slides, strict=True))
-        for axis in job.points.grid.axes:
-            unit = "m" if slides.get(axis.name, True) else "rad"
-            _coordinate(group, axis.name, (axis.name,), axis.values, {"units": unit})
-        _coordinate(group, "load", ("load",), np.arange(len(job.loads)), {"units": "1"})
-        about = {"units": "N, N*m", "long_name": "force and moment on the arm, base axes"}
-        _coordinate(group, "wrench", ("load", "component"), job.loads, about)
-        components = np.array(["fx", "fy", "fz", "mx", "my", "mz"])
-        _coordinate(group, "component", ("component",), components, {})
-        for name, labels in {v.extra for v in job.variables if v.extra}:
-            _coordinate(group, name, (name,), np.array(labels), {})
+    @contextmanager
+    def _new_skeleton(self) -> Iterator[tuple[Path, tuple[str, ...]]]:
+        """A map without results in a folder of its own beside the map, and its files."""
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        folder = Path(tempfile.mkdtemp(dir=self.path.parent, prefix=self._leftover))
+        try:
+            yield folder, write_skeleton(folder, self.job, self.chunks)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
 
-    def _attributes(self) -> dict[str, Any]:
-        arm = self.job.arm
-        return {
-            "title": f"Stiffness of {arm.name} over its workspace",
-            "robot": arm.name,
-            "joints": list(arm.joints),
-            "frame": arm.frame,
-            "point": arm.point.tolist(),
-            "rest": self.job.points.rest.tolist(),
-            "convention": "stiffness of the unloaded pose under a small displacement, "
-            "J (K_theta - K_C)^-1 J^T inverted, base axes, SI units",
-            "coordinates": "wrench",
-            "layout": VERSION,
-            "identity": self._identity(),
-            "complete": False,
-        }
+    @property
+    def _leftover(self) -> str:
+        return f".{self.path.name}.new-"
 
-    def _identity(self) -> str:
-        """A digest of everything that decides the numbers."""
-        import pickle
+    def _remove_leftovers(self) -> None:
+        """What a killed run left half-made; nobody else writes while the lock is held."""
+        for folder in self.path.parent.glob("*"):
+            if folder.name.startswith(self._leftover):
+                shutil.rmtree(folder, ignore_errors=True)
+        if stored_identities(self.path):
+            for path in self.path.rglob("*.partial"):
+                path.unlink(missing_ok=True)
 
-        arm, points = self.job.arm, self.job.points
-        chain = arm.mechanism.chain
-        motion = arm.mechanism.coupling.motion(points.rest)
-        parts: list[object] = [
-            VERSION, arm.joints, arm.lower, arm.upper, arm.springs, arm.shift, arm.point,
-            chain.placements, chain.axes, chain.revolute, chain.coordinates,
-            motion.q, motion.first,
-            [(axis.name, axis.values) for axis in points.grid.axes], points.rest,
-            *(getattr(points, name, None) for name in ("axis", "rotation", "movable", "starts")),
-            self.job.loads, [variable.name for variable in self.job.variables],
-            self.chunks.chunk_shape,
-            arm.slow.values if arm.slow else None,
-            (arm.weight.gravity, arm.weight.compliance, chain.masses, chain.centres)
-            if arm.weight
-            else None,
-        ]  # fmt: skip
-        digest = hashlib.sha256()
-        for part in parts:
-            digest.update(pickle.dumps(part, protocol=4))
-        return digest.hexdigest()
+    def _is_there(self) -> bool:
+        """Is something in the place? An empty folder is nothing."""
+        return self.path.exists() and not (self.path.is_dir() and not any(self.path.iterdir()))
 
     def _check_identity(self) -> None:
-        try:
-            attributes = dict(self._open().attrs)
-        except (FileNotFoundError, FileExistsError, ValueError, KeyError) as error:
+        there = stored_identities(self.path)
+        if not there:
             raise InputError(
                 "there is something here that is no map",
                 where=str(self.path),
-                remedy="Choose another name, or --overwrite it.",
-            ) from error
-        if attributes.get("identity") != self._identity():
+                remedy="Choose another name.",
+            )
+        if identity_of(self.job, self.chunks) not in there:
             raise InputError(
                 "another map is here: another robot, model, grid or load",
                 where=str(self.path),
@@ -267,23 +276,14 @@ class MapStore:
     def _open(self) -> Any:
         return zarr_or_explain().open_group(self.path, mode="r+", use_consolidated=False)
 
-    def _consolidate(self) -> None:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # zarr: not everything here is an array, and it is new
-            zarr_or_explain().consolidate_metadata(self.path)
-
     def _remove(self) -> None:
-        if not (self.path / "zarr.json").is_file():
+        if not stored_identities(self.path):
             raise InputError(
-                "this is no map, and is not overwritten",
+                "this is no map of this program, and is not overwritten",
                 where=str(self.path),
                 remedy="Choose another name.",
             )
         shutil.rmtree(self.path)
-
-    def _remove_partial_files(self) -> None:
-        for path in self.path.rglob("*.partial"):
-            path.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -299,45 +299,3 @@ def full_disk_explained(path: Path) -> Iterator[None]:
             where=str(path),
             remedy="What is finished is kept: make room and run the same command again.",
         ) from error
-
-
-def _coordinate(
-    group: Any, name: str, dims: tuple[str, ...], values: Numbers, about: dict[str, str]
-) -> None:
-    if values.dtype.kind == "U":
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # zarr: fixed-length strings are not in the standard
-            array = group.create_array(
-                name, shape=values.shape, dtype=str, dimension_names=dims, attributes=about
-            )
-            array[:] = values.astype(object)
-        return
-    array = group.create_array(
-        name, shape=values.shape, dtype=values.dtype, dimension_names=dims, attributes=about
-    )
-    array[:] = values
-
-
-def _attributes_of(variable: Variable) -> dict[str, Any]:
-    about: dict[str, Any] = {"long_name": variable.meaning}
-    if variable.unit:
-        about["units"] = variable.unit
-    if variable.labels:
-        about["flag_values"] = list(range(len(variable.labels)))
-        about["flag_meanings"] = " ".join(label.replace(" ", "_") for label in variable.labels)
-    return about
-
-
-def sha256_of(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal."""
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
-def zarr_or_explain() -> Any:
-    """The library zarr, or a message that says how to install it."""
-    try:
-        import zarr
-    except ImportError as error:
-        raise MissingPart("zarr", None, needed_for="a map") from error
-    return zarr
