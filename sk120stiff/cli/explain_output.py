@@ -19,8 +19,9 @@ from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import DOUBTFUL, Explanation, verdict_document
 from sk120stiff.files import write_atomically
+from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, write_measurements
-from sk120stiff.model import write_model
+from sk120stiff.model import predict_with_uncertainty, write_model
 from sk120stiff.show.wording import with_error
 
 FEW_POSES = 8  # below this other poses confirm little
@@ -93,9 +94,9 @@ def write_answer(
     tell = progress or (lambda _done, _total: None)
     following = None if answer.next_poses is None else "next_poses.csv"
     pages = _pages(answer, task, following, tell) if report else {}
-    fitted = replace(answer.final.model, provenance=provenance(task.data, task.readings))
+    fitted = replace(known_model(answer.final), provenance=provenance(task.data, task.readings))
     gaps = io.StringIO()
-    predicted = fitted.predict(situation_of(fitted.robot, task.readings))
+    predicted = predict_with_uncertainty(fitted, situation_of(fitted.robot, task.readings))
     prediction_table(task.readings, predicted).to_csv(gaps, index=False)
     document = verdict_document(answer, task.readings, following)
     # An old verdict must not stand beside new files, nor old proposals and pages beside a new one.

@@ -26,6 +26,7 @@ from sk120stiff.identify import (
     fit,
     fit_report,
     held_out,
+    known_model,
     lack_of_fit,
     profile_intervals,
     weak_directions,
@@ -117,7 +118,7 @@ def command(
         with progress_bar("compare") as report:
             lines = compare(models, readings, noise=found.problem.noise, progress=report)
     if out is not None:
-        write_model(replace(found.model, provenance=provenance(data, readings)), out)
+        write_model(replace(known_model(found), provenance=provenance(data, readings)), out)
     document = {
         "robot": robot.name,
         "parameters": parameter_rows(found, intervals),

@@ -10,6 +10,7 @@ from sk120stiff.identify.profile import profile_intervals
 from sk120stiff.identify.report import fit_report
 from sk120stiff.identify.saturated import choose_noise
 from sk120stiff.identify.solving import solve, solve_near
+from sk120stiff.identify.uncertainty import known_model
 from sk120stiff.identify.weak import weak_directions
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "fit",
     "fit_report",
     "held_out",
+    "known_model",
     "lack_of_fit",
     "profile_intervals",
     "refuse_unusable",

@@ -11,19 +11,25 @@ from sk120stiff.model.file import (
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
 from sk120stiff.model.model import Model, Parameter, joint_spring_model
+from sk120stiff.model.predicted import Predicted, predict_with_uncertainty
+from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
 __all__ = [
     "Assembly",
     "LoadedStiffness",
     "Model",
     "Parameter",
+    "Predicted",
+    "Remainder",
     "Solution",
+    "Uncertainty",
     "base_model",
     "held_loads",
     "joint_spring_model",
     "loaded_stiffness",
     "model_from_text",
     "model_text",
+    "predict_with_uncertainty",
     "read_model",
     "write_model",
 ]

@@ -11,6 +11,7 @@
         parameters:
           stiffness: {value: 1409800.0, unit: N*m/rad, std: null, free: true, origin: "..."}
     provenance: {command: ..., data: sha256:..., date: ...}
+    uncertainty: {...}              # see uncertainty_file.py; written where a fit said so
 """
 
 from __future__ import annotations
@@ -29,6 +30,12 @@ from sk120stiff.effects.gear import breaks_of
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import read_text, write_atomically
 from sk120stiff.model.model import Model, Parameter
+from sk120stiff.model.uncertainty_file import (
+    ModelDumper,
+    UncertaintySection,
+    uncertainty_document,
+    uncertainty_of,
+)
 from sk120stiff.robot import Robot, find_robot, load_robot
 
 
@@ -56,6 +63,7 @@ class _File(_Strict):
     tool_frame: str | None = None
     effects: list[_Effect] = Field(default_factory=list)
     provenance: dict[str, str] = Field(default_factory=dict)
+    uncertainty: UncertaintySection | None = None
 
 
 def model_text(model: Model, *, folder: Path | None = None) -> str:
@@ -79,7 +87,11 @@ def model_text(model: Model, *, folder: Path | None = None) -> str:
         ],
         "provenance": dict(model.provenance),
     }
-    return str(yaml.safe_dump(document, sort_keys=False, allow_unicode=True, width=100))
+    known = uncertainty_document(model)
+    if known is not None:
+        document["uncertainty"] = known
+    text = yaml.dump(document, Dumper=ModelDumper, sort_keys=False, allow_unicode=True, width=100)
+    return str(text)
 
 
 def write_model(model: Model, path: str | os.PathLike[str]) -> Path:
@@ -140,7 +152,7 @@ def model_from_text(
                 remedy=f"Parameters are: {', '.join(s.name for s in found.parameters)}.",
             )
         model = model + parameters
-    return model
+    return uncertainty_of(content.uncertainty, model, where)
 
 
 def base_model(robot: Robot) -> Model | None:
@@ -195,8 +207,8 @@ def _parsed(text: str, where: str) -> _File:
         raise InputError(
             f"key {key!r}: {first['msg'].lower()}",
             where=where,
-            remedy="A model file has the keys robot, base_frame, tool_frame, effects, provenance; "
-            "each effect has name, where and parameters.",
+            remedy="A model file has the keys robot, base_frame, tool_frame, effects, provenance, "
+            "uncertainty; each effect has name, where and parameters.",
         ) from error
 
 

@@ -19,6 +19,7 @@ from sk120stiff.effects import (
 )
 from sk120stiff.errors import InputError
 from sk120stiff.model.assembly import Assembly, Solution
+from sk120stiff.model.uncertainty import Uncertainty
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 
@@ -80,11 +81,15 @@ class Model:
         All parameters, effect by effect.
     provenance
         Where the whole came from: data hash, command, date.
+    uncertainty
+        How well the parameters are known, where a fit said so; a change of a value, or of what is
+        in the model, ends it.
     """
 
     robot: Robot
     parameters: tuple[Parameter, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
+    uncertainty: Uncertainty | None = None
 
     @cached_property
     def effects(self) -> tuple[Effect, ...]:
@@ -145,7 +150,7 @@ class Model:
                     f"the effect {effect.id!r} is already in the model",
                     remedy="Change its values instead of adding it twice.",
                 )
-        return replace(self, parameters=self.parameters + added)
+        return replace(self, parameters=self.parameters + added, uncertainty=None)
 
     def without(self, effect_id: str) -> Model:
         """The model without one effect (``name:where``).
@@ -161,7 +166,7 @@ class Model:
                 f"the effect {effect_id!r} is not in the model",
                 remedy=f"Effects are: {', '.join(effect.id for effect in self.effects)}.",
             )
-        return replace(self, parameters=kept)
+        return replace(self, parameters=kept, uncertainty=None)
 
     def with_values(
         self, values: Array, std: Sequence[float | None] | None = None, origin: str | None = None
@@ -179,7 +184,7 @@ class Model:
             )
             for parameter, value, error in zip(self.parameters, values, errors, strict=True)
         )
-        return replace(self, parameters=changed)
+        return replace(self, parameters=changed, uncertainty=None)
 
     def with_public(self, **values: float) -> Model:
         """The model with public values by full name (use ``**{"a:b.c": 1.0}``)."""
@@ -189,6 +194,18 @@ class Model:
                 value
             )
         return self.with_values(new)
+
+    def known(self, uncertainty: Uncertainty) -> Model:
+        """The model with what is known of its parameters.
+
+        Raises
+        ------
+        InputError
+            It is about a parameter that the model does not have.
+        """
+        for name in uncertainty.names:
+            self.parameter(name)
+        return replace(self, uncertainty=uncertainty)
 
     def solve(self, situation: Situation, values: Array | None = None) -> Solution:
         """Equilibrium of all readings at once; see `predict` for many."""

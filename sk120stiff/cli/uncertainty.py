@@ -1,0 +1,82 @@
+"""How commands say what a model knows of its own uncertainty."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.model import Model
+from sk120stiff.robot.coupling import Array
+
+NOT_STORED = "no uncertainty is stored in this model"
+NO_REMAINDER = "what the model leaves unexplained could not be told from noise when it was fitted"
+
+
+def uncertainty_keys(model: Model) -> dict[str, object]:
+    """The key `uncertainty` of several commands, without what each adds of its own."""
+    known = model.uncertainty
+    if known is None:
+        return {"stored": False, "reason": NOT_STORED}
+    left = known.remainder
+    return {
+        "stored": True,
+        "source": known.source,
+        "noise_um": known.noise * 1e6,
+        "coverage_factor_95": known.reach(0.95),
+        "remainder": {"reason": NO_REMAINDER}
+        if left is None
+        else {
+            "rms_um": left.rms * 1e6,
+            "degrees_of_freedom": left.freedom,
+            "grows_with_deflection": left.grows,
+            "probability": left.probability,
+            "significant": left.significant,
+        },
+    }
+
+
+def blame_reason(names: tuple[str, ...]) -> str:
+    """Why a ± is unknown; empty if it is not."""
+    if not names:
+        return ""
+    return f"depends on {', '.join(names)}, of which the readings of the fit do not show enough"
+
+
+def plus_minus(value: float, std: float, digits: int = 5) -> str:
+    """``649.36 ± 3.2``, the error with two digits; ``± ?`` where it is unknown."""
+    if not np.isfinite(value):
+        return f"{value:.{digits}g}"
+    if not np.isfinite(std):
+        return f"{value:.{digits}g} ± ?"
+    return f"{value:.{digits}g} ± {std:.2g}"
+
+
+def sentences(model: Model, std_parameters: Array | None, std_remainder: Array | None) -> list[str]:
+    """± of deflections [m] in words: from the parameters, and from what the model lacks."""
+    known = model.uncertainty
+    if known is None or std_parameters is None:
+        return [
+            f"{NOT_STORED[0].upper()}{NOT_STORED[1:]}: 'sk120stiff identify' writes one with it."
+        ]
+    finite = np.isfinite(std_parameters)
+    said = []
+    if finite.any():
+        said.append(
+            f"Uncertainty of a deflection, standard deviation per axis: {_rms(std_parameters):.2g} "
+            f"µm from the parameters{_of_remainder(model, std_remainder)}. 95 %: ± "
+            f"{known.reach(0.95):.3g} times the whole; the noise of a reading comes on top."
+        )
+    return said
+
+
+def _of_remainder(model: Model, std: Array | None) -> str:
+    left = None if model.uncertainty is None else model.uncertainty.remainder
+    if left is None or std is None:
+        return f"; {NO_REMAINDER}"
+    if not left.significant:
+        return ", none from what the model lacks (the fit left no more than noise)"
+    return f", {_rms(std):.2g} µm from what the model leaves unexplained"
+
+
+def _rms(std: Array) -> float:
+    finite = std[np.isfinite(std)]
+    return float(np.sqrt(np.mean(finite**2)) * 1e6) if len(finite) else float("nan")

@@ -1,0 +1,160 @@
+"""From a `Fit` to what its model says of its own uncertainty.
+
+The remainder is judged at poses left out. Gap and derivative are whitened pose by pose, so the fit
+without the readings g of a pose follows from the fit of all to first order, which is exact for
+compliances at small loads: with A = JᵀJ and H = J_g A⁻¹ J_gᵀ, the estimates move by
+A⁻¹ J_gᵀ (I − H)⁻¹ r_g. What such gaps have beyond the noise and beyond the covariance of the
+parameters is what the model lacks at poses like these, what it did to the parameters included.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.identify.covariance import covariance_of
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
+from sk120stiff.identify.polish import seen_directions
+from sk120stiff.model import Model, Remainder, Uncertainty
+from sk120stiff.robot.coupling import Array
+
+COUNTS = 0.05  # probability of the misfit by noise alone below which the remainder counts
+ALONE = 1e-6  # information that the other poses have, below which a pose cannot be left out
+
+
+def known_model(fit: Fit) -> Model:
+    """The fitted model with its uncertainty, as it is written to a file.
+
+    It has none where as many values were estimated as were read and no σ was stated. Estimates on
+    a physical bound count as free: to be cut by a bound takes an estimate no farther from the
+    truth (a projection on a convex set), so nothing is said too surely.
+    """
+    if not np.isfinite(fit.unit):
+        return fit.model
+    problem = fit.problem
+    scale, span = problem.scale, problem.span
+    free = np.zeros(len(fit.x), dtype=bool)
+    _, singular, V, blind = seen_directions(fit.jacobian, span)
+    lost = np.isinf(np.diag(covariance_of(fit.jacobian, free, span)))
+    size = span * scale
+    per_noise = (V / singular) * size[:, None]
+    covariance = fit.unit**2 * per_noise @ per_noise.T
+    if fit.doubt is not None:
+        covariance = covariance + np.diag((fit.doubt * scale) ** 2)
+    unseen = np.where(lost[:, None], blind * size[:, None], 0.0).T
+    tests = lack_of_fit(fit)
+    known = Uncertainty(
+        names=tuple(parameter.name for parameter in fit.parameters),
+        values=np.array([parameter.value for parameter in fit.parameters]),
+        covariance=0.5 * (covariance + covariance.T),
+        unseen=unseen[np.abs(unseen).max(axis=1, initial=0.0) > 0.0],
+        noise=fit.sigma,
+        freedom=None if fit.sigma_stated else float(fit.degrees_of_freedom),
+        source=_source(fit),
+    )
+    if tests:
+        known = replace(known, remainder=_remainder(fit, known, tests))
+    return fit.model.known(known)
+
+
+def _source(fit: Fit) -> str:
+    measurements = fit.problem.measurements
+    size = f"{fit.sigma * 1e6:.3g} µm per axis"
+    noise = f"noise stated, {size}" if fit.sigma_stated else f"noise estimated, {size}"
+    poses = len(measurements.poses)
+    return f"{measurements.n_readings} readings at {poses} poses; {noise}"
+
+
+def _remainder(fit: Fit, known: Uncertainty, tests: tuple[LackOfFit, ...]) -> Remainder | None:
+    """What is left at poses left out, per axis of the base; None if none can be left out."""
+    problem = fit.problem
+    situation = problem.situation
+    values = problem.values(fit.x)
+    predicted, derivative = problem.model.predict_with_sensitivities(situation, values)
+    derivative = derivative[:, :, problem.free]
+    step, usable = _steps_without_each_pose(fit)
+    if not usable.any():
+        return None
+    moved = np.einsum("nip,np->ni", derivative, step[situation.pose] * problem.scale)
+    axes = situation.reading_axes
+    gap = np.einsum("nij,nj->ni", axes, problem.measured - predicted - moved)
+    L = known.factors(known.names)[0]
+    own = (np.einsum("nij,njp,pr->nir", axes, derivative, L) ** 2).sum(axis=-1)
+    noise = np.einsum("nij,nj->ni", axes**2, _noise(fit, tests))
+    here = usable[situation.pose]
+    surplus = (gap**2 - own - noise)[here]
+    displacement = np.einsum("nij,nj->ni", axes, predicted)[here]
+    deflection = float(np.sqrt((displacement**2).sum(axis=1).mean()))
+    if deflection == 0.0:
+        return None
+    rms = np.sqrt(np.maximum(surplus.mean(axis=0), 0.0))
+    share = (np.linalg.norm(displacement, axis=1) / deflection)[:, None]
+    variance = (own + noise)[here]
+    worst = min(tests, key=lambda test: test.probability)
+    return Remainder(
+        rms=rms,
+        freedom=_freedom(fit),
+        deflection=deflection,
+        grows=_misfit(gap[here], variance + (rms * share) ** 2)
+        <= _misfit(gap[here], variance + rms**2),
+        probability=worst.probability,
+        significant=worst.probability < COUNTS,
+    )
+
+
+def _steps_without_each_pose(fit: Fit) -> tuple[Array, np.ndarray]:
+    """(poses, P) by how much the scaled estimates move when a pose is left out, and can it be?"""
+    problem = fit.problem
+    moving = np.flatnonzero(~fit.at_bound)
+    span = problem.span[moving]
+    _, singular, V, _ = seen_directions(fit.jacobian[:, moving], span)
+    root = (V / singular) * span[:, None]  # A⁻¹ = root rootᵀ, over what is seen
+    count = len(problem.situation.poses)
+    group = np.repeat(problem.situation.pose, 3)
+    steps, usable = np.zeros((count, len(fit.x))), np.zeros(count, dtype=bool)
+    for pose in np.unique(problem.situation.pose):
+        rows = group == pose
+        own = fit.jacobian[rows][:, moving] @ root
+        left, vectors = np.linalg.eigh(np.eye(own.shape[1]) - own.T @ own)
+        usable[pose] = left.min(initial=1.0) > ALONE
+        if usable[pose]:
+            # (I − H)⁻¹ after J_gᵀ is (I − J_gᵀJ_g)⁻¹ before it, in the coordinates of `root`.
+            slope = vectors @ ((vectors.T @ (own.T @ fit.residual[rows])) / left)
+            steps[pose, moving] = root @ slope
+    return steps, usable
+
+
+def _noise(fit: Fit, tests: tuple[LackOfFit, ...]) -> Array:
+    """(N, 3) variance of the displacements by the noise alone [m²], axes of the readings.
+
+    A σ that was estimated from the whole gap holds what the model lacks; the scatter that the
+    misfit was held against does not.
+    """
+    problem = fit.problem
+    own, zero = problem.noise.variances(problem.measurements, problem.sizes)
+    return np.asarray((own + zero) * _noise_factor(fit, tests) ** 2)
+
+
+def _noise_factor(fit: Fit, tests: tuple[LackOfFit, ...]) -> float:
+    if fit.sigma_stated:
+        return 1.0
+    for test in tests:
+        taken, rest = test.freedom
+        if rest is not None and test.lacking:
+            return float(np.sqrt(fit.chi_square / (taken * test.statistic + rest)))
+    return fit.noise_factor
+
+
+def _freedom(fit: Fit) -> Array:
+    """(3,) readings of an axis less the parameters that it determined."""
+    moving = ~fit.at_bound
+    U = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[0]
+    taken = (U**2).sum(axis=1).reshape(-1, 3).sum(axis=0)
+    return np.asarray(np.maximum(len(U) / 3.0 - taken, 0.0))
+
+
+def _misfit(gap: Array, variance: Array) -> float:
+    """Minus twice the logarithm of the likelihood of independent gaps."""
+    return float((gap**2 / variance + np.log(variance)).sum())

@@ -1,0 +1,121 @@
+"""Predictions with what is known of their uncertainty."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.effects import Situation
+from sk120stiff.model.model import Model
+from sk120stiff.model.uncertainty import UNSEEN, Uncertainty, spread
+from sk120stiff.robot.coupling import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Predicted:
+    """Predicted readings of N poses and loads.
+
+    Attributes
+    ----------
+    displacement
+        (N, 3) in the axes of the measurements [m].
+    std_parameters
+        (N, 3) standard uncertainty from that of the parameters [m]; infinite where a value counts
+        that the readings of the fit do not show. None: the model stores no uncertainty.
+    std_remainder
+        (N, 3) standard size of what the model leaves unexplained [m]; None where that is not known.
+    blame
+        For every reading the names of the parameters that make its uncertainty infinite.
+    """
+
+    displacement: Array
+    std_parameters: Array | None = None
+    std_remainder: Array | None = None
+    blame: tuple[tuple[str, ...], ...] = ()
+
+    def __post_init__(self) -> None:
+        shape = self.displacement.shape
+        for part in (self.std_parameters, self.std_remainder):
+            if part is not None and part.shape != shape:
+                raise ValueError(f"an uncertainty of shape {part.shape} for {shape}")
+
+    @property
+    def std(self) -> Array | None:
+        """(N, 3) both together [m]; the noise of a reading comes on top of it."""
+        if self.std_parameters is None:
+            return None
+        left = 0.0 if self.std_remainder is None else self.std_remainder
+        return np.asarray(np.hypot(self.std_parameters, left))
+
+    def among(self, held: NDArray[np.bool_]) -> Predicted:
+        """The same readings among others (M,) that have no prediction: NaN there."""
+
+        def placed(x: Array) -> Array:
+            full = np.full((len(held), 3), np.nan)
+            full[held] = x
+            return full
+
+        blame: list[tuple[str, ...]] = [()] * len(held)
+        for row, names in zip(np.flatnonzero(held), self.blame, strict=False):
+            blame[row] = names
+        return Predicted(
+            placed(self.displacement),
+            None if self.std_parameters is None else placed(self.std_parameters),
+            None if self.std_remainder is None else placed(self.std_remainder),
+            tuple(blame),
+        )
+
+
+def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
+    """Predicted readings ± what the parameters and what the model lacks make of them.
+
+    To first order in the parameters, by the exact derivative at equilibrium: deflections are linear
+    in compliances but for what the load's own stiffness K_C adds.
+
+    Parameters
+    ----------
+    model
+        Robot, effects, and their uncertainty if it is known.
+    situation
+        The N readings.
+
+    Raises
+    ------
+    Refusal
+        The springs cannot hold a load.
+    """
+    known = model.uncertainty
+    if known is None:
+        return Predicted(model.predict(situation))
+    displacement, derivative = model.predict_with_sensitivities(situation)
+    L, B = known.factors(model.names)
+    std = spread(derivative @ L, derivative @ B, known.noise)
+    return Predicted(
+        displacement,
+        std,
+        remainder_std(known, displacement, situation.reading_axes),
+        tuple(
+            blamed(known, model.names, derivative[k]) if lost else ()
+            for k, lost in enumerate(np.atleast_1d(np.isinf(std).any(axis=1)))
+        ),
+    )
+
+
+def remainder_std(known: Uncertainty, displacement: Array, axes: Array) -> Array | None:
+    """(N, 3) size of what is unexplained at displacements (N, 3), in axes (N, 3, 3) [m]."""
+    if known.remainder is None:
+        return None
+    of_base = known.remainder.std(displacement)  # only the length of a displacement matters
+    return np.asarray(np.sqrt(np.einsum("nij,ni->nj", axes**2, of_base**2)))
+
+
+def blamed(known: Uncertainty, names: tuple[str, ...], derivative: Array) -> tuple[str, ...]:
+    """Parameters whose unseen changes move quantities with this derivative (..., P) most."""
+    _, B = known.factors(names)
+    share = (derivative.reshape(-1, len(names), 1) * B) ** 2  # (k, P, b)
+    size = share.sum(axis=(0, 2))
+    return tuple(
+        name for name, own in zip(names, size, strict=True) if own > UNSEEN * size.max(initial=0.0)
+    )
