@@ -12,6 +12,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.options import AtOption, ModelArgument
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
+from sk120stiff.files import will_write
 from sk120stiff.model import Model, joint_spring_model, read_model
 from sk120stiff.robot.coupling import Array
 from sk120stiff.workspace import (
@@ -73,6 +74,7 @@ def command(
 
     Example: sk120stiff compensate model.yaml path.csv --out corrected.csv
     """
+    will_write(out)
     believed = read_model(model)
     robot = believed.robot
     movable = None if only is None else _movable(believed, only)

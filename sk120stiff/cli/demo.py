@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sk120stiff.cli.document import as_json_text
-from sk120stiff.cli.explain_output import check_folder, findings, plan_of, remove_stale, said
+from sk120stiff.cli.explain_output import check_folder, findings, plan_of, replacing_results, said
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from sk120stiff.show.stories.demo_report import Demo
 
 ROBOT = "motoman_sk120"
+_WRITTEN = (("report", "html"), ("scene", "html"), ("model", "yaml"))
 Told = Callable[[int, int], None]
 
 
@@ -113,19 +114,16 @@ def _write(
     ).html()
     tell(98, 100)
     model = replace(made.model, provenance=where)
-    remove_stale(out)
-    written: dict[str, object] = {
-        "report": write_atomically(out / "report.html", report),
-        "scene": write_atomically(out / "scene.html", scene),
-        "model": out / "model.yaml",
-    }
-    write_model(model, out / "model.yaml")
-    if following is not None:
-        write_measurements(plan_of(made.answer, readings), out / following)
     verdict = verdict_document(made.answer, readings, following)
-    write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
+    with replacing_results(out):
+        write_atomically(out / "report.html", report)
+        write_atomically(out / "scene.html", scene)
+        write_model(model, out / "model.yaml")
+        if following is not None:
+            write_measurements(plan_of(made.answer, readings), out / following)
+        write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
     tell(100, 100)
-    return written
+    return {name: out / f"{name}.{end}" for name, end in _WRITTEN}
 
 
 def _document(made: Demo) -> dict[str, object]:

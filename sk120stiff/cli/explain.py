@@ -62,11 +62,11 @@ def command(
 
     Example: sk120stiff explain readings.csv --holdout others.csv --out explained
     """
+    check_folder(out)
     readings, robot = open_data(data)
     others = None if holdout is None else open_data(holdout).data
     if others is not None:
         warn_of_known_poses(readings, others)
-    check_folder(out)
     options = Options(
         only=tuple(only or ()),
         exclude=tuple(exclude or ()),

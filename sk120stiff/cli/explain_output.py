@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import DOUBTFUL, Explanation, verdict_document
-from sk120stiff.files import write_atomically
+from sk120stiff.files import together, will_write, write_atomically
 from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import predict_with_uncertainty, write_model
@@ -27,6 +28,16 @@ from sk120stiff.show.wording import with_error
 FEW_POSES = 8  # below this other poses confirm little
 STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
+VERDICT = "verdict.json"
+RESULTS = (
+    VERDICT,
+    "model.yaml",
+    "gaps.csv",
+    "next_poses.csv",
+    "next_poses.yaml",
+    "report.html",
+    "scene.html",
+)
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
 
@@ -61,7 +72,8 @@ def check_folder(out: Path) -> None:
     Raises
     ------
     InputError
-        `out` is a file, or no folder that may be written to.
+        `out` is a file, or no folder that may be written to; a file of it that would be replaced
+        is an input, or is not of an earlier run.
     """
     if out.exists() and not out.is_dir():
         raise InputError(
@@ -74,6 +86,15 @@ def check_folder(out: Path) -> None:
             where=str(out),
             remedy="Choose a folder that you may write to.",
         )
+    foreign = [name for name in RESULTS if (out / name).exists()]
+    if foreign and not (out / VERDICT).exists():  # every result of ours holds a verdict
+        raise InputError(
+            f"{foreign[0]} is here and is not of an earlier run, so it is not replaced",
+            where=f"--out {out}",
+            remedy="Choose another folder, or move the file.",
+        )
+    for name in RESULTS:
+        will_write(out / name)
 
 
 def write_answer(
@@ -99,24 +120,26 @@ def write_answer(
     predicted = predict_with_uncertainty(fitted, situation_of(fitted.robot, task.readings))
     prediction_table(task.readings, predicted).to_csv(gaps, index=False)
     document = verdict_document(answer, task.readings, following)
-    # An old verdict must not stand beside new files, nor old proposals and pages beside a new one.
-    remove_stale(out)
-    write_model(fitted, out / "model.yaml")
-    write_atomically(out / "gaps.csv", gaps.getvalue())
-    if following is not None:
-        write_measurements(plan_of(answer, task.readings), out / following)
-    for name, text in pages.items():
-        write_atomically(out / name, text)
-    write_atomically(out / "verdict.json", as_json_text(document) + "\n")
+    with replacing_results(out):
+        write_model(fitted, out / "model.yaml")
+        write_atomically(out / "gaps.csv", gaps.getvalue())
+        if following is not None:
+            write_measurements(plan_of(answer, task.readings), out / following)
+        for name, text in pages.items():
+            write_atomically(out / name, text)
+        write_atomically(out / VERDICT, as_json_text(document) + "\n")
     tell(100, 100)
     places = {"out": out, "model": out / "model.yaml"}
     return {**document, **places, **{Path(name).stem: out / name for name in pages}}
 
 
-def remove_stale(out: Path) -> None:
-    """Take away what an earlier run left, the verdict first."""
-    for name in ("verdict.json", "next_poses.csv", "next_poses.yaml", "report.html", "scene.html"):
-        (out / name).unlink(missing_ok=True)
+def replacing_results(out: Path) -> AbstractContextManager[None]:
+    """Let what is written inside replace the results of an earlier run, all in one moment.
+
+    An old verdict never stands beside new files, nor old proposals and pages beside a new one; and
+    until all is written, the earlier results stay.
+    """
+    return together(stale=[out / name for name in RESULTS], last=out / VERDICT)
 
 
 def _pages(

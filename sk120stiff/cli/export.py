@@ -13,7 +13,7 @@ from sk120stiff.cli.opening import pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument, PoseOption
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
-from sk120stiff.files import write_atomically
+from sk120stiff.files import will_write, write_atomically
 from sk120stiff.model import read_model
 from sk120stiff.workspace import FORMATS, spring_arm
 
@@ -47,6 +47,7 @@ def command(
 
     Example: sk120stiff export model.yaml --pose '0,20,-30,0,-60,0 deg' --out sk120.xml
     """
+    will_write(out)
     believed = read_model(model)
     robot = believed.robot
     chosen = to.value if to is not None else _BY_ENDING.get(out.suffix.lower())

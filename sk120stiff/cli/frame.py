@@ -22,6 +22,7 @@ import typer
 
 from sk120stiff.cli.document import as_json_text
 from sk120stiff.errors import ToolkitError
+from sk120stiff.files import running
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks and every log message.")]
@@ -57,7 +58,7 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
 
     @functools.wraps(body)
     def run(*, as_json: bool, debug: bool, **options: object) -> None:
-        with guarded(debug=debug), _messages(debug=debug):
+        with guarded(debug=debug), running(), _messages(debug=debug):
             answer = body(**options)
             emit(answer, as_json=as_json)
             if answer.afterwards is not None:

@@ -12,12 +12,13 @@ from typing import Annotated
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_data, provenance, refuse_overwriting, start_model
+from sk120stiff.cli.opening import open_data, provenance, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import effect
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.mistakes import mistakes, without_copies
+from sk120stiff.files import will_write
 from sk120stiff.identify import (
     Compared,
     Fit,
@@ -89,7 +90,7 @@ def command(
 
     Example: sk120stiff identify robots/motoman_sk120/data/table2_measured.csv --out model.yaml
     """
-    refuse_overwriting(out, data)
+    will_write(out)
     readings, robot = open_data(data)
     plain = start_model(robot, model)
     start = plain

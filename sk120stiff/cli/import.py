@@ -13,7 +13,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_robot, wrench_of
+from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.measurements import Measurements, read_figaroh, write_measurements
@@ -120,12 +120,7 @@ def command(
 
     Example: sk120stiff import marks.csv --robot motoman_sk120 --length m --angle rad --out own.csv
     """
-    if out.resolve() == source.resolve():
-        raise InputError(
-            "this would overwrite the file that is read",
-            where=str(out),
-            remedy="Choose another name for --out.",
-        )
+    declare_readings(out)
     arm = open_robot(robot, base, tool)
     found = read_figaroh(
         source,

@@ -21,6 +21,7 @@ from sk120stiff.cli.options import (
 )
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.files import will_fill, will_write
 from sk120stiff.model import Model
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
@@ -136,6 +137,8 @@ def command(
     Example: sk120stiff map motoman_sk120 --grid 'joint_2_l=::2; joint_3_u=::2 deg'
     --wrench '0,0,-490 N' --out sk120.zarr --figures sk120_slices
     """
+    will_fill(out)
+    will_write(page, "--page")
     arm_robot = open_robot(robot, base, tool)
     believed = open_model(arm_robot, model)
     arm = elastic_arm(believed, frame=at)

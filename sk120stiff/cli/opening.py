@@ -12,6 +12,7 @@ import numpy as np
 
 from sk120stiff.cli.frame import note
 from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.files import will_write
 from sk120stiff.robot import Robot, find_robot, load_robot
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_pose, parse_wrench
@@ -28,29 +29,20 @@ class Opened(NamedTuple):
     robot: Robot
 
 
-def refuse_overwriting(out: Path | None, *inputs: Path | None, beside: bool = False) -> None:
-    """Refuse an output that would replace an input; `beside`: a YAML file is written beside it too.
+def declare_readings(out: Path | None) -> None:
+    """Declare readings as an output, with the YAML file that is written beside them.
 
     Raises
     ------
     InputError
-        It would.
+        One of the two is an input, or cannot be written.
     """
-    if out is None:
-        return
-    written = {out.resolve()} | ({out.with_suffix(".yaml").resolve()} if beside else set())
-    for file in inputs:
-        if file is None:
-            continue
-        read = {file.resolve()}
-        if file.suffix.lower() == ".csv":
-            read.add(file.with_suffix(".yaml").resolve())
-        for clash in sorted(written & read):
-            raise InputError(
-                f"this would overwrite {clash.name}, which is an input",
-                where=f"--out {out}",
-                remedy="Choose another name.",
-            )
+    from sk120stiff.measurements.writing import check_name
+
+    if out is not None:
+        check_name(out)
+        will_write(out)
+        will_write(out.with_suffix(".yaml"))
 
 
 def open_robot(source: str, base: str | None, tool: str | None) -> Robot:

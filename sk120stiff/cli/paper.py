@@ -13,11 +13,13 @@ from sk120stiff.cli.frame import Answer, note
 from sk120stiff.cli.options import OutFolderOption
 from sk120stiff.cli.tables import progress_bar
 from sk120stiff.errors import InputError
-from sk120stiff.files import write_atomically
+from sk120stiff.files import together, will_write, write_atomically
 from sk120stiff.paper import Reproduction, Verdict, reproduce
 from sk120stiff.paper.document import as_document
 from sk120stiff.paper.tables import SideBySide, side_by_side
 
+REPORT = "report.html"
+MARK = b'name="generator" content="sk120stiff"'
 _COLOURS = {
     Verdict.REPRODUCED: "green",
     Verdict.NOT_REPRODUCIBLE: "yellow",
@@ -53,27 +55,42 @@ def command(out: OutFolderOption = None) -> Answer:
 
 def _check_writable(out: Path) -> None:
     """Complain before the work, not after it."""
-    probe = out / ".writable"
-    try:
-        write_atomically(probe, "")
-    except InputError as error:
-        raise InputError(error.what, where=str(out), remedy=error.remedy) from error
-    probe.unlink()
+    if out.exists() and not out.is_dir():
+        raise InputError(
+            "this is a file, not a folder", where=str(out), remedy="Name another folder."
+        )
+    will_write(out / REPORT)
+
+
+def _refuse_foreign(out: Path, names: list[str]) -> None:
+    """Replace the files of an earlier run alone: such a folder holds a report of ours."""
+    report = out / REPORT
+    if report.is_file() and MARK in report.read_bytes()[:2000]:
+        return
+    for name in (REPORT, *names):
+        if (out / name).exists():
+            raise InputError(
+                f"{name} is here and is not of an earlier run, so it is not replaced",
+                where=f"--out {out}",
+                remedy="Choose another folder, or move the file.",
+            )
 
 
 def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> list[Path]:
     from sk120stiff.show import save_figure
     from sk120stiff.show.paper_report import figures_of, report_of
 
-    with progress_bar("writing the report") as report:
+    with progress_bar("writing the report") as report, together(last=out / REPORT):
         figures = figures_of(found)
+        names = [f"{each.name}.{end}" for each in figures for end in ("svg", "png")]
+        _refuse_foreign(out, [*names, *(f"{table.name}.csv" for table in tables)])
         total, files = 2 * len(figures) + 1, []
         for figure in figures:
             for ending in ("svg", "png"):
                 files.append(save_figure(figure.figure, out / f"{figure.name}.{ending}"))
                 report(len(files), total)
         files += [write_atomically(out / f"{table.name}.csv", table.csv()) for table in tables]
-        files.append(report_of(found, tables, figures).write(out / "report.html"))
+        files.append(report_of(found, tables, figures).write(out / REPORT))
         report(total, total)
     note(f"{len(files)} files written to {out}.")
     return files

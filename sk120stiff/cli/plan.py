@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_data, refuse_overwriting, start_model
+from sk120stiff.cli.opening import declare_readings, open_data, start_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import Effect, effect, situation_of
@@ -101,7 +101,7 @@ def command(
 
     Example: sk120stiff plan --model model.yaml --count 15 --out plan.csv
     """
-    refuse_overwriting(out, model, data, beside=True)
+    declare_readings(out)
     known, start = _opened(model, data)
     at, force_at = _points(known, point)
     pool = random_pool(

@@ -15,6 +15,7 @@ from sk120stiff.cli.opening import direction_of
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
+from sk120stiff.files import will_write
 from sk120stiff.model import Model, read_model
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
@@ -129,6 +130,9 @@ def command(
             where="--picture",
             remedy="Choose a name that ends in .svg, .png or .pdf.",
         )
+    will_write(out)
+    will_write(picture, "--picture")
+    will_write(page, "--page")
     believed = read_model(model)
     robot = believed.robot
     given = read_path(path, robot)

@@ -16,7 +16,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import blame_reason, plus_minus, sentences, uncertainty_keys
 from sk120stiff.effects import Situation, situation_of
 from sk120stiff.errors import Refusal, ToolkitWarning
-from sk120stiff.files import write_atomically
+from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Predicted, held_loads, predict_with_uncertainty
 from sk120stiff.robot.coupling import Array
@@ -34,6 +34,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
 
     Example: sk120stiff predict model.yaml robots/motoman_sk120/data/table2_measured.csv
     """
+    will_write(out)
     readings, robot = open_data(data)
     believed = start_model(robot, model)
     predicted = predict_what_holds(believed, situation_of(robot, readings))

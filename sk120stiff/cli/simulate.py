@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_data, refuse_overwriting, start_model
+from sk120stiff.cli.opening import declare_readings, open_data, start_model
 from sk120stiff.cli.options import ModelArgument, SeedOption
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import NoiseModel, write_measurements
@@ -81,7 +81,7 @@ def command(
 
     Example: sk120stiff simulate model.yaml plan.csv --noise '10 um' --out readings.csv
     """
-    refuse_overwriting(out, model, plan, beside=True)
+    declare_readings(out)
     readings, robot = open_data(plan)
     made = simulate(
         start_model(robot, model),

@@ -18,6 +18,7 @@ from sk120stiff.cli.options import (
     ToolOption,
     WrenchOption,
 )
+from sk120stiff.files import will_write
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
@@ -88,6 +89,7 @@ def command(
 
     Example: sk120stiff view motoman_sk120 --wrench '0,0,-490 N' --static scene.html
     """
+    will_write(static, "--static")
     measured = None if data is None else _read(data)
     if measured is not None:  # the frames that the readings are about
         base, tool = base or measured.base_frame, tool or measured.tool_frame

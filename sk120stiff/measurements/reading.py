@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff import units
+from sk120stiff import files, units
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.measurements import columns
 from sk120stiff.measurements.columns import Roles
@@ -178,7 +178,7 @@ def _hash(*paths: Path | None) -> str:
     digest = hashlib.sha256()
     for path in paths:
         if path is not None:
-            digest.update(path.read_bytes())
+            digest.update(files.read_bytes(path))
     return digest.hexdigest()
 
 

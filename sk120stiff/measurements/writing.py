@@ -65,6 +65,29 @@ def write_measurements(
         the same stem is in the way.
     """
     target = Path(path)
+    check_name(target)
+    measured = POSITIONS if as_positions else DISPLACEMENTS
+    columns = list(_columns(measurements, angle, length, measured))
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow([header for header, _ in columns])
+    writer.writerows(zip(*(cells for _, cells in columns), strict=True))
+    settings = yaml.safe_dump(
+        _settings(measurements, target.parent, length), sort_keys=False, allow_unicode=True
+    )
+    with files.together():
+        files.write_atomically(target.with_suffix(".yaml"), settings)
+        return files.write_atomically(target, stream.getvalue())
+
+
+def check_name(target: Path) -> None:
+    """Refuse a name that readings cannot be written to.
+
+    Raises
+    ------
+    InputError
+        It does not end in ``.csv``, or a ``.yml`` file of the same stem is in the way.
+    """
     if target.suffix.lower() != ".csv":
         raise InputError(
             "readings are written to a CSV file",
@@ -78,17 +101,6 @@ def write_measurements(
             where=str(rival),
             remedy="Move it, or choose another name.",
         )
-    measured = POSITIONS if as_positions else DISPLACEMENTS
-    columns = list(_columns(measurements, angle, length, measured))
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([header for header, _ in columns])
-    writer.writerows(zip(*(cells for _, cells in columns), strict=True))
-    settings = yaml.safe_dump(
-        _settings(measurements, target.parent, length), sort_keys=False, allow_unicode=True
-    )
-    files.write_atomically(target.with_suffix(".yaml"), settings)
-    return files.write_atomically(target, stream.getvalue())
 
 
 def _columns(

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.files import note_read
 from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import Finding, UrdfDocument, VisualSpec, resolve
@@ -126,6 +127,7 @@ def _read(address: str, document: UrdfDocument) -> _Mesh | str:
     path, why = resolve(address, document.path, document.package_folders)
     if path is None:
         return why
+    note_read(path)
     kind = _READABLE.get(path.suffix.lower().lstrip("."))
     if kind is None:
         return f"meshes of kind {path.suffix!r} are not read; use STL, OBJ, DAE, PLY, OFF or GLB"

@@ -118,16 +118,18 @@ def test_stale_results_never_stand_beside_new_ones(data, tmp_path, run) -> None:
     assert (tmp_path / "mine.txt").exists()
 
 
-def test_interrupted_writing_leaves_no_verdict(data, tmp_path, run, monkeypatch) -> None:
-    (tmp_path / "verdict.json").write_text("{}", encoding="utf-8")
+def test_interrupted_writing_leaves_the_old_results(data, tmp_path, run, monkeypatch) -> None:
+    old = {"verdict.json": "{}", "model.yaml": "old", "gaps.csv": "old", "report.html": "old"}
+    for name, text in old.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
 
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("sk120stiff.cli.explain_output.write_model", interrupted)
+    monkeypatch.setattr("sk120stiff.files.file_set.FileSet.swap", interrupted)
     outcome = run("explain", str(data), "--out", str(tmp_path), "--no-report")
     assert outcome.code == 130
-    assert not list(tmp_path.iterdir())
+    assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == old
 
 
 def test_interrupted_computing_leaves_the_old_results(data, tmp_path, run, monkeypatch) -> None:

@@ -77,7 +77,7 @@ def test_a_file_in_the_way_of_the_folder(tmp_path):
     (tmp_path / "taken").write_text("mine", encoding="utf-8")
     done = run("--out", tmp_path / "taken")
     assert done.returncode == 2
-    assert "cannot write here" in done.stderr and "taken" in done.stderr
+    assert "this is a file, not a folder" in done.stderr and "taken" in done.stderr
     assert done.stdout == ""
     assert (tmp_path / "taken").read_text(encoding="utf-8") == "mine"
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sk120stiff.errors import InputError
+from sk120stiff.files import note_read
 from sk120stiff.robot.urdf.findings import shown
 
 MAX_BYTES = 100 * 1024 * 1024
@@ -87,6 +88,7 @@ def _bytes(path: Path) -> bytes:
             where=str(path),
             remedy="Give the URDF that refers to it.",
         )
+    note_read(path)
     with path.open("rb") as stream:
         data = stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sk120stiff.files import note_read
 from sk120stiff.robot.urdf.document import Finding, Inertial, JointSpec, UrdfDocument
 from sk120stiff.robot.urdf.findings import at, listed, shown
 from sk120stiff.robot.urdf.packages import resolve
@@ -210,6 +211,8 @@ def _meshes(document: UrdfDocument) -> Iterator[Finding]:
         if address not in known:
             file, why = resolve(address, document.path, document.package_folders)
             known[address] = "" if file is not None else why
+            if file is not None:
+                note_read(file)
         if known[address]:
             missing.setdefault(known[address], []).append(address)
     for why, addresses in missing.items():

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from sk120stiff.errors import MissingPart
+from sk120stiff.files import note_read
 from sk120stiff.robot.urdf.findings import Notebook
 from sk120stiff.robot.urdf.source import MAX_BYTES, RawSource
 from sk120stiff.robot.urdf.xml_text import without_comments
@@ -58,13 +59,14 @@ def expand(
             remedy="Write the values where they are used.",
         )
     with tempfile.TemporaryDirectory() as scratch:
-        result = Path(scratch) / "robot.urdf"
+        result, opened = Path(scratch) / "robot.urdf", Path(scratch) / "opened.json"
         job = {
             "path": str(raw.path.absolute()) if raw.path is not None else None,
             "text": None if raw.path is not None else text,
             "folders": [str(folder) for folder in folders],
             "arguments": dict(arguments),
             "result": str(result),
+            "opened": str(opened),
             "max_bytes": MAX_BYTES,
         }
         said = _run(job, notes)
@@ -75,6 +77,8 @@ def expand(
                 "through ROS_PACKAGE_PATH.",
             )
         expanded = result.read_text(encoding="utf-8", errors="replace")
+        for file in json.loads(opened.read_text(encoding="utf-8")):
+            note_read(file)
     for line in said.split("; "):
         if line.startswith("package "):
             notes.warn("package_guessed", "", line)

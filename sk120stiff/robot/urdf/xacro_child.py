@@ -48,6 +48,7 @@ def _expand(job: dict[str, Any]) -> None:
         return str(found[0])
 
     packages.get_path = look_up
+    opened = _files_opened_from_now()
     options = {"subargs": job["arguments"], "resolve_packages": False}
     if job["path"] is not None:
         os.chdir(Path(job["path"]).parent)  # includes are relative to the file
@@ -55,9 +56,22 @@ def _expand(job: dict[str, Any]) -> None:
     else:
         document = XacroDoc.from_string(job["text"], **options)
     text = document.to_urdf_string()
+    Path(job["opened"]).write_text(json.dumps(sorted(set(opened))), encoding="utf-8")
     if len(text) > job["max_bytes"]:
         raise MemoryError(f"the expanded text has {len(text) / 1e6:.0f} MB")
     Path(job["result"]).write_text(text, encoding="utf-8")
+
+
+def _files_opened_from_now() -> list[str]:
+    """Grows with every file that is read: what xacro includes are inputs too."""
+    opened: list[str] = []
+
+    def notice(event: str, details: tuple[Any, ...]) -> None:
+        if event == "open" and isinstance(details[0], str) and details[1] in ("r", "rb"):
+            opened.append(os.path.abspath(details[0]))
+
+    sys.addaudithook(notice)
+    return opened
 
 
 def _guess(name: str, path: str | None) -> list[Path]:

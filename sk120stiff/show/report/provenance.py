@@ -10,6 +10,9 @@ from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from sk120stiff.errors import InputError
+from sk120stiff.files import read_bytes
+
 _LIBRARIES = ("sk120stiff", "numpy", "scipy", "pin", "matplotlib", "meshcat")
 
 
@@ -40,8 +43,8 @@ def reproducibility(
 
 def _digest(path: Path) -> str:
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError:
+        return hashlib.sha256(read_bytes(path)).hexdigest()
+    except InputError:
         return "missing"
 
 

@@ -1,0 +1,21 @@
+"""Files: reading with clear complaints, writing so that nothing is lost.
+
+Every reader of the package notes what it reads, and every writer looks there first
+(`ledger`); nobody ever meets half a file (`writing`), nor half a set of files (`file_set`).
+"""
+
+from sk120stiff.files.file_set import together
+from sk120stiff.files.ledger import note_read, running, will_fill, will_write
+from sk120stiff.files.reading import read_bytes, read_text
+from sk120stiff.files.writing import write_atomically
+
+__all__ = [
+    "note_read",
+    "read_bytes",
+    "read_text",
+    "running",
+    "together",
+    "will_fill",
+    "will_write",
+    "write_atomically",
+]

@@ -1,0 +1,50 @@
+"""Reading files: each is noted, so that no output replaces it, and complaints are clear."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from sk120stiff.errors import InputError
+from sk120stiff.files.ledger import note_read
+
+
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """Content of a file.
+
+    Raises
+    ------
+    InputError
+        The file is missing, a folder or unreadable, or this run is going to write it.
+    """
+    source = Path(path)
+    note_read(source)
+    try:
+        return source.read_bytes()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(
+            f"cannot read this file ({reason})",
+            where=str(source),
+            remedy="Check the path and its permissions.",
+        ) from error
+
+
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Text of a UTF-8 file (a leading byte-order mark is dropped).
+
+    Raises
+    ------
+    InputError
+        As `read_bytes`, or the file is not UTF-8 (line and byte are named).
+    """
+    data = read_bytes(path)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"the byte 0x{data[error.start]:02x} is not UTF-8 text",
+            where=f"{path}, line {line}",
+            remedy="Save the file with the encoding UTF-8.",
+        ) from error
