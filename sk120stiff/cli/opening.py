@@ -49,12 +49,12 @@ def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
     """Load a robot; frames that nobody named are told on stderr."""
     robot = load_robot(source, base=base, tool=tool)
     described = find_robot(source).description
-    for told, kept, option, frame in (
-        (base, described.base_frame, "--base", robot.base_frame),
-        (tool, described.tool_frame, "--tool", robot.tool_frame),
-    ):
-        if told is None and kept is None:
-            note(f"{option[2:].capitalize()} frame: {frame} (choose another with {option} FRAME).")
+    if base is None and described.base_frame is None:
+        note(f"Base frame: {robot.base_frame} (choose another with --base FRAME).")
+    if tool is None and described.tool_frame is None:
+        note(f"Tool frame: {robot.choice.about_tool}. Choose another with --tool FRAME.")
+        if robot.choice.fingers:
+            note(f"Held still as fingers: {', '.join(robot.choice.fingers)}.")
     return robot
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.errors import ToolkitError, ToolkitWarning
-from sk120stiff.robot.loading import assemble, find_robot
+from sk120stiff.robot.loading import assemble, find_robot, told_joints
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import (
     Finding,
@@ -82,13 +82,15 @@ def check_robot(
     found = find_robot(source)
     document = read_urdf(found.urdf)
     findings = [*document.warnings, *suspicions(document)]
-    guessed_base, guessed_tool, reasons = default_frames(document)
-    base_frame = base or found.description.base_frame or guessed_base
-    tool_frame = tool or found.description.tool_frame or guessed_tool
+    arm = (*(found.description.actuated or ()), *told_joints(document, found.description))
+    guessed = default_frames(document, arm)
+    base_frame = base or found.description.base_frame or guessed.base
+    tool_frame = tool or found.description.tool_frame or guessed.tool
+    reasons = list(guessed.sentences)
     if base or found.description.base_frame:
-        reasons = (f"base frame {base_frame!r}: as told", *reasons[1:])
+        reasons[0] = f"base frame {base_frame!r}: as told"
     if tool or found.description.tool_frame:
-        reasons = (reasons[0], f"tool frame {tool_frame!r}: as told")
+        reasons[1:] = [f"tool frame {tool_frame!r}: as told"]
     findings.extend(locked_on_way(document, base_frame, tool_frame))
     robot: Robot | None = None
     if document.moving_joints:
@@ -110,7 +112,7 @@ def check_robot(
         frames=tuple(link.name for link in document.links),
         base_frame=base_frame,
         tool_frame=tool_frame,
-        chosen_because=reasons,
+        chosen_because=tuple(reasons),
         moving=tuple(joint.name for joint in document.moving_joints),
         total_mass_kg=document.total_mass,
         warnings=tuple(findings),

@@ -24,6 +24,7 @@ from sk120stiff.robot.urdf import (
     default_frames,
     locked_on_way,
     read_urdf,
+    refuse_orphans,
     with_arm_only,
 )
 
@@ -147,14 +148,12 @@ def assemble(
     `named` is what the user called the robot; a model file will call it the same.
     """
     description = found.description
-    guessed_base, guessed_tool, _ = default_frames(document)
-    base_frame = base or description.base_frame or guessed_base
-    tool_frame = tool or description.tool_frame or guessed_tool
     rest = {**description.lock, **(lock or {})}
-    couplings = [*description.couplings, *(rule.driver for rule in description.couplings.values())]
     closures = closures_of(description)
-    looped = [j.name for c in closures for frame in c.frames for j in document.way("", frame)]
-    wanted = [*(actuated or description.actuated or ()), *couplings, *looped]
+    wanted = [*(actuated or description.actuated or ()), *told_joints(document, description)]
+    guessed = default_frames(document, wanted)
+    base_frame = base or description.base_frame or guessed.base
+    tool_frame = tool or description.tool_frame or guessed.tool
     document = with_arm_only(document, base_frame, tool_frame, wanted, rest)
     tree = Tree(document.xml)
     followers = _followers(document, description)
@@ -163,6 +162,8 @@ def assemble(
         drivers = loop_drivers(tree, closures, drivers, followers, rest)
     chosen = tuple(actuated or description.actuated or drivers)
     _refuse_balls(document, base_frame, tool_frame, rest)
+    settled = {*rest, *followers, *(actuated or description.actuated or ())}
+    refuse_orphans(document, base_frame, tool_frame, settled)
     _check_actuated(chosen, tree, followers, document)
     for name in rest:
         if name not in document.locked:
@@ -184,6 +185,7 @@ def assemble(
         tree=tree,
         coupling=coupling,
         document=document,
+        choice=guessed,
         source=named,
         followers=followers,
         locked={
@@ -197,6 +199,14 @@ def assemble(
         foundation=_foundation(description, tree, base_frame),
         notes=description.notes.strip(),
     )
+
+
+def told_joints(document: UrdfDocument, description: RobotDescription) -> tuple[str, ...]:
+    """Joints of which `robot.yaml` says that they belong to the arm: coupled ones, and loops."""
+    couplings = [*description.couplings, *(rule.driver for rule in description.couplings.values())]
+    ends = [frame for rule in description.closures for frame in rule.frames]
+    looped = [joint.name for frame in ends for joint in document.way("", frame)]
+    return (*couplings, *looped)
 
 
 def _start(description: RobotDescription) -> dict[str, float]:

@@ -18,7 +18,7 @@ from sk120stiff.robot.screws import Mechanism, Screws
 from sk120stiff.robot.tree import Tree
 
 if TYPE_CHECKING:
-    from sk120stiff.robot.urdf import UrdfDocument
+    from sk120stiff.robot.urdf import FrameChoice, UrdfDocument
 
 STANDARD_GRAVITY = 9.80665  # m/s²
 
@@ -57,6 +57,8 @@ class Robot:
         The n joints that motors drive, in the order of ``a``.
     base_frame, tool_frame
         Frames between which the arm is described. All results are in axes of `base_frame`.
+    choice
+        The frames that are taken where nobody names any, with the alternatives.
     lower, upper
         (n,) joint limits; infinite where none are published.
     followers
@@ -76,6 +78,7 @@ class Robot:
     tree: Tree
     coupling: Coupling
     document: UrdfDocument
+    choice: FrameChoice
     source: str
     followers: dict[str, Follower] = field(default_factory=dict)
     locked: dict[str, float] = field(default_factory=dict)

@@ -7,6 +7,7 @@ import pytest
 
 from sk120stiff.model import joint_spring_model, write_model
 from sk120stiff.robot import load_robot
+from tests.corpus.robots import example
 
 UPPER, FORE = 0.5, 0.4  # m
 K_1, K_2 = 2.0e5, 1.0e5  # N·m/rad
@@ -177,6 +178,16 @@ def test_defaults_are_said_aloud(run, two_links) -> None:
     named = run("stiffness", robot, "--model", model, "--base", "ground", "--tool", "tip")
     assert "frame:" not in named.stderr
     assert "frame:" not in run("stiffness", "motoman_sk120").stderr
+
+
+def test_the_other_arm_and_the_fingers_are_told(run) -> None:
+    refused = run("stiffness", str(example("baxter.urdf")))
+    assert refused.code == 2  # no spring values
+    assert "Tool frame: right_hand_link (its name says so, behind 7 joints)" in refused.stderr
+    assert "ends also at left_hand_link (7)" in refused.stderr
+    assert "with --tool FRAME" in refused.stderr
+    assert "Held still as fingers: " in refused.stderr
+    assert "r_gripper_l_finger_joint" in refused.stderr
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,6 @@ pytestmark = pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning")
 
 URDFS = example_urdfs()
 REFUSED = {
-    "alex_psyonic_hands.urdf": "mimics 'index_q1', which does not exist",
     "ur3.urdf": "the robot has no links",
 }
 NOTHING_MOVES = {"quadrotor_base.urdf", "iris_simple.urdf"}

@@ -137,7 +137,7 @@ class UrdfTree:
     def value(self, name: str, values: Mapping[str, float]) -> float:
         """Coordinate of one joint, through as many mimics as there are."""
         joint = self.joints[name]
-        if joint.mimic is None:
+        if joint.mimic is None or joint.mimic[0] not in self.joints:  # a rule that leads nowhere
             return values.get(name, 0.0)
         driver, multiplier, offset = joint.mimic
         return multiplier * self.value(driver, values) + offset

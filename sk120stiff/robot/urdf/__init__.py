@@ -13,7 +13,8 @@ from sk120stiff.robot.urdf.document import (
     UrdfDocument,
     VisualSpec,
 )
-from sk120stiff.robot.urdf.frames import default_frames
+from sk120stiff.robot.urdf.frames import FrameChoice, default_frames
+from sk120stiff.robot.urdf.mimics import refuse_orphans
 from sk120stiff.robot.urdf.native import CapturedText, captured_stderr
 from sk120stiff.robot.urdf.packages import resolve
 from sk120stiff.robot.urdf.reading import read_urdf
@@ -24,6 +25,7 @@ __all__ = [
     "HARMLESS",
     "CapturedText",
     "Finding",
+    "FrameChoice",
     "GeometrySpec",
     "Inertial",
     "JointSpec",
@@ -35,6 +37,7 @@ __all__ = [
     "default_frames",
     "locked_on_way",
     "read_urdf",
+    "refuse_orphans",
     "resolve",
     "suspicions",
     "with_arm_only",

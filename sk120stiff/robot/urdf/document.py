@@ -172,6 +172,9 @@ class UrdfDocument:
         The only link without a parent.
     locked
         Why each joint was locked that the file describes as moving.
+    orphans
+        Mimic rules that name a joint which does not exist, by the joint that has the rule. It moves
+        and follows nothing; beside the arm it is held still, on the arm it is refused.
     warnings
         Repairs and oddities, in the order of the file.
     """
@@ -185,6 +188,7 @@ class UrdfDocument:
     visuals: tuple[VisualSpec, ...]
     root: str
     locked: Mapping[str, str] = field(default_factory=dict)
+    orphans: Mapping[str, Mimic] = field(default_factory=dict)
     warnings: tuple[Finding, ...] = ()
 
     @property

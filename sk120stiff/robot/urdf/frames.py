@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
-from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument
+import numpy as np
 
-_FINGER = re.compile(
-    r"finger|gripper|grasp|jaw|thumb|knuckle|claw|pinch|suction"
-    r"|(?:^|_)(?:index|middle|ring|pinky|little|mrl)(?:_|\d|$)",
-    re.IGNORECASE,
-)
-_SENSOR = re.compile(
-    r"camera|optical|sensor|imu|lidar|laser|depth|marker|aruco|inertial|collision|visual",
+from sk120stiff.robot.urdf.document import Array, JointSpec, UrdfDocument
+from sk120stiff.robot.urdf.hands import FINGER, Children, children_of, finger_joints
+
+# Frames that only help: sensors, shapes for collision checks, pictures.
+_HELPER = re.compile(
+    r"camera|optical|sensor|imu|lidar|laser|depth|marker|aruco|inertial|collision|visual|mesh"
+    r"|(?:^|_)(?:sc|com|cog|dummy|ft)(?:$|_link$)",
     re.IGNORECASE,
 )
 # What robot makers call the frame to work with, best first.
@@ -23,106 +25,192 @@ _TOOL_NAMES = tuple(
         r"(?:^|_)tcp$|tool_?center_?point|(?:^|_)tool_tip$",
         r"(?:^|_)tool(?:_frame|_link)?$",
         r"(?:^|_)flange(?:_link|_frame)?$",
-        r"(?:^|_)(?:ee|eef|end_?effector)(?:_link|_frame|_tip)?$",
+        r"(?:^|_)(?:ee|eef|(?:end_?)?effector)(?:_link|_frame|_tip)?$",
         r"(?:^|_)hand(?:_link)?$|attachment|mounting|(?:^|_)tip$",
     )
 )
+_LEG = re.compile(
+    r"foot|feet|sole|toe|ankle|ankel|knee|hip(?![a-z])|thigh|calf|shank|wheel|caster|rotor"
+    r"|(?:^|_)legs?(?:_|\d|$)|(?:_|^)(?:haa|hfe|kfe)(?:_|$)",
+    re.IGNORECASE,
+)
+_FEWEST_OF_AN_ARM = 3  # motors, where an arm is preferred to a longer leg
+_MOST_NAMED = 6
 
 
-def default_frames(document: UrdfDocument) -> tuple[str, str, tuple[str, ...]]:
-    """Base frame, tool frame, and why, in sentences.
+@dataclass(frozen=True)
+class FrameChoice:
+    """Base and tool frame of a robot whose user named none, and what else there was.
 
-    The base is the root. The tool lies behind the most moving joints; fingers and grippers (known
-    by name, or as jaws that slide side by side) do not count, nor do mimic joints. Among the links
-    that those joints carry rigidly, a usual name decides (`tool0`, `tcp`, `tool`, `flange`,
-    `ee_link`, ...), else the outermost link that is no sensor; between branches of equal length
-    the first one of the file.
+    Attributes
+    ----------
+    base, tool
+        The frames taken.
+    why_base, why_tool
+        The reasons, in a few words.
+    others
+        The best frame at the end of every other arm, leg or head, and the motors before it; the
+        longest first.
+    beside
+        Other frames on the same body as the tool frame, without helpers.
+    fingers
+        Moving joints that belong to hands; they are held still.
     """
-    children: dict[str, list[JointSpec]] = {}
-    for joint in document.joints:
-        children.setdefault(joint.parent, []).append(joint)
-    fingers = {joint.name for joint in document.moving_joints if _is_finger(joint)}
-    fingers |= _sliding_pairs(document, children)
-    if not any(j.mimic is None and j.name not in fingers for j in document.moving_joints):
-        fingers = set()  # the robot is a gripper: then its fingers are the arm
-    moving, level, order = _walk(document, children, fingers)
-    longest = max(moving.values())
-    carried = [link for link in order if moving[link] == longest]
-    reasons = [f"base frame {document.root!r}: the root of the URDF"]
-    tool, why = _by_name(carried)
-    if tool is None:
-        branch = _branch(carried, {joint.child: joint for joint in document.joints})
-        leaves = [link for link in branch if not _inner(link, children, fingers)] or branch
-        leaves = [link for link in leaves if not _SENSOR.search(link)] or branch
-        tool = max(leaves, key=lambda link: level[link])
-        why = "the outermost link" if longest else "the root, because no joint moves"
-        others = sorted(set(carried) - set(branch))
-        if others:
-            why += f", first of several branches with {longest} joints (another: {others[0]!r})"
-    reasons.append(f"tool frame {tool!r}: {why}, behind {longest} moving joints")
-    if fingers:
-        reasons.append(f"ignored as fingers: {', '.join(sorted(fingers)[:8])}")
-    return document.root, tool, tuple(reasons)
+
+    base: str
+    tool: str
+    why_base: str
+    why_tool: str
+    others: tuple[tuple[str, int], ...] = ()
+    beside: tuple[str, ...] = ()
+    fingers: tuple[str, ...] = ()
+
+    @property
+    def about_tool(self) -> str:
+        """The choice of the tool frame and its alternatives, in one line."""
+        text = f"{self.tool} ({self.why_tool})"
+        if self.others:
+            ends = [f"{name} ({motors})" for name, motors in self.others]
+            text += f"; the robot ends also at {_few(ends)}"
+        if self.beside:
+            text += f"; also on this body: {_few(self.beside)}"
+        return text
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Everything a user should know about the choice."""
+        told = [f"base frame {self.base!r}: {self.why_base}", f"tool frame {self.about_tool}"]
+        if self.fingers:
+            told.append(f"held still as fingers: {_few(self.fingers)}")
+        return tuple(told)
 
 
-def _is_finger(joint: JointSpec) -> bool:
-    """By its name; by its child's name only if it slides, since a wrist may carry a gripper."""
-    return bool(
-        _FINGER.search(joint.name) or (joint.type == "prismatic" and _FINGER.search(joint.child))
+@dataclass(frozen=True, eq=False)
+class _End:
+    """Where the motors end: the last one, all of them, and the links it moves."""
+
+    joint: JointSpec | None
+    motors: tuple[str, ...]
+    links: tuple[str, ...]
+
+    @property
+    def is_leg(self) -> bool:
+        return any(_LEG.search(name) for name in self.motors)
+
+
+def default_frames(document: UrdfDocument, arm: Collection[str] = ()) -> FrameChoice:
+    """Base frame, tool frame, why, and what else could have been meant.
+
+    The base is the root. The arm is the way with the most motors; hands do not count (see
+    `finger_joints`), nor do mimic joints, and legs only where there is no arm. Among the links
+    that its last motor moves, a usual name decides (`tool0`, `tcp`, `tool`, `flange`, `ee_link`,
+    ...), else the one farthest out that is no helper: no sensor, no shape for collision checks.
+    Between arms of equal length the better name decides, then the order of the file.
+
+    Parameters
+    ----------
+    document
+        The robot.
+    arm
+        Joints that are known to belong to the arm, such as those of its closed linkages.
+    """
+    children = children_of(document)
+    fingers = finger_joints(document, arm)
+    ends = _ends(document, children, set(fingers))
+    arms = [end for end in ends if not end.is_leg and len(end.motors) >= _FEWEST_OF_AN_ARM]
+    longest = max(len(end.motors) for end in arms or ends)
+    tied = [end for end in arms or ends if len(end.motors) == longest]
+    tools = {id(end): _tool_of(end, document, children) for end in ends}
+    order = {link.name: k for k, link in enumerate(document.links)}
+    chosen = min(tied, key=lambda end: (_rank(tools[id(end)]), order[tools[id(end)]]))
+    tool = tools[id(chosen)]
+    others = sorted((end for end in ends if end is not chosen), key=lambda end: -len(end.motors))
+    reach = _places(chosen, document, children)
+    return FrameChoice(
+        base=document.root,
+        tool=tool,
+        why_base="the root of the URDF",
+        why_tool=_why(tool, chosen),
+        others=tuple((tools[id(end)], len(end.motors)) for end in others),
+        beside=tuple(link for link in reach if link != tool and not _HELPER.search(link)),
+        fingers=fingers,
     )
 
 
-def _sliding_pairs(document: UrdfDocument, children: dict[str, list[JointSpec]]) -> set[str]:
-    """Joints that slide side by side on one link and carry nothing that moves: jaws."""
-    jaws: set[str] = set()
-    for joints in children.values():
-        ends = [
-            joint.name
-            for joint in joints
-            if joint.type == "prismatic" and not children.get(joint.child)
-        ]
-        if len(ends) > 1 and len(document.moving_joints) > len(ends):
-            jaws.update(ends)
-    return jaws
+def _why(tool: str, end: _End) -> str:
+    if end.joint is None:
+        return "no joint moves"
+    named = "its name says so" if _rank(tool) < len(_TOOL_NAMES) else "the frame farthest out"
+    return f"{named}, behind {len(end.motors)} joint" + "s" * (len(end.motors) > 1)
 
 
-def _walk(
-    document: UrdfDocument, children: dict[str, list[JointSpec]], fingers: set[str]
-) -> tuple[dict[str, int], dict[str, int], list[str]]:
-    """Moving joints and levels above each link that is not behind a finger; links in file order."""
-    moving, level = {document.root: 0}, {document.root: 0}
+def _few(names: Sequence[str]) -> str:
+    rest = len(names) - _MOST_NAMED
+    return ", ".join(names[:_MOST_NAMED]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _rank(link: str) -> int:
+    """How usual a name for a tool frame: 0 is best; the number of patterns if it is none."""
+    if _HELPER.search(link):
+        return len(_TOOL_NAMES)
+    fits = (k for k, pattern in enumerate(_TOOL_NAMES) if pattern.search(link))
+    return next(fits, len(_TOOL_NAMES))
+
+
+def _ends(document: UrdfDocument, children: Children, fingers: set[str]) -> list[_End]:
+    """Every way from the root outwards that ends with a motor, in the order of the file.
+
+    A motor is a moving joint that follows no other and is no finger. Links behind mimic joints
+    belong to the motor before them.
+    """
+    motors: dict[str, tuple[str, ...]] = {document.root: ()}
+    last: dict[str, JointSpec | None] = {document.root: None}
     stack = [document.root]
     while stack:
         link = stack.pop()
         for joint in children.get(link, ()):
             if joint.name in fingers:
                 continue
-            counts = joint.moves and joint.mimic is None
-            moving[joint.child] = moving[link] + int(counts)
-            level[joint.child] = level[link] + 1
+            drives = joint.moves and joint.mimic is None
+            motors[joint.child] = (*motors[link], joint.name) if drives else motors[link]
+            last[joint.child] = joint if drives else last[link]
             stack.append(joint.child)
-    return moving, level, [link.name for link in document.links if link.name in moving]
+    inner = {name for way in motors.values() for name in way[:-1]}
+    groups: dict[str | None, list[str]] = {}
+    for spec in document.links:
+        if spec.name in last:
+            motor = last[spec.name]
+            groups.setdefault(motor.name if motor else None, []).append(spec.name)
+    if len(groups) > 1:  # what no motor moves is no end
+        groups.pop(None, None)
+    return [
+        _End(last[links[0]], motors[links[0]], tuple(links))
+        for name, links in groups.items()
+        if name not in inner
+    ]
 
 
-def _by_name(links: list[str]) -> tuple[str | None, str]:
-    for pattern in _TOOL_NAMES:
-        for link in links:
-            if pattern.search(link):
-                return link, "its name says so"
-    return None, ""
+def _places(end: _End, document: UrdfDocument, children: Children) -> dict[str, Array]:
+    """Position of each link that the last motor carries rigidly, in that motor's frame [m]."""
+    start = end.joint.child if end.joint is not None else document.root
+    found = {start: np.eye(4)}
+    stack = [start]
+    while stack:
+        link = stack.pop()
+        for joint in children.get(link, ()):
+            if not joint.moves:
+                found[joint.child] = found[link] @ joint.origin
+                stack.append(joint.child)
+    return {link: T[:3, 3] for link, T in found.items()}
 
 
-def _branch(carried: list[str], above: dict[str, JointSpec]) -> list[str]:
-    """Of the carried links, those on the same rigid body as the first one."""
-
-    def body(link: str) -> str:
-        while link in above and not above[link].moves:
-            link = above[link].parent
-        return link
-
-    first = body(carried[0])
-    return [link for link in carried if body(link) == first]
-
-
-def _inner(link: str, children: dict[str, list[JointSpec]], fingers: set[str]) -> bool:
-    return any(joint.name not in fingers for joint in children.get(link, ()))
+def _tool_of(end: _End, document: UrdfDocument, children: Children) -> str:
+    """The best named link of an end, else the farthest one that is no helper."""
+    best = min(end.links, key=_rank)
+    if _rank(best) < len(_TOOL_NAMES):
+        return best
+    places = _places(end, document, children)
+    helpful = [link for link in places if not _HELPER.search(link)]
+    sensible = [link for link in helpful if not FINGER.search(link)] or helpful or list(places)[:1]
+    # Of frames at one point, within 1 µm, the one nearest to the motor is the real link.
+    return max(sensible, key=lambda link: round(float(np.linalg.norm(places[link])), 6))

@@ -1,14 +1,70 @@
-"""`<mimic>` rules: targets that exist, no circles, and followers of joints that stand still."""
+"""`<mimic>` rules: missing targets, no circles, and followers of joints that stand still."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.robot.urdf.document import Array, JointSpec
-from sk120stiff.robot.urdf.findings import Notebook, at, close_name, listed, shown
+from sk120stiff.robot.urdf.document import Array, JointSpec, Mimic, UrdfDocument
+from sk120stiff.robot.urdf.findings import Notebook, at, close_name, shown
+
+
+def without_orphans(
+    joints: tuple[JointSpec, ...], notes: Notebook
+) -> tuple[tuple[JointSpec, ...], dict[str, Mimic]]:
+    """The joints without mimic rules that name no joint of the robot, and those rules, each noted.
+
+    Such a joint hinders nobody as long as it lies beside the arm; `refuse_orphans` asks of an arm.
+    """
+    names = {joint.name for joint in joints}
+    orphans = {
+        joint.name: joint.mimic
+        for joint in joints
+        if joint.mimic is not None and joint.mimic.joint not in names
+    }
+    for joint in joints:
+        if joint.name in orphans:
+            missing = orphans[joint.name].joint
+            notes.warn(
+                "mimic_unknown",
+                at(joint.line, "joint", joint.name),
+                f"the joint mimics {shown(missing)}, which does not exist, and is held still. "
+                f"{_meant(missing, names)}Mend its <mimic>, or write the rule under couplings in "
+                "robot.yaml",
+            )
+    kept = (replace(j, mimic=None) if j.name in orphans else j for j in joints)
+    return tuple(kept), orphans
+
+
+def refuse_orphans(document: UrdfDocument, base: str, tool: str, settled: Collection[str]) -> None:
+    """A joint of the arm whose mimic rule leads nowhere is not taken for a motor by guess.
+
+    `settled` are joints of which the user said what they do.
+
+    Raises
+    ------
+    InputError
+        There is one between base and tool.
+    """
+    for joint in document.way(base, tool):
+        rule = document.orphans.get(joint.name)
+        if rule is None or joint.name in settled:
+            continue
+        Notebook(document.place).refuse(
+            f"the joint mimics {shown(rule.joint)}, which does not exist; it lies between "
+            f"{base!r} and {tool!r}",
+            where=at(joint.line, "joint", joint.name),
+            remedy=f"{_meant(rule.joint, [j.name for j in document.joints])}Mend its <mimic>, or "
+            f"say in robot.yaml what it does: couplings: {{{joint.name}: {{driver: JOINT}}}}, or "
+            f"lock: {{{joint.name}: 0.0}}, or name it under actuated.",
+        )
+
+
+def _meant(missing: str, names: Collection[str]) -> str:
+    close = close_name(missing, names)
+    return f"Did you mean {close!r}? " if close else ""
 
 
 def checked_mimics(
@@ -22,18 +78,9 @@ def checked_mimics(
     Raises
     ------
     InputError
-        A rule names an unknown joint, or rules run in a circle; the circle is listed.
+        Rules run in a circle; the circle is listed.
     """
     by_name = {joint.name: joint for joint in joints}
-    for joint in joints:
-        if joint.mimic is not None and joint.mimic.joint not in by_name:
-            close = close_name(joint.mimic.joint, by_name)
-            hint = f"Did you mean {close!r}? " if close else ""
-            notes.refuse(
-                f"the joint mimics {shown(joint.mimic.joint)}, which does not exist",
-                where=at(joint.line, "joint", joint.name),
-                remedy=f"{hint}Joints are: {listed(list(by_name))}.",
-            )
     followers: dict[str, list[str]] = {}
     for joint in joints:
         if joint.mimic is not None:

@@ -12,7 +12,7 @@ from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument, VisualSpec
 from sk120stiff.robot.urdf.findings import Notebook, at
 from sk120stiff.robot.urdf.joints import read_joint, same_names
 from sk120stiff.robot.urdf.links import read_link, read_materials, read_visuals
-from sk120stiff.robot.urdf.mimics import checked_mimics
+from sk120stiff.robot.urdf.mimics import checked_mimics, without_orphans
 from sk120stiff.robot.urdf.packages import package_folders as folders_around
 from sk120stiff.robot.urdf.source import RawSource, read_source
 from sk120stiff.robot.urdf.structure import declared_links, find_root
@@ -115,7 +115,8 @@ def _document(
     _refuse_reserved(joints, notes)
     links = declared_links(declared, joints, notes) if declared else tuple(declared)
     tree_root = find_root(links, joints, notes, root.line)
-    checked = checked_mimics(tuple(joints), locked, notes)
+    coupled, orphans = without_orphans(tuple(joints), notes)
+    checked = checked_mimics(coupled, locked, notes)
     colours = read_materials(root, notes)
     visuals: list[VisualSpec] = []
     for element, link in zip(link_elements, declared, strict=True):
@@ -130,6 +131,7 @@ def _document(
         visuals=tuple(visuals),
         root=tree_root,
         locked=locked,
+        orphans=orphans,
         warnings=tuple(notes.findings),
     )
 
