@@ -23,6 +23,7 @@ class ToolkitError(Exception):
     """
 
     exit_code: ClassVar[int] = 1
+    kind: ClassVar[str] = "refusal"
 
     def __init__(self, what: str, *, where: str | None = None, remedy: str | None = None) -> None:
         self.what = what.rstrip(".")
@@ -40,6 +41,7 @@ class InputError(ToolkitError):
     """A file, an option or an argument that cannot be used as given."""
 
     exit_code = 2
+    kind = "input"
 
 
 class Refusal(ToolkitError):

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sk120stiff.cli.document import as_json_text
-from sk120stiff.cli.explain_output import check_folder, findings, plan_of, replacing_results, said
+from sk120stiff.cli.document import SCHEMA, as_json_text
+from sk120stiff.cli.explain_output import (
+    check_folder,
+    findings,
+    page_or_warning,
+    plan_of,
+    replacing_results,
+    said,
+)
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
@@ -31,7 +38,6 @@ if TYPE_CHECKING:
     from sk120stiff.show.stories.demo_report import Demo
 
 ROBOT = "motoman_sk120"
-_WRITTEN = (("report", "html"), ("scene", "html"), ("model", "yaml"))
 Told = Callable[[int, int], None]
 
 
@@ -53,7 +59,7 @@ def command(
     with progress_bar("demo") as tell:
         made = demo_of(readings, robot, tell)
         written = _write(made, readings, data, out, tell)
-    return Answer({**_document(made), **written}, parts=_parts(made, out))
+    return Answer({**_document(made), **written}, parts=_parts(made, written))
 
 
 def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
@@ -86,44 +92,51 @@ def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
 def _write(
     made: Demo, readings: Measurements, data: Path, out: Path, tell: Told
 ) -> dict[str, object]:
-    """All files, the verdict last."""
+    """Verdict and model first; a page that cannot be made is a warning."""
     from sk120stiff.show import reproducibility, scene_html
     from sk120stiff.show.stories import demo_report, identify_scene
     from sk120stiff.show.stories.demo_report import OURS, PAPER
 
     where = provenance(data, readings)
-    tell(75, 100)
-    scene = scene_html(
-        identify_scene(
-            made.found,
-            made.paper,
-            names=(PAPER, OURS),
-            subtitle="Table II of the 2005 paper, measured",
-            model_file="model.yaml",
-        )
-    )
-    tell(80, 100)
-    inputs = [data, data.with_suffix(".yaml"), data.parent.parent / "sk120.urdf"]
     following = None if made.answer.next_poses is None else "next_poses.csv"
-    report = demo_report(
-        made,
-        next_poses=following or "",
-        scene=scene,
-        scene_link="scene.html",
-        reproducibility=reproducibility(where["command"], inputs),
-    ).html()
-    tell(98, 100)
-    model = replace(made.model, provenance=where)
-    verdict = verdict_document(made.answer, readings, following)
+    verdict = {"schema": SCHEMA, **verdict_document(made.answer, readings, following)}
     with replacing_results(out):
-        write_atomically(out / "report.html", report)
-        write_atomically(out / "scene.html", scene)
-        write_model(model, out / "model.yaml")
+        write_model(replace(made.model, provenance=where), out / "model.yaml")
         if following is not None:
             write_measurements(plan_of(made.answer, readings), out / following)
         write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
+    written: dict[str, object] = {"model": out / "model.yaml"}
+    tell(75, 100)
+    scene = page_or_warning(
+        "scene.html",
+        lambda: scene_html(
+            identify_scene(
+                made.found,
+                made.paper,
+                names=(PAPER, OURS),
+                subtitle="Table II of the 2005 paper, measured",
+                model_file="model.yaml",
+            )
+        ),
+    )
+    if scene is not None:
+        written["scene"] = write_atomically(out / "scene.html", scene)
+    tell(80, 100)
+    inputs = [data, data.with_suffix(".yaml"), data.parent.parent / "sk120.urdf"]
+    report = page_or_warning(
+        "report.html",
+        lambda: demo_report(
+            made,
+            next_poses=following or "",
+            scene=scene or "",
+            scene_link="scene.html" if scene else "",
+            reproducibility=reproducibility(where["command"], inputs),
+        ).html(),
+    )
+    if report is not None:
+        written["report"] = write_atomically(out / "report.html", report)
     tell(100, 100)
-    return {name: out / f"{name}.{end}" for name, end in _WRITTEN}
+    return written
 
 
 def _document(made: Demo) -> dict[str, object]:
@@ -155,7 +168,7 @@ def _per_pose(made: Demo) -> list[tuple[str, float, float]]:
     return [(p, float(b), float(a)) for p, b, a in zip(poses, before, after, strict=True)]
 
 
-def _parts(made: Demo, out: Path) -> list[object]:
+def _parts(made: Demo, written: Mapping[str, object]) -> list[object]:
     from sk120stiff.show.wording import with_error
 
     given = {p.name: p for p in made.paper.parameters}
@@ -180,6 +193,9 @@ def _parts(made: Demo, out: Path) -> list[object]:
         f"At their usual size {able} of {len(made.hidden)} other effects would leave enough beyond "
         "the springs to be named on these three poses."
     )
-    shown.append(f"Report: {out / 'report.html'}")
-    shown.append(f"Scene:  {out / 'scene.html'}")
+    shown += [
+        f"{title} {written[page]}"
+        for title, page in (("Report:", "report"), ("Scene: ", "scene"))
+        if page in written
+    ]
     return shown

@@ -9,6 +9,8 @@ import os
 from collections.abc import Mapping, Set
 from enum import Enum
 
+SCHEMA = 2  # of every JSON document: raised when a key changes its meaning or goes away
+
 
 def as_json_text(document: Mapping[str, object]) -> str:
     """One JSON object, one line per key.

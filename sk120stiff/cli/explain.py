@@ -86,4 +86,4 @@ def command(
         )
         task = Task(readings, data, inputs, holdout, seed)
         document = write_answer(answer, task, out, report=not no_report, progress=report)
-    return Answer(document, parts(answer, readings, out, report=not no_report))
+    return Answer(document, parts(answer, readings, out, report=document.get("report")))

@@ -11,18 +11,18 @@ from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.cli.document import as_json_text
+from sk120stiff.cli.document import SCHEMA, as_json_text
 from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
-from sk120stiff.cli.predict import prediction_table
+from sk120stiff.cli.predict import predict_what_holds, prediction_table
 from sk120stiff.cli.tables import table
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import DOUBTFUL, Explanation, verdict_document
 from sk120stiff.files import together, will_write, write_atomically
-from sk120stiff.identify import known_model
+from sk120stiff.identify import known_model, unseen_reasons
 from sk120stiff.measurements import Measurements, write_measurements
-from sk120stiff.model import predict_with_uncertainty, write_model
+from sk120stiff.model import Model, write_model
 from sk120stiff.show.wording import with_error
 
 FEW_POSES = 8  # below this other poses confirm little
@@ -105,32 +105,30 @@ def write_answer(
     report: bool,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, object]:
-    """Write model, gaps, next poses, scene and report; the verdict last, so that it marks the end.
+    """Write verdict, model and gaps as soon as they are known, the pages after them.
+
+    A page that cannot be made is a warning: what was found stands on the disk by then.
 
     Returns
     -------
     dict
-        The content of `verdict.json`, and where the files are.
+        The content of `verdict.json`, and where the files are that were written.
     """
     tell = progress or (lambda _done, _total: None)
     following = None if answer.next_poses is None else "next_poses.csv"
-    pages = _pages(answer, task, following, tell) if report else {}
+    document = {"schema": SCHEMA, **verdict_document(answer, task.readings, following)}
     fitted = replace(known_model(answer.final), provenance=provenance(task.data, task.readings))
-    gaps = io.StringIO()
-    predicted = predict_with_uncertainty(fitted, situation_of(fitted.robot, task.readings))
-    prediction_table(task.readings, predicted).to_csv(gaps, index=False)
-    document = verdict_document(answer, task.readings, following)
+    gaps = page_or_warning("gaps.csv", lambda: _gaps(fitted, task.readings))
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
-        write_atomically(out / "gaps.csv", gaps.getvalue())
+        if gaps is not None:
+            write_atomically(out / "gaps.csv", gaps)
         if following is not None:
             write_measurements(plan_of(answer, task.readings), out / following)
-        for name, text in pages.items():
-            write_atomically(out / name, text)
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
+    pages = _write_pages(answer, task, following, out, tell) if report else {}
     tell(100, 100)
-    places = {"out": out, "model": out / "model.yaml"}
-    return {**document, **places, **{Path(name).stem: out / name for name in pages}}
+    return {**document, "out": out, "model": out / "model.yaml", **pages}
 
 
 def replacing_results(out: Path) -> AbstractContextManager[None]:
@@ -142,28 +140,59 @@ def replacing_results(out: Path) -> AbstractContextManager[None]:
     return together(stale=[out / name for name in RESULTS], last=out / VERDICT)
 
 
-def _pages(
-    answer: Explanation, task: Task, following: str | None, tell: Callable[[int, int], None]
-) -> dict[str, str]:
-    """Names and texts of scene and report."""
+def _gaps(fitted: Model, readings: Measurements) -> str:
+    predicted = predict_what_holds(fitted, situation_of(fitted.robot, readings))
+    text = io.StringIO()
+    prediction_table(readings, predicted).to_csv(text, index=False)
+    return text.getvalue()
+
+
+def _write_pages(
+    answer: Explanation,
+    task: Task,
+    following: str | None,
+    out: Path,
+    tell: Callable[[int, int], None],
+) -> dict[str, Path]:
+    """Scene and report, each where it can be made."""
     from sk120stiff.show import reproducibility, scene_html
     from sk120stiff.show.stories import explain_report, explain_scene
 
     tell(88, 100)
-    scene = scene_html(explain_scene(answer, subtitle=task.data.name, model_file="model.yaml"))
+    scene = page_or_warning(
+        "scene.html",
+        lambda: scene_html(explain_scene(answer, subtitle=task.data.name, model_file="model.yaml")),
+    )
+    written = {} if scene is None else {"scene": write_atomically(out / "scene.html", scene)}
     tell(91, 100)
     command = provenance(task.data, task.readings)["command"]
-    told = explain_report(
-        answer,
-        task.readings,
-        data=task.data.name,
-        scene=scene,
-        scene_link="scene.html",
-        next_poses=following or "",
-        reproducibility=reproducibility(command, task.inputs, seed=task.seed),
-        **({} if task.holdout is None else {"heldout": _heldout(task.holdout)}),
+    report = page_or_warning(
+        "report.html",
+        lambda: explain_report(
+            answer,
+            task.readings,
+            data=task.data.name,
+            scene=scene or "",
+            scene_link="scene.html" if scene else "",
+            next_poses=following or "",
+            reproducibility=reproducibility(command, task.inputs, seed=task.seed),
+            **({} if task.holdout is None else {"heldout": _heldout(task.holdout)}),
+        ).html(),
     )
-    return {"scene.html": scene, "report.html": told.html()}
+    if report is not None:
+        written["report"] = write_atomically(out / "report.html", report)
+    return written
+
+
+def page_or_warning(name: str, make: Callable[[], str]) -> str | None:
+    """Text of a page; None, with a warning, where it cannot be made."""
+    from sk120stiff.show.report import failure
+
+    try:
+        return make()
+    except Exception as error:  # noqa: BLE001  (an answer is never lost to its page)
+        failure(f"the page {name}", error)
+        return None
 
 
 def _heldout(file: Path) -> str:
@@ -191,8 +220,10 @@ def plan_of(answer: Explanation, readings: Measurements) -> Measurements:
     )
 
 
-def parts(answer: Explanation, readings: Measurements, out: Path, *, report: bool) -> list[object]:
-    """The answer for people."""
+def parts(
+    answer: Explanation, readings: Measurements, out: Path, *, report: object = None
+) -> list[object]:
+    """The answer for people; `report` is where the report was written, if it was."""
     shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
@@ -201,6 +232,9 @@ def parts(answer: Explanation, readings: Measurements, out: Path, *, report: boo
         lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
         shown.append(f"{lead}: {', '.join(answer.suspects)}.")
     shown += answer.unnamed
+    shown += [
+        f"{name} cannot be seen: {why}." for name, why in unseen_reasons(answer.final).items()
+    ]
     if answer.findings and answer.adequacy.lacking:
         p = answer.adequacy.probability
         shown.append(f"That is not all: more is left than the noise makes (p = {p:.1g}).")
@@ -212,8 +246,8 @@ def parts(answer: Explanation, readings: Measurements, out: Path, *, report: boo
     ]
     if answer.next_poses is not None:
         shown.append(f"Measure next what stands in {out / 'next_poses.csv'}.")
-    if report:
-        shown.append(f"Report: {out / 'report.html'}")
+    if report is not None:
+        shown.append(f"Report: {report}")
     shown.append(f"Results are in {out}.")
     return shown
 

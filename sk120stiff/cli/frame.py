@@ -20,14 +20,16 @@ from typing import Annotated, NoReturn, TextIO
 
 import typer
 
-from sk120stiff.cli.document import as_json_text
+from sk120stiff.cli.document import SCHEMA, as_json_text
 from sk120stiff.errors import ToolkitError
 from sk120stiff.files import running
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks and every log message.")]
 
+INTERNAL = 3
 INTERRUPTED = 130
+NOBODY_READS = 141  # as a shell reports a process whose reader has gone
 
 
 @dataclass(frozen=True)
@@ -58,11 +60,13 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
 
     @functools.wraps(body)
     def run(*, as_json: bool, debug: bool, **options: object) -> None:
-        with guarded(debug=debug), running(), _messages(debug=debug):
-            answer = body(**options)
-            emit(answer, as_json=as_json)
+        with running(), _messages(debug=debug) as told:
+            with guarded(debug=debug, as_json=as_json):
+                answer = body(**options)
+                emit(answer, as_json=as_json, warned=told)
             if answer.afterwards is not None:
-                answer.afterwards()
+                with guarded(debug=debug):  # a document has been printed: there is no second one
+                    answer.afterwards()
         if answer.exit_code:
             raise typer.Exit(answer.exit_code)
 
@@ -76,46 +80,82 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
 
 
 @contextmanager
-def guarded(*, debug: bool | None = None) -> Iterator[None]:
+def guarded(*, debug: bool, as_json: bool = False) -> Iterator[None]:
     """Turn whatever goes wrong inside into one message on stderr and an exit code.
 
     Parameters
     ----------
     debug
-        Show the traceback too. Default: whether ``--debug`` stands on the command line.
+        Show the traceback too.
+    as_json
+        Print the message as a JSON document on stdout too.
     """
-    show = "--debug" in sys.argv if debug is None else debug
     try:
         yield
     except typer.Exit:
         raise
     except KeyboardInterrupt:
-        _leave(INTERRUPTED, "Interrupted. Files that were not finished are left as they were.")
+        said = "Interrupted. Files that were not finished are left as they were."
+        _leave(Failure(INTERRUPTED, "interrupted", said), said, as_json=as_json)
     except ToolkitError as error:
-        _leave(error.exit_code, f"Error: {error}", trace=show)
+        failure = Failure(error.exit_code, error.kind, error.what, error.where, error.remedy)
+        _leave(failure, f"Error: {error}", trace=debug, as_json=as_json)
     except BrokenPipeError:
         _hush(sys.stdout, sys.stderr)
-        raise typer.Exit(1) from None
+        raise typer.Exit(NOBODY_READS) from None
     except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
-        _leave(1, f"Error: {place}{error.strerror or error}.", trace=show)
+        place = str(error.filename) if error.filename else None
+        failure = Failure(INTERNAL, "system", str(error.strerror or error), place)
+        said = f"Error: {place + ': ' if place else ''}{failure.message}."
+        _leave(failure, said, trace=debug, as_json=as_json)
     except MemoryError:
-        _leave(1, "Error: not enough memory for this request.", trace=show)
+        failure = Failure(INTERNAL, "system", "not enough memory for this request")
+        _leave(failure, f"Error: {failure.message}.", trace=debug, as_json=as_json)
     except Exception as error:  # noqa: BLE001  (the last resort, and it says so)
-        what = str(error) or "no message"
-        _leave(
-            1,
-            f"Internal error: {type(error).__name__}: {what}\n"
+        what = f"{type(error).__name__}: {str(error) or 'no message'}"
+        remedy = (
             "This is a fault of the program, not of your input; "
-            "run the command again with --debug and report what it prints.",
-            trace=show,
+            "run the command again with --debug and report what it prints."
         )
+        failure = Failure(INTERNAL, "internal", what, remedy=remedy)
+        _leave(failure, f"Internal error: {what}\n{remedy}", trace=debug, as_json=as_json)
 
 
-def emit(answer: Answer, *, as_json: bool) -> None:
+@dataclass(frozen=True)
+class Failure:
+    """What a failed command says in JSON.
+
+    Attributes
+    ----------
+    exit_code
+        Of the process.
+    kind
+        ``usage``, ``input``, ``refusal``, ``system`` (disk, memory), ``internal``, ``interrupted``.
+    message, where, remedy
+        What is wrong, where, and what to do; None where there is nothing to say.
+    """
+
+    exit_code: int
+    kind: str
+    message: str
+    where: str | None = None
+    remedy: str | None = None
+
+    @property
+    def document(self) -> dict[str, object]:
+        """The JSON document."""
+        told = {"kind": self.kind, "message": self.message}
+        return {"schema": SCHEMA, "error": {**told, "where": self.where, "remedy": self.remedy}}
+
+
+def emit(answer: Answer, *, as_json: bool, warned: Sequence[str] = ()) -> None:
     """Print an answer on stdout: one JSON document, or its parts for people."""
+    refused: Mapping[str, object] = {}
+    if answer.exit_code:
+        said = next((part for part in answer.parts if isinstance(part, str)), "no result to give")
+        refused = Failure(answer.exit_code, "refusal", said).document
     if as_json:
-        print(as_json_text(answer.document))
+        print(as_json_text({"schema": SCHEMA, "warnings": warned, **answer.document, **refused}))
     elif answer.parts:
         print(_text(answer.parts))
     sys.stdout.flush()
@@ -141,9 +181,9 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def _messages(*, debug: bool) -> Iterator[None]:
-    """Warnings and the package's log as single lines on stderr, each warning once."""
-    seen: set[str] = set()
+def _messages(*, debug: bool) -> Iterator[list[str]]:
+    """Warnings and the package's log as single lines on stderr; yields the warnings, each once."""
+    seen: list[str] = []
 
     def show(
         message: Warning | str,
@@ -156,7 +196,7 @@ def _messages(*, debug: bool) -> Iterator[None]:
         del category, file, line  # the signature is Python's
         text = " ".join(str(message).split())
         if text not in seen:
-            seen.add(text)
+            seen.append(text)
             note(f"Warning: {text}" + (f" ({filename}:{lineno})" if debug else ""))
 
     log = logging.getLogger("sk120stiff")
@@ -167,20 +207,24 @@ def _messages(*, debug: bool) -> Iterator[None]:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = show
-            yield
+            yield seen
     finally:
         log.removeHandler(handler)
         log.setLevel(before)
 
 
-def _leave(code: int, message: str, *, trace: bool = False) -> NoReturn:
+def _leave(
+    failure: Failure, message: str, *, trace: bool = False, as_json: bool = False
+) -> NoReturn:
     try:
         if trace:
             traceback.print_exc(file=sys.stderr)
         note(message)
+        if as_json:
+            print(as_json_text(failure.document), flush=True)
     except BrokenPipeError:
-        _hush(sys.stderr)
-    raise typer.Exit(code) from None
+        _hush(sys.stdout, sys.stderr)
+    raise typer.Exit(failure.exit_code) from None
 
 
 def _hush(*streams: TextIO) -> None:

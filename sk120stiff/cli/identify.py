@@ -30,6 +30,7 @@ from sk120stiff.identify import (
     known_model,
     lack_of_fit,
     profile_intervals,
+    unseen_reasons,
     weak_directions,
 )
 from sk120stiff.identify.report import noise_sentence, place_of
@@ -154,11 +155,12 @@ def parameter_rows(
 
     `value` ± `std` are the estimate and its standard error to first order; `interval_95` is made in
     compliances, where the readings are linear, and is the better one for soft data. A value that
-    the readings do not show is null.
+    the readings do not show is null, and `reason` says why.
     """
     rows: list[dict[str, object]] = []
     starts = found.problem.model.values[found.problem.free]
     ends = found.intervals()
+    unseen = unseen_reasons(found)
     for k, p in enumerate(found.parameters):
         shown = bool(found.identifiable[k])
         row: dict[str, object] = {
@@ -170,6 +172,7 @@ def parameter_rows(
             "start": p.spec.public(float(starts[k])),
             "at_bound": bool(found.at_bound[k]),
             "identifiable": shown,
+            "reason": unseen.get(p.name),
             "plausible": abs(p.value) <= p.spec.plausible,
         }
         if profile is not None:

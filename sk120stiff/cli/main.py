@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from contextvars import ContextVar
 from importlib import import_module
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
 PROGRAM = "sk120stiff"
+BAD_USAGE = 2
+_ASKED_FOR_JSON = ContextVar("asked for JSON", default=False)
+# typer shows the base class of its usage errors under no public name.
+_UsageError = cast(type[Exception], typer.BadParameter.__mro__[1])
 
 # Command → what it answers. `sk120stiff/cli/NAME.py` holds its function `command`, whose docstring
 # opens with the same line; the file is imported when the command is called, not before.
@@ -48,7 +53,7 @@ class LazyGroup(TyperGroup):
 def _load(name: str) -> Any:
     from sk120stiff.cli.frame import framed, guarded
 
-    with guarded():
+    with guarded(debug="--debug" in sys.argv, as_json=_ASKED_FOR_JSON.get()):
         body = import_module(f"{__package__}.{name}").command
     return get_command(_application(name, framed(body)))
 
@@ -75,7 +80,7 @@ def _root(
     """How stiff a robot arm is under load, which springs it has, and what its model is missing.
 
     Every command takes --help, --json (one JSON document on stdout) and --debug.
-    Exit codes: 0 done, 1 an explained refusal or failure, 2 bad usage or bad input.
+    Exit codes: 0 done, 1 an explained refusal, 2 bad usage or bad input, 3 an internal error.
     """
 
 
@@ -99,18 +104,37 @@ def application() -> Any:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code: 0, 1, 2, or 130 when interrupted.
+    """Run one command and return its exit code: 0, 1, 2, 3, or 130 when interrupted.
+
+    With ``--json`` among the arguments every failure prints one JSON document on stdout.
 
     Parameters
     ----------
     arguments
         What follows the program's name; the process's own arguments by default.
     """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    _ASKED_FOR_JSON.set("--json" in words)
     try:
-        application().main(args=arguments, prog_name=PROGRAM)
+        code = application().main(args=words, prog_name=PROGRAM, standalone_mode=False)
+    except _UsageError as error:
+        return _misused(error, as_json=_ASKED_FOR_JSON.get())
     except SystemExit as leaving:
-        return leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None)
-    return 0
+        code = leaving.code
+    return code if isinstance(code, int) else int(code is not None)
+
+
+def _misused(error: Any, *, as_json: bool) -> int:
+    """Say what is wrong with the command line, on stderr and where wanted as JSON."""
+    error.show()
+    if as_json:
+        from sk120stiff.cli.document import as_json_text
+        from sk120stiff.cli.frame import Failure
+
+        where = error.ctx.command_path if error.ctx is not None else PROGRAM
+        said = (error.format_message(), where, f"Try '{where} --help'.")
+        print(as_json_text(Failure(BAD_USAGE, "usage", *said).document))
+    return BAD_USAGE
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import Effect, effect, situation_of
 from sk120stiff.errors import InputError
+from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model, read_model
 from sk120stiff.plan import (
@@ -151,20 +152,28 @@ def _precise(
     )
     random, spread = _held_against(design.gain_over, pool, count, seed)
     expected: list[dict[str, object]] = []
-    rows = []
+    rows: list[tuple[object, ...]] = []
+    chosen = pool.situation.rows(np.array(design.rows, dtype=np.intp))
+    blind: list[object] = []
     for name, std in zip(design.parameters, design.std, strict=True):
         p = model.parameter(name)
         public, unit = p.spec.public_std(p.value, float(std)), p.spec.unit
+        why = why_unseen(chosen, p)
         expected.append(
             {
                 "name": name,
                 "value": p.public_value,
-                "std": public,
+                "std": None if why else public,
                 "unit": unit,
-                "internal_std": float(std),
+                "internal_std": None if why else float(std),
                 "internal_unit": p.spec.internal_unit,
+                "reason": why,
             }
         )
+        if why:
+            blind.append(f"{name} cannot be seen: {why}.")
+            rows.append((name, p.public_value, "cannot be seen", unit))
+            continue
         shown = (public, unit) if np.isfinite(public) else (float(std), p.spec.internal_unit)
         rows.append((name, p.public_value, *shown))
     document: dict[str, object] = {
@@ -178,6 +187,7 @@ def _precise(
         table("To expect", ["parameter", "value", "std. error", "unit"], rows),
         f"Standard errors {random:.2f} times smaller than with random poses, {spread:.2f} times "
         "smaller than with well-spread ones.",
+        *blind,
     ]
     return design.rows, document, said
 

@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.explain.explanation import Explanation, Finding
-from sk120stiff.identify import Fit
+from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Parameter
+
+RIGID = "it lies on its bound: rigid fits best"
 
 
 def verdict_document(
@@ -80,8 +82,15 @@ def noise_floor(fit: Fit) -> float:
 def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
     """All parameters of the final model, with the base model's estimate of each."""
     before = {p.name: p for p in answer.base.model.parameters}
+    unseen = unseen_reasons(answer.final)
+    hidden = unseen_reasons(answer.base)
     return [
-        {**_parameter(p), "before": before[p.name].public_value if p.name in before else None}
+        {
+            **_parameter(p, unseen.get(p.name)),
+            "before": before[p.name].public_value
+            if p.name in before and p.name not in hidden
+            else None,
+        }
         for p in answer.final.model.parameters
     ]
 
@@ -89,12 +98,13 @@ def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
 def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
     found = [p for p in answer.final.model.parameters if p.effect == finding.effect]
     evidence = finding.evidence
+    unseen = unseen_reasons(answer.final)
     return {
         "name": finding.effect.name,
         "where": finding.effect.where,
         "alternatives": list(finding.alternatives),
         "exact_aliases": list(finding.exact),
-        "parameters": [_parameter(p) for p in found],
+        "parameters": [_parameter(p, unseen.get(p.name)) for p in found],
         "sentence": finding.effect.sentence(),
         "evidence": {
             "delta_bic": evidence.score_gain,
@@ -112,13 +122,16 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
     }
 
 
-def _parameter(p: Parameter) -> dict[str, Any]:
+def _parameter(p: Parameter, unseen: str | None = None) -> dict[str, Any]:
+    """Value and error; null, with the reason, for what the readings do not show."""
+    shown = unseen is None
     return {
         "name": p.name,
-        "value": p.public_value,
-        "std": p.public_std,
+        "value": p.public_value if shown else None,
+        "std": p.public_std if shown else None,
         "unit": p.spec.unit,
-        "internal_value": p.value,
-        "internal_std": p.std,
+        "internal_value": p.value if shown else None,
+        "internal_std": p.std if shown else None,
         "internal_unit": p.spec.internal_unit,
+        "reason": unseen or (RIGID if np.isinf(p.public_value) else None),
     }

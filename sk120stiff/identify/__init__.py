@@ -11,6 +11,7 @@ from sk120stiff.identify.report import fit_report
 from sk120stiff.identify.saturated import choose_noise
 from sk120stiff.identify.solving import solve, solve_near
 from sk120stiff.identify.uncertainty import known_model
+from sk120stiff.identify.unseen import unseen_reasons, why_unseen
 from sk120stiff.identify.weak import weak_directions
 
 __all__ = [
@@ -30,5 +31,7 @@ __all__ = [
     "refuse_unusable",
     "solve",
     "solve_near",
+    "unseen_reasons",
     "weak_directions",
+    "why_unseen",
 ]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sk120stiff.identify.covariance import covariance_of
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.polish import seen_directions
+from sk120stiff.identify.unseen import why_unseen
 from sk120stiff.model import Parameter
 from sk120stiff.robot.coupling import Array
 
@@ -82,9 +83,9 @@ def _blind_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
 def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
     parameters = [fit.parameters[k] for k in group]
     if len(group) == 1:
-        return (
-            f"{parameters[0].name} does not show in these readings: no plausible value would "
-            "change them by a tenth of their noise."
+        why = why_unseen(fit.problem.situation, parameters[0])
+        return f"{parameters[0].name} does not show in these readings: " + (
+            f"{why}." if why else "no plausible value would change them by a tenth of their noise."
         )
     if size >= len(group):
         return f"{_listed([p.name for p in parameters])} cannot be told from the others."

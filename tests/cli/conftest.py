@@ -29,6 +29,19 @@ class Outcome:
 
         return json.loads(self.stdout, parse_constant=refuse)
 
+    @property
+    def error(self) -> dict[str, Any]:
+        """What the JSON document of a failure says."""
+        assert set(self.document) == {"schema", "error"}
+        assert self.document["schema"] == 2
+        assert set(self.document["error"]) == {"kind", "message", "where", "remedy"}
+        return self.document["error"]
+
+    @property
+    def answered(self) -> bool:
+        """Does stdout hold an answer, rather than nothing or the document of a failure?"""
+        return bool(self.stdout) and "error" not in self.document
+
 
 Run = Callable[..., Outcome]
 

@@ -69,7 +69,7 @@ def test_what_is_no_urdf_is_refused(run, tmp_path: Path, content: bytes, hint: s
     path = tmp_path / "broken.urdf"
     path.write_bytes(content)
     outcome = run("check", str(path), "--json")
-    assert (outcome.code, outcome.stdout) == (2, "")
+    assert (outcome.code, outcome.answered) == (2, False)
     assert outcome.stderr.startswith("Error: ")
     assert str(path) in outcome.stderr
     assert hint in outcome.stderr

@@ -103,14 +103,16 @@ def test_the_scene_holds_every_measured_pose(demo) -> None:
     assert scene["models"] == ["paper's springs", "identified"]
 
 
-def test_interrupted_it_leaves_nothing(tmp_path, run, monkeypatch) -> None:
+def test_interrupted_while_it_draws_it_keeps_what_it_found(tmp_path, run, monkeypatch) -> None:
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("sk120stiff.show.stories.demo_report", interrupted)
+    monkeypatch.setattr("sk120stiff.show.stories.identify_scene", interrupted)
     outcome = run("demo", "--out", str(tmp_path / "out"))
     assert outcome.code == 130
-    assert not (tmp_path / "out").exists()
+    kept = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {"verdict.json", "model.yaml"} <= kept
+    assert not kept & {"report.html", "scene.html"}
 
 
 def test_a_file_is_no_folder(tmp_path, run) -> None:

@@ -60,7 +60,8 @@ def test_the_answer_goes_to_stdout_and_the_rest_to_stderr(run, teach) -> None:
         "Warning: no masses, gravity is zero",
     ]
     written = run("probe", "--json")
-    assert written.document == {"values": [1.0]}
+    warned = ["no masses, gravity is zero"]
+    assert written.document == {"schema": 2, "warnings": warned, "values": [1.0]}
     assert written.stderr == spoken.stderr
     assert "byte by byte" in run("probe", "--debug").stderr
 
@@ -70,28 +71,40 @@ def test_the_answer_goes_to_stdout_and_the_rest_to_stderr(run, teach) -> None:
     [
         (
             InputError("no unit", where="d.csv, column fx", remedy="Write fx[N]."),
-            2,
+            (2, "input"),
             "Error: d.csv, column fx: no unit. Write fx[N].\n",
         ),
-        (Refusal("the arm is unstable"), 1, "Error: the arm is unstable.\n"),
+        (Refusal("the arm is unstable"), (1, "refusal"), "Error: the arm is unstable.\n"),
         (
             MissingPart("distributed", "cluster", needed_for="map"),
-            2,
+            (2, "input"),
             'pip install "sk120stiff[cluster]"',
         ),
-        (KeyboardInterrupt(), 130, "Interrupted."),
-        (OSError(28, "No space left on device", "out.csv"), 1, "Error: out.csv: No space left"),
-        (MemoryError(), 1, "Error: not enough memory"),
-        (ZeroDivisionError("division by zero"), 1, "Internal error: ZeroDivisionError"),
+        (KeyboardInterrupt(), (130, "interrupted"), "Interrupted."),
+        (
+            OSError(28, "No space left on device", "out.csv"),
+            (3, "system"),
+            "Error: out.csv: No space left",
+        ),
+        (MemoryError(), (3, "system"), "Error: not enough memory"),
+        (
+            ZeroDivisionError("division by zero"),
+            (3, "internal"),
+            "Internal error: ZeroDivisionError",
+        ),
     ],
 )
 @pytest.mark.parametrize("extra", [(), ("--json",)])
 def test_failures_are_one_message(run, teach, error, code, message, extra) -> None:
     teach(failing_with(error))
     outcome = run("probe", *extra)
-    assert outcome.code == code
+    assert outcome.code == code[0]
     assert message in outcome.stderr
-    assert outcome.stdout == ""
+    if extra:
+        assert outcome.error["kind"] == code[1]
+        assert outcome.error["message"].rstrip(".") in outcome.stderr
+    else:
+        assert outcome.stdout == ""
     assert "Traceback" not in outcome.stderr
 
 
@@ -106,20 +119,22 @@ def test_debug_shows_where_in_the_code(run, teach) -> None:
 def test_a_refusal_may_have_a_document(run, teach) -> None:
     teach(lambda: Answer({"verdict": "outside"}, exit_code=1))
     outcome = run("probe", "--json")
-    assert (outcome.code, outcome.document) == (1, {"verdict": "outside"})
+    document = outcome.document
+    assert (outcome.code, document["verdict"], document["schema"]) == (1, "outside", 2)
+    assert document["error"]["kind"] == "refusal"
 
 
 def test_what_json_cannot_say_is_a_fault_of_the_program(run, teach) -> None:
     teach(lambda: Answer({"value": 1j}))
     outcome = run("probe", "--json")
-    assert (outcome.code, outcome.stdout) == (1, "")
+    assert (outcome.code, outcome.error["kind"]) == (3, "internal")
     assert "Internal error: TypeError" in outcome.stderr
 
 
 def test_a_command_whose_import_fails_is_reported(run, monkeypatch) -> None:
     monkeypatch.setitem(entry.COMMANDS, "absent", "A command without a file.")
-    outcome = run("absent")
-    assert outcome.code == 1
+    outcome = run("absent", "--json")
+    assert (outcome.code, outcome.error["kind"]) == (3, "internal")
     assert "Internal error: ModuleNotFoundError" in outcome.stderr
 
 
@@ -135,10 +150,23 @@ def test_a_command_whose_import_fails_is_reported(run, monkeypatch) -> None:
 )
 def test_bad_usage_is_one_message(run, arguments, hint) -> None:
     outcome = run(*arguments)
-    assert outcome.code == 2
-    assert outcome.stdout == ""
+    assert (outcome.code, outcome.stdout) == (2, "")
     assert outcome.stderr.count("Error:") == 1
     assert hint in outcome.stderr
+    told = run(*arguments, "--json").error
+    assert told["kind"] == "usage"
+    assert hint in f"{told['message']} {told['remedy']}" or "--json" in told["message"]
+
+
+def test_a_failure_after_the_answer_prints_no_second_document(run, teach) -> None:
+    """A server that falls over later leaves the one document that was printed."""
+
+    def fall() -> None:
+        raise ZeroDivisionError("x")
+
+    teach(lambda: Answer({"url": "here"}, afterwards=fall))
+    outcome = run("probe", "--json")
+    assert (outcome.code, outcome.document["url"]) == (3, "here")
 
 
 def test_nobody_reads_on(tmp_path: Path) -> None:
@@ -160,7 +188,7 @@ def test_nobody_reads_on(tmp_path: Path) -> None:
         [sys.executable, str(script)], stdout=write, stderr=subprocess.PIPE, text=True, check=False
     )
     os.close(write)
-    assert (done.returncode, done.stderr) == (1, "")
+    assert (done.returncode, done.stderr) == (141, "")
 
 
 def test_ctrl_c_leaves_the_old_file(tmp_path: Path) -> None:

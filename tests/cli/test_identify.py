@@ -124,7 +124,7 @@ def test_free_and_fixed_parameters(run) -> None:
     assert [p["name"] for p in only["parameters"]] == SPRINGS[2:]
     assert only["rms_um"] > fixed["rms_um"] > 17.3
     outcome = run("identify", DATA, "--fix", "joint_springs:joint_9.stiffness")
-    assert (outcome.code, outcome.stdout) == (2, "")
+    assert (outcome.code, outcome.answered) == (2, False)
     assert "joint_1_s" in outcome.stderr
 
 
@@ -196,7 +196,7 @@ def test_robust_counts_what_it_trusts_less(run, copy, rows) -> None:
 def test_unusable_readings(run, copy, rows, tmp_path: Path, change, hint: str) -> None:
     out = tmp_path / "model.yaml"
     outcome = run("identify", copy("bad", change(rows)), "--out", str(out), "--json")
-    assert (outcome.code, outcome.stdout) == (2, "")
+    assert (outcome.code, outcome.answered) == (2, False)
     assert hint in outcome.stderr
     assert "bad.csv" in outcome.stderr
     assert not out.exists()
@@ -227,7 +227,7 @@ def test_nothing_that_shows_is_a_refusal(run, tmp_path: Path) -> None:
     )
     out = tmp_path / "model_out.yaml"
     outcome = run("identify", DATA, "--model", str(model), "--out", str(out), "--json")
-    assert (outcome.code, outcome.stdout) == (1, "")
+    assert (outcome.code, outcome.answered) == (1, False)
     assert "show none of the free parameters" in outcome.stderr
     assert not out.exists()
 

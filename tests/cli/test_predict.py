@@ -71,7 +71,7 @@ def test_loads_that_nothing_holds_are_left_empty_and_say_so(run, tmp_path: Path)
     settings = (DATA / "table2_measured.yaml").read_text(encoding="utf-8")
     alone.with_suffix(".yaml").write_text(settings, encoding="utf-8")
     refused = run("predict", str(soft), str(alone), "--json")
-    assert (refused.code, refused.stdout) == (1, "")
+    assert (refused.code, refused.answered) == (1, False)
 
 
 def test_bad_input(run) -> None:

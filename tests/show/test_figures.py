@@ -200,3 +200,25 @@ def contrast(one: str, other: str) -> float:
 @pytest.mark.parametrize("ground", [palette.PAPER, palette.WASH])
 def test_text_has_the_contrast_that_wcag_asks_for(text: str, ground: str) -> None:
     assert contrast(text, ground) >= 4.5
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "words"),
+    [
+        (3e4, np.inf, "cannot be seen"),
+        (np.nan, None, "cannot be seen"),
+        (np.inf, None, "rigid"),
+        (3e4, 3e9, "± "),
+    ],
+)
+def test_a_value_that_cannot_be_seen_spoils_no_picture(value, std, words) -> None:
+    known = f.Estimate("joint_1", 1.0e6, 2.0e4, "N·m/rad", 1.1e6)
+    hidden = f.Estimate("joint_6", value, std, "N·m/rad", 2.9e4)
+    for estimates in ([known, hidden], [hidden]):
+        figure = f.parameter_forest(estimates)
+        figure.canvas.draw()
+        (panel,) = figure.axes
+        assert np.isfinite(panel.get_xlim()).all()
+        assert any(words in text.get_text() for text in panel.texts)
+    low, high = f.parameter_forest([known, hidden]).axes[0].get_xlim()
+    assert high - low < 0.5  # what is hardly known does not squeeze what is known

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.style import new_figure, styled
 from sk120stiff.show.wording import with_error
 
+Array = NDArray[np.float64]
+VAGUE = 1.0  # two standard errors over the value beyond which a value is hardly known
+
 
 @dataclass(frozen=True)
 class Estimate:
-    """One parameter; `std` is its standard error, `reference` a value to compare with."""
+    """One parameter; `std` is its standard error, `reference` a value to compare with.
+
+    An infinite `std`, or a value that is not finite, belongs to what the readings do not show: it
+    is named without a marker.
+    """
 
     name: str
     value: float
@@ -25,6 +34,11 @@ class Estimate:
     reference: float | None = None
     note: str = ""
 
+    @property
+    def shown(self) -> bool:
+        """Do the readings say anything of it?"""
+        return math.isfinite(self.value) and (self.std is None or math.isfinite(self.std))
+
 
 def parameter_forest(
     estimates: Sequence[Estimate], *, reference_name: str = "reference", title: str | None = None
@@ -32,22 +46,24 @@ def parameter_forest(
     """Every parameter relative to its reference (or to itself), with ±2 standard errors.
 
     A relative axis lets springs of different size share one picture; the values stand beside it.
+    Values that are hardly known leave the picture on both sides instead of squeezing the others.
     """
     if not estimates:
         raise InputError("no parameter to draw")
-    scale = np.array([_scale(e) for e in estimates])
-    centre = np.array([e.value for e in estimates]) / scale
-    spread = np.array([np.nan if e.std is None else 2.0 * e.std for e in estimates]) / abs(scale)
+    seen = np.array([e.shown for e in estimates])
+    scale = np.array([_scale(e) if e.shown else 1.0 for e in estimates])
+    centre = np.array([e.value if e.shown else np.nan for e in estimates]) / scale
+    spread = np.array([2.0 * (e.std or 0.0) if e.shown else 0.0 for e in estimates]) / abs(scale)
     with styled():
         figure = new_figure(1.05 + 0.36 * len(estimates))
         panel = figure.subplots()
         rows = np.arange(len(estimates))
         panel.axvline(1.0, color=palette.SOFT_INK, linewidth=1.0, linestyle=":")
         panel.errorbar(
-            centre, rows, xerr=np.nan_to_num(spread), fmt="o", color=palette.BLUE, capsize=3,
+            centre[seen], rows[seen], xerr=spread[seen], fmt="o", color=palette.BLUE, capsize=3,
             markersize=6, elinewidth=1.6,
         )  # fmt: skip
-        compared = [k for k, e in enumerate(estimates) if e.reference is not None]
+        compared = [k for k, e in enumerate(estimates) if e.reference is not None and e.shown]
         if compared:
             panel.plot(np.ones(len(compared)), compared, "|", color=palette.ORANGE, markersize=17,
                        markeredgewidth=2.6, zorder=1)  # fmt: skip
@@ -56,8 +72,8 @@ def parameter_forest(
         for k, e in enumerate(estimates):
             panel.annotate(_written(e), (1.02, k), xycoords=("axes fraction", "data"),
                            va="center", fontsize=8.5)  # fmt: skip
-        reach = float(np.nanmax([*abs(centre - 1.0), *(abs(centre - 1.0) + np.nan_to_num(spread))]))
-        panel.set_xlim(1.0 - 1.15 * (reach or 0.1), 1.0 + 1.15 * (reach or 0.1))
+        reach = 1.15 * (_reach(centre[seen], spread[seen]) or 0.1)
+        panel.set_xlim(1.0 - reach, 1.0 + reach)
         panel.set_xlabel(
             f"value / {reference_name}, ±2 standard errors"
             if compared
@@ -70,11 +86,21 @@ def parameter_forest(
     return figure
 
 
+def _reach(centre: Array, spread: Array) -> float:
+    """Half width of the picture: all of what is known to better than itself, else all there is."""
+    known = spread <= VAGUE
+    if known.any():
+        centre, spread = centre[known], spread[known]
+    return float(np.max(np.abs(centre - 1.0) + np.minimum(spread, VAGUE), initial=0.0))
+
+
 def _scale(e: Estimate) -> float:
-    size = e.reference if e.reference else e.value
+    size = e.reference if e.reference and math.isfinite(e.reference) else e.value
     return size if size else (e.std or 1.0)
 
 
 def _written(e: Estimate) -> str:
     note = f"  {e.note}" if e.note else ""
+    if not e.shown:
+        return f"{'rigid' if math.isinf(e.value) else 'cannot be seen'}{note}"
     return f"{with_error(e.value, e.std, e.unit)}{note}"

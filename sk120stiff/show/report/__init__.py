@@ -1,5 +1,6 @@
 """The report: content in plain blocks, one look for every command that writes one."""
 
+from sk120stiff.show.report.attempts import attempted, failure
 from sk120stiff.show.report.blocks import (
     Block,
     Code,
@@ -27,5 +28,7 @@ __all__ = [
     "SceneFrame",
     "Section",
     "Table",
+    "attempted",
+    "failure",
     "reproducibility",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -49,9 +49,13 @@ class Table:
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A figure with its caption; `alt` tells what it shows to a reader who cannot see it."""
+    """A figure with its caption; `alt` tells what it shows to a reader who cannot see it.
 
-    figure: Figure
+    `figure` may be a function that draws it: then a drawing that fails is said in its place, and
+    the rest of the report stands.
+    """
+
+    figure: Figure | Callable[[], Figure]
     alt: str
     caption: str = ""
 

@@ -17,6 +17,7 @@ from markupsafe import Markup
 
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
+from sk120stiff.show.report.attempts import failure
 from sk120stiff.show.report.blocks import Block, Picture, SceneFrame, Section, Table
 from sk120stiff.show.saving import inline_svg
 
@@ -145,7 +146,12 @@ def _slug(title: str) -> str:
 
 
 def _svg(picture: Picture) -> Markup:
-    return Markup(inline_svg(picture.figure, picture.alt))
+    try:
+        figure = picture.figure() if callable(picture.figure) else picture.figure
+        return Markup(inline_svg(figure, picture.alt))
+    except Exception as error:  # noqa: BLE001  (an answer is never lost to its picture)
+        said = failure(f"the picture {(picture.caption or picture.alt)!r}", error)
+        return Markup('<p class="note problem">{}</p>').format(said)
 
 
 def _page(frame: SceneFrame) -> str:

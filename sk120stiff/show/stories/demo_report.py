@@ -197,7 +197,7 @@ def _first_act(demo: Demo) -> Section:
             "frame, as the robot's SOURCES file tells.",
             per_pose_table(demo),
             Picture(
-                force_deflection(_curves(demo)),
+                lambda: force_deflection(_curves(demo)),
                 alt="Three panels, one for each pose: measured deflections against the load, with "
                 "the lines of both models; markers and lines nearly coincide.",
                 caption="Displacement against the load: readings (markers), the paper's springs "
@@ -269,12 +269,12 @@ def _second_act(demo: Demo) -> Section:
                 "Joint springs in N·m/rad.",
             ),
             Picture(
-                parameter_forest(estimates, reference_name="paper's value"),
+                lambda: parameter_forest(estimates, reference_name="paper's value"),
                 alt=f"Identified springs as multiples of the paper's: {ratios}",
                 caption="Identified springs as multiples of the paper's (orange).",
             ),
             Picture(
-                gap_per_pose(found.problem.situation.poses, gaps, noise_floor=floor),
+                lambda: gap_per_pose(found.problem.situation.poses, gaps, noise_floor=floor),
                 alt="Bars of the gap at every pose: "
                 + "; ".join(f"{n} {listed([um(float(v)) for v in g])} µm" for n, g in gaps.items()),
                 caption="The gap of every pose, before and after."

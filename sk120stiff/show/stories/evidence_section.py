@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
-from sk120stiff.identify import Fit
+from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.report import Block, Note, Section, Table
 from sk120stiff.show.stories.verdicts import near, sentence_of
@@ -88,8 +88,12 @@ def many_values(parameters: Sequence[Parameter]) -> str:
 def parameter_rows(fit: Fit, parameters: list[Parameter]) -> list[tuple[object, ...]]:
     """Name, value ± error, interval and unit of parameters of a fitted model."""
     ends = dict(zip((p.name for p in fit.parameters), fit.intervals(), strict=True))
+    unseen = unseen_reasons(fit)
     rows: list[tuple[object, ...]] = []
     for p in parameters:
+        if p.name in unseen:
+            rows.append((p.spec.name, "cannot be seen", None, None, unit_of(p.spec.unit)))
+            continue
         low, high = ends.get(p.name, (math.nan, math.nan))
         value = with_error(p.public_value, p.public_std)
         rows.append((p.spec.name, value, number(low), number(high), unit_of(p.spec.unit)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from sk120stiff.explain import Explanation, noise_floor
 from sk120stiff.measurements import Measurements
@@ -14,6 +14,7 @@ from sk120stiff.show.report import (
     Note,
     Report,
     Section,
+    attempted,
 )
 from sk120stiff.show.stories.evidence_section import evidence_section
 from sk120stiff.show.stories.gap_section import gap_section
@@ -56,16 +57,19 @@ def explain_report(
     reproducibility
         Name → text, shown last.
     """
-    sections: list[Section | None] = [
-        _answer(answer),
-        gap_section(answer, heldout=heldout, scene=scene, scene_link=scene_link),
-        where_section(answer),
-        evidence_section(answer),
-        parameters_section(answer),
-        left_section(answer, readings),
-        blind_section(answer),
-        next_section(answer, next_poses),
-    ]
+    told: dict[str, Callable[[], Section | None]] = {
+        "The answer": lambda: _answer(answer),
+        "The gap, step by step": lambda: gap_section(
+            answer, heldout=heldout, scene=scene, scene_link=scene_link
+        ),
+        "Where it lives": lambda: where_section(answer),
+        "The evidence": lambda: evidence_section(answer),
+        "Parameters": lambda: parameters_section(answer),
+        "What is left, and the noise": lambda: left_section(answer, readings),
+        "What these readings cannot show": lambda: blind_section(answer),
+        "What to measure next": lambda: next_section(answer, next_poses),
+    }
+    sections = [attempted(title, build) for title, build in told.items()]
     used = readings.masked()
     robot = answer.base.model.robot.name
     counts = f"{counted(used.n_readings, 'reading')} at {counted(len(used.poses), 'pose')}"

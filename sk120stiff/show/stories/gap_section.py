@@ -75,7 +75,7 @@ def _waterfall(answer: Explanation, floor: float) -> Picture:
     steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
     first, last = answer.steps[0], answer.steps[-1]
     return Picture(
-        gap_waterfall(steps, noise_floor=floor),
+        lambda: gap_waterfall(steps, noise_floor=floor),
         alt=f"Bars of the gap of {len(steps)} models. Fitted: from {um(first.fit_rms)} to "
         f"{um(last.fit_rms)} µm. Held out: from {um(first.heldout_rms)} to "
         f"{um(last.heldout_rms)} µm. Noise floor {um(floor)} µm.",
@@ -95,7 +95,7 @@ def _per_pose(fit: Fit, models: dict[str, Model], floor: float) -> Picture | str
         for name, values in gaps.items()
     )
     return Picture(
-        gap_per_pose(poses, gaps, noise_floor=floor),
+        lambda: gap_per_pose(poses, gaps, noise_floor=floor),
         alt=f"Bars of the rms gap of {len(poses)} poses: {told}.",
         caption="The gap of every pose.",
     )
@@ -114,7 +114,7 @@ def on_the_arm(fit: Fit, models: dict[str, Model]) -> Picture:
     which = "every pose" if len(shown) == len(views) else f"the {MANY} poses with the largest gaps"
     times = f"{exaggeration(shown):,.0f}".replace(",", "\u00a0")
     return Picture(
-        gap_vectors(shown),
+        lambda: gap_vectors(shown),
         alt=f"The arm at {len(shown)} poses from above and from the side, with gap vectors {told}.",
         caption=f"Gap vectors at the largest load of {which}, drawn {times} times too long.",
     )

@@ -2,35 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from sk120stiff.explain import Explanation
-from sk120stiff.identify import Fit
+from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.figures import Estimate, parameter_forest
-from sk120stiff.show.report import Block, Picture, Section, Table
+from sk120stiff.show.report import Block, Note, Picture, Section, Table
 from sk120stiff.show.wording import listed, number, percent, unit_of, with_error
 
 WORTH_TELLING = 0.01
+UNSEEN = "cannot be seen"
 
 
 def parameters_section(answer: Explanation) -> Section:
     """All parameters of the base model, alone and with what was added."""
     before = {p.name: p for p in answer.base.parameters}
-    after = [p for p in answer.final.parameters if p.name in before]
+    unseen = {**unseen_reasons(answer.base), **unseen_reasons(answer.final)}
     if not answer.findings:
-        return Section("Parameters", [springs_table(answer.base)])
-    blocks: list[Block] = [_told(before, after), _table(before, after)]
+        return Section("Parameters", [springs_table(answer.base), *_blind(unseen)])
+    after = [p for p in answer.final.parameters if p.name in before]
+    seen = [p for p in after if p.name not in unseen]
+    blocks: list[Block] = [_told(before, seen), _table(before, after, unseen), *_blind(unseen)]
     drawn = [
         Estimate(_short(p), p.public_value, p.public_std, unit_of(p.spec.unit),
                  before[p.name].public_value)
-        for p in after
+        for p in seen
         if np.isfinite(p.public_value) and np.isfinite(before[p.name].public_value)
     ]  # fmt: skip
     if drawn:
         blocks.append(
             Picture(
-                parameter_forest(drawn, reference_name="value before"),
+                lambda: parameter_forest(drawn, reference_name="value before"),
                 alt="Each parameter with its 95 % range, as a multiple of its value before: "
                 + "; ".join(f"{e.name} {number(e.value / (e.reference or 1.0), 3)}" for e in drawn),
                 caption="Values with the added effect, as multiples of those without it (orange).",
@@ -41,16 +46,16 @@ def parameters_section(answer: Explanation) -> Section:
 
 def springs_table(fit: Fit) -> Table:
     """Estimates with error and 95 % interval."""
+    unseen = unseen_reasons(fit)
     rows = [
         (
             _short(p),
-            with_error(p.public_value, p.public_std),
-            number(low),
-            number(high),
+            *((UNSEEN, None, None) if p.name in unseen
+              else (with_error(p.public_value, p.public_std), number(low), number(high))),
             unit_of(p.spec.unit),
         )
         for p, (low, high) in zip(fit.parameters, fit.intervals(), strict=True)
-    ]
+    ]  # fmt: skip
     return Table(["parameter", "value ± standard error", "95 % from", "to", "unit"], rows,
                  "Estimated parameters.")  # fmt: skip
 
@@ -77,10 +82,20 @@ def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
     )
 
 
-def _table(before: dict[str, Parameter], after: list[Parameter]) -> Table:
-    rows = []
+def _blind(unseen: Mapping[str, str]) -> list[Block]:
+    """One paragraph on every value that these readings cannot show, and why."""
+    return [Note(f"`{name}`: {why}.", "caution", "Cannot be seen") for name, why in unseen.items()]
+
+
+def _table(
+    before: dict[str, Parameter], after: list[Parameter], unseen: Mapping[str, str]
+) -> Table:
+    rows: list[tuple[object, ...]] = []
     for p in after:
         old = before[p.name]
+        if p.name in unseen:
+            rows.append((_short(p), UNSEEN, UNSEEN, None, unit_of(p.spec.unit)))
+            continue
         change = p.public_value / old.public_value - 1.0
         rows.append(
             (

@@ -114,15 +114,13 @@ def _side(point: Array, tip: Array) -> Array:
     return np.array([float(point[:2] @ out), float(point[2])])
 
 
-def suspect_panels(found: Localisation, *, columns: int = 3) -> Figure | None:
-    """The gap against the strongest suspects and the best of every family; None if none is drawn.
+def suspect_panels(found: Localisation, *, columns: int = 3) -> Figure:
+    """The gap against the strongest suspects and the best of every family, where any is seen.
 
     Each panel shows the gap along the direction of its suspect, freed of what the joint springs had
     covered up. The strongest one is marked.
     """
     shown = [s for s in found.suspects if s.partial.size]
-    if not shown:
-        return None
     rows = -(-len(shown) // columns)
     with styled():
         figure, axes = subplots(rows, min(columns, len(shown)), height=0.3 + 2.15 * rows)

@@ -28,12 +28,11 @@ def where_section(answer: Explanation) -> Section:
 
 def _evidence(found: Localisation) -> list[Block]:
     blocks: list[Block] = []
-    figure = suspect_panels(found) if found.strongest is not None else None
-    if figure is not None:
+    if found.strongest is not None and any(s.partial.size for s in found.suspects):
         best = found.suspects[0]
         blocks.append(
             Picture(
-                figure,
+                lambda: suspect_panels(found),
                 alt=f"The gap against {len([s for s in found.suspects if s.partial.size])} "
                 f"suspects; the strongest is {best.name}, which takes away "
                 f"{percent(best.explained)} of what exceeds the noise.",

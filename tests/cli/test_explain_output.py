@@ -1,0 +1,92 @@
+"""What is found stands on the disk first; a picture or a page that fails loses only itself."""
+
+import json
+import warnings
+from pathlib import Path
+
+import pytest
+
+from sk120stiff import base_model, load_robot, read_measurements
+from sk120stiff.cli.explain_output import Task, write_answer
+from sk120stiff.errors import ToolkitWarning
+from sk120stiff.explain import Explanation, explain
+from sk120stiff.robot.bundled import bundled_robots
+
+DATA = bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+ANSWERS = {"verdict.json", "model.yaml", "gaps.csv"}
+
+
+@pytest.fixture(scope="module")
+def answer() -> Explanation:
+    robot = load_robot("motoman_sk120")
+    return explain(base_model(robot), read_measurements(DATA, robot.actuated))
+
+
+@pytest.fixture
+def task() -> Task:
+    return Task(read_measurements(DATA), DATA, [DATA])
+
+
+def broken(*_: object, **__: object) -> None:
+    raise ValueError("Axis limits cannot be NaN or Inf")
+
+
+def names(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir()} - {"next_poses.csv", "next_poses.yaml"}
+
+
+def test_a_picture_that_fails_is_said_in_its_place(answer, task, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr("sk120stiff.show.stories.gap_section.gap_vectors", broken)
+    with pytest.warns(ToolkitWarning, match="picture.*Axis limits cannot be NaN"):
+        document = write_answer(answer, task, tmp_path, report=True)
+    assert names(tmp_path) == ANSWERS | {"report.html", "scene.html"}
+    page = Path(document["report"]).read_text(encoding="utf-8")
+    assert "could not be made (ValueError: Axis limits cannot be NaN or Inf)" in page
+    assert page.count("<svg") >= 1  # another picture
+    assert "What these readings cannot show" in page
+
+
+def test_a_section_that_fails_leaves_the_others(answer, task, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr("sk120stiff.show.stories.parameters_section.springs_table", broken)
+    with pytest.warns(ToolkitWarning, match="The section 'Parameters' could not be made"):
+        document = write_answer(answer, task, tmp_path, report=True)
+    page = Path(document["report"]).read_text(encoding="utf-8")
+    assert "Where it lives" in page or "Is there a gap at all?" in page
+    assert ">Parameters</h2>" in page
+
+
+def test_a_page_that_fails_leaves_the_answer(answer, task, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr("sk120stiff.show.stories.explain_scene", broken)
+    with pytest.warns(ToolkitWarning, match=r"The page scene\.html could not be made"):
+        document = write_answer(answer, task, tmp_path, report=True)
+    assert names(tmp_path) == ANSWERS | {"report.html"}
+    assert "scene" not in document
+    verdict = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
+    assert (verdict["schema"], verdict["verdict"]) == (2, answer.verdict)
+
+
+def test_the_answer_is_written_before_the_pages(answer, task, tmp_path, monkeypatch) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("sk120stiff.show.stories.explain_scene", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_answer(answer, task, tmp_path, report=True)
+    assert names(tmp_path) == ANSWERS
+
+
+def test_a_failed_page_is_in_the_json_document_and_exit_is_0(run, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr("sk120stiff.show.stories.explain_report", broken)
+    done = run("explain", str(DATA), "--only", "joint_tilt:joint_1_s", "--out", str(tmp_path),
+               "--json")  # fmt: skip
+    assert done.code == 0
+    assert any("report.html could not be made" in said for said in done.document["warnings"])
+    assert "Warning: The page report.html could not be made" in done.stderr
+    assert names(tmp_path) == ANSWERS | {"scene.html"}
+
+
+def test_nothing_is_said_where_nothing_fails(answer, task, tmp_path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ToolkitWarning)
+        write_answer(answer, task, tmp_path, report=True)
+    assert names(tmp_path) == ANSWERS | {"report.html", "scene.html"}

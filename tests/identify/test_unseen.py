@@ -1,0 +1,56 @@
+"""A spring that no such reading can show, and the reason in words."""
+
+import numpy as np
+import pytest
+
+from sk120stiff import fit, joint_spring_model, load_robot
+from sk120stiff.effects import situation_of_load
+from sk120stiff.identify import unseen_reasons, weak_directions, why_unseen
+from sk120stiff.measurements import Measurements, NoiseModel
+from tests.corpus.robots import example
+
+SPRINGS = np.array([3e4, 3e4, 2e4, 2e4, 1e4, 8e3, 5e3])
+
+
+def pushed(point: np.ndarray, force_point: np.ndarray | None = None) -> Measurements:
+    robot = load_robot(example("panda.urdf"))
+    rng = np.random.default_rng(3)
+    a = rng.uniform(np.maximum(robot.lower, -1.5), np.minimum(robot.upper, 1.5), (20, robot.n))
+    wrench = np.concatenate([rng.normal(0.0, 60.0, (20, 3)), np.zeros((20, 3))], axis=1)
+    force_at = point if force_point is None else force_point
+    situation = situation_of_load(robot, a, wrench, point=point, force_point=force_at)
+    exact = joint_spring_model(robot, SPRINGS).predict(situation)
+    return Measurements(
+        pose=tuple(str(k) for k in range(20)), joint_names=robot.actuated,
+        joint_kinds=("angle",) * robot.n, joints=a, wrench=wrench,
+        displacement=exact + rng.normal(0.0, 1.4e-5, exact.shape), robot=str(robot.source),
+        point=point, force_point=force_at, noise=NoiseModel(1e-5),
+    )  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore::sk120stiff.errors.ToolkitWarning")
+def test_a_point_on_the_last_axis_hides_its_spring() -> None:
+    readings = pushed(np.zeros(3))
+    found = fit(joint_spring_model(load_robot(example("panda.urdf"))), readings)
+    (name,) = unseen_reasons(found)
+    assert name == "joint_springs:panda_joint7.stiffness"
+    why = unseen_reasons(found)[name]
+    assert "the point lies on the axis of panda_joint7; give a point off the axis (--point" in why
+    assert any(name in said and why in said for said in weak_directions(found))
+
+
+@pytest.mark.filterwarnings("ignore::sk120stiff.errors.ToolkitWarning")
+def test_loads_through_the_axis_hide_it_too() -> None:
+    off = np.array([0.1, 0.0, 0.05])
+    found = fit(joint_spring_model(load_robot(example("panda.urdf"))), pushed(off, np.zeros(3)))
+    why = unseen_reasons(found)["joint_springs:panda_joint7.stiffness"]
+    assert "every load passes through the axis of panda_joint7" in why
+
+
+@pytest.mark.filterwarnings("ignore::sk120stiff.errors.ToolkitWarning")
+def test_a_point_off_the_axis_shows_it() -> None:
+    readings = pushed(np.array([0.1, 0.0, 0.05]))
+    found = fit(joint_spring_model(load_robot(example("panda.urdf"))), readings)
+    assert not unseen_reasons(found)
+    situation = found.problem.situation
+    assert all(why_unseen(situation, p) is None for p in found.parameters)
