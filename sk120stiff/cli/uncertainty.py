@@ -26,8 +26,9 @@ def uncertainty_keys(model: Model) -> dict[str, object]:
         if left is None
         else {
             "rms_um": left.rms * 1e6,
+            "upper_um": left.upper * 1e6,
             "degrees_of_freedom": left.freedom,
-            "grows_with_deflection": left.grows,
+            "grows_with_load": left.grows,
             "probability": left.probability,
             "significant": left.significant,
         },

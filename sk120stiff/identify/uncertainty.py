@@ -18,6 +18,8 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
 from sk120stiff.identify.polish import seen_directions
 from sk120stiff.model import Model, Remainder, Uncertainty
+from sk120stiff.model.uncertainty import load_size
+from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.coupling import Array
 
 COUNTS = 0.05  # probability of the misfit by noise alone below which the remainder counts
@@ -84,24 +86,40 @@ def _remainder(fit: Fit, known: Uncertainty, tests: tuple[LackOfFit, ...]) -> Re
     own = (np.einsum("nij,njp,pr->nir", axes, derivative, L) ** 2).sum(axis=-1)
     noise = np.einsum("nij,nj->ni", axes**2, _noise(fit, tests))
     here = usable[situation.pose]
-    surplus = (gap**2 - own - noise)[here]
-    displacement = np.einsum("nij,nj->ni", axes, predicted)[here]
-    deflection = float(np.sqrt((displacement**2).sum(axis=1).mean()))
-    if deflection == 0.0:
+    length = arm_length(problem.model.robot) or 1.0
+    size = load_size(situation.wrench, length)[here]
+    load = float(np.sqrt(np.mean(size**2)))
+    if load == 0.0:
         return None
-    rms = np.sqrt(np.maximum(surplus.mean(axis=0), 0.0))
-    share = (np.linalg.norm(displacement, axis=1) / deflection)[:, None]
-    variance = (own + noise)[here]
+    surplus, variance = (gap**2 - own - noise)[here], (own + noise)[here]
+    square, error = _mean_over_poses(surplus, situation.pose[here])
+    rms = np.sqrt(np.maximum(square, 0.0))
+    growing = variance + (rms * size[:, None] / load) ** 2
     worst = min(tests, key=lambda test: test.probability)
     return Remainder(
         rms=rms,
+        upper=np.sqrt(np.maximum(square, 0.0) + error),
         freedom=_freedom(fit),
-        deflection=deflection,
-        grows=_misfit(gap[here], variance + (rms * share) ** 2)
-        <= _misfit(gap[here], variance + rms**2),
+        load=load,
+        length=length,
+        grows=_misfit(gap[here], growing) <= _misfit(gap[here], variance + rms**2),
         probability=worst.probability,
         significant=worst.probability < COUNTS,
     )
+
+
+def _mean_over_poses(surplus: Array, pose: Array) -> tuple[Array, Array]:
+    """(3,) mean of (N, 3) over the readings, and its standard error from pose to pose."""
+    labels, place, count = np.unique(pose, return_inverse=True, return_counts=True)
+    sums = np.zeros((len(labels), 3))
+    np.add.at(sums, place, surplus)
+    mean = surplus.mean(axis=0)
+    if len(labels) < 2:
+        return mean, np.abs(mean)
+    # A ratio of sums over poses: its error is that of the sums about the mean (Cochran 1977).
+    off = sums - count[:, None] * mean
+    error = np.sqrt((off**2).sum(axis=0) * len(labels) / (len(labels) - 1)) / len(surplus)
+    return mean, error
 
 
 def _steps_without_each_pose(fit: Fit) -> tuple[Array, np.ndarray]:

@@ -95,7 +95,7 @@ def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
     return Predicted(
         displacement,
         std,
-        remainder_std(known, displacement, situation.reading_axes),
+        remainder_std(known, situation),
         tuple(
             blamed(known, model.names, derivative[k]) if lost else ()
             for k, lost in enumerate(np.atleast_1d(np.isinf(std).any(axis=1)))
@@ -103,12 +103,12 @@ def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
     )
 
 
-def remainder_std(known: Uncertainty, displacement: Array, axes: Array) -> Array | None:
-    """(N, 3) size of what is unexplained at displacements (N, 3), in axes (N, 3, 3) [m]."""
+def remainder_std(known: Uncertainty, situation: Situation) -> Array | None:
+    """(N, 3) standard size of what is unexplained, axes of the readings [m]; None: not known."""
     if known.remainder is None:
         return None
-    of_base = known.remainder.std(displacement)  # only the length of a displacement matters
-    return np.asarray(np.sqrt(np.einsum("nij,ni->nj", axes**2, of_base**2)))
+    of_base = known.remainder.std(situation.wrench)
+    return np.asarray(np.sqrt(np.einsum("nij,ni->nj", situation.reading_axes**2, of_base**2)))
 
 
 def blamed(known: Uncertainty, names: tuple[str, ...], derivative: Array) -> tuple[str, ...]:

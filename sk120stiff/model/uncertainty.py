@@ -35,39 +35,54 @@ class Remainder:
     ----------
     rms
         (3,) per axis of the base, over readings like those of the fit [m].
+    upper
+        (3,) the same with one standard error of its square, as it came out from pose to pose: what
+        predictions use, because a few poses hardly show how large it may be at others [m].
     freedom
-        (3,) degrees of freedom that it rests on.
-    deflection
-        Rms length of the deflections at which it was found [m].
+        (3,) degrees of freedom of the readings that it rests on.
+    load
+        Rms size of the loads at which it was found, see `load_size` [N].
+    length
+        Lever at which a moment counts as a force [m].
     grows
-        It goes with the deflection; else it is as large at all loads.
+        It goes with the load; else it is as large at all loads.
     probability
         Of as large a misfit if the noise were all.
     significant
-        The misfit is more than the noise makes; else it counts as nothing.
+        The misfit is more than the noise makes; else the remainder counts as nothing.
     """
 
     rms: Array
+    upper: Array
     freedom: Array
-    deflection: float
+    load: float
+    length: float
     grows: bool
     probability: float
     significant: bool
 
     def __post_init__(self) -> None:
-        if self.rms.shape != (3,) or self.freedom.shape != (3,):
-            raise InputError("a remainder has three axes")
-        sizes = [*self.rms, *self.freedom, self.deflection]
-        if not np.isfinite(sizes).all() or min(sizes) < 0.0 or self.deflection == 0.0:
-            raise InputError("a size of the remainder is not a positive number")
+        for axes in (self.rms, self.upper, self.freedom):
+            if axes.shape != (3,) or not np.isfinite(axes).all() or (axes < 0.0).any():
+                raise InputError("the remainder has an axis that is no positive number")
+        if (self.upper < self.rms * (1.0 - ROUNDED)).any():
+            raise InputError("the remainder's upper size is below its size")
+        if not (0.0 < self.load < np.inf and 0.0 < self.length < np.inf):
+            raise InputError("the remainder's load or length is not a positive number")
         if not 0.0 <= self.probability <= 1.0:
             raise InputError(f"the remainder's probability {self.probability} is none")
 
-    def std(self, displacement: Array) -> Array:
-        """(..., 3) its standard size at displacements (..., 3), axes of the base [m]."""
-        size = np.linalg.norm(displacement, axis=-1, keepdims=True) / self.deflection
+    def std(self, wrench: Array) -> Array:
+        """(..., 3) its standard size under wrenches (..., 6), axes of the base [m]."""
+        size = load_size(wrench, self.length)[..., None] / self.load
         share = size if self.grows else np.ones_like(size)
-        return np.asarray(share * (self.rms if self.significant else np.zeros(3)))
+        return np.asarray(share * (self.upper if self.significant else np.zeros(3)))
+
+
+def load_size(wrench: Array, length: float) -> Array:
+    """(...,) size of wrenches (..., 6), a moment as a force at the end of `length` [N]."""
+    force, moment = wrench[..., :3], wrench[..., 3:]
+    return np.asarray(np.sqrt((force**2).sum(axis=-1) + (moment**2).sum(axis=-1) / length**2))
 
 
 @dataclass(frozen=True, eq=False)

@@ -45,8 +45,10 @@ class _Parameter(_Strict):
 
 class _Remainder(_Strict):
     rms_um: list[float] = Field(min_length=3, max_length=3)
+    upper_um: list[float] = Field(min_length=3, max_length=3)
     degrees_of_freedom: list[float] = Field(min_length=3, max_length=3)
-    deflection_um: float
+    load_N: float  # the unit is spelled so
+    length_m: float
     grows: bool
     probability: float
     significant: bool
@@ -120,8 +122,10 @@ def uncertainty_document(model: Model) -> dict[str, object] | None:
         if left is None
         else {
             "rms_um": Row(_short(x * 1e6) for x in left.rms),
+            "upper_um": Row(_short(x * 1e6) for x in left.upper),
             "degrees_of_freedom": Row(round(float(x), 2) for x in left.freedom),
-            "deflection_um": _short(left.deflection * 1e6),
+            "load_N": _short(left.load),
+            "length_m": _short(left.length),
             "grows": left.grows,
             "probability": _short(left.probability),
             "significant": left.significant,
@@ -213,8 +217,10 @@ def _read(section: UncertaintySection) -> Uncertainty:
         if left is None
         else Remainder(
             rms=np.array(left.rms_um) * 1e-6,
+            upper=np.array(left.upper_um) * 1e-6,
             freedom=np.array(left.degrees_of_freedom),
-            deflection=left.deflection_um * 1e-6,
+            load=left.load_N,
+            length=left.length_m,
             grows=left.grows,
             probability=left.probability,
             significant=left.significant,

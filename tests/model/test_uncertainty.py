@@ -45,7 +45,14 @@ def knowledge(model: Model, **changes: object) -> Uncertainty:
         "unseen": np.zeros((0, 3)),
         "noise": 10e-6,
         "remainder": Remainder(
-            np.array([2e-5, 3e-5, 1e-5]), np.full(3, 40.0), 3e-4, True, 1e-4, True
+            rms=np.array([1e-5, 2e-5, 1e-5]),
+            upper=np.array([2e-5, 3e-5, 1e-5]),
+            freedom=np.full(3, 40.0),
+            load=250.0,
+            length=2.0,
+            grows=True,
+            probability=1e-4,
+            significant=True,
         ),
         "source": "90 readings at 18 poses; noise stated, 10 µm per axis",
     }
@@ -155,13 +162,16 @@ def test_std_of_a_prediction_is_that_of_predictions_over_drawn_parameters(model:
     np.testing.assert_allclose(found.displacement, model.predict(situation))
 
 
-def test_the_remainder_turns_with_the_axes_of_the_readings_and_grows_with_the_deflection(
+def test_the_remainder_turns_with_the_axes_of_the_readings_and_grows_with_the_load(
     model: Model,
 ) -> None:
     situation = situation_of_load(model.robot, POSES, LOADS)
     base = predict_with_uncertainty(model, situation)
-    length = np.linalg.norm(base.displacement, axis=1, keepdims=True)
-    np.testing.assert_allclose(base.std_remainder, np.array([[2e-5, 3e-5, 1e-5]]) * length / 3e-4)
+    size = np.linalg.norm(LOADS[:, :3], axis=1, keepdims=True)
+    np.testing.assert_allclose(base.std_remainder, np.array([[2e-5, 3e-5, 1e-5]]) * size / 250.0)
+    moments = np.concatenate([np.zeros((2, 3)), 2.0 * LOADS[:, :3]], axis=1)  # at a lever of 2 m
+    found = predict_with_uncertainty(model, situation_of_load(model.robot, POSES, moments))
+    np.testing.assert_allclose(found.std_remainder, base.std_remainder)
     quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     turned = replace(situation, reading_axes=np.broadcast_to(quarter, (2, 3, 3)))
     found = predict_with_uncertainty(model, turned)
@@ -169,6 +179,9 @@ def test_the_remainder_turns_with_the_axes_of_the_readings_and_grows_with_the_de
     steady = replace(model.uncertainty.remainder, grows=False)
     found = predict_with_uncertainty(model.known(knowledge(model, remainder=steady)), situation)
     np.testing.assert_allclose(found.std_remainder, np.tile([2e-5, 3e-5, 1e-5], (2, 1)))
+    nothing = replace(model.uncertainty.remainder, significant=False)
+    found = predict_with_uncertainty(model.known(knowledge(model, remainder=nothing)), situation)
+    assert not found.std_remainder.any()
 
 
 def test_what_does_not_show_is_unknown_only_where_it_matters(model: Model) -> None:

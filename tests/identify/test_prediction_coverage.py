@@ -1,0 +1,39 @@
+"""A smaller run of scripts/08_prediction_coverage.py: the ± of predictions is what it says."""
+
+
+import numpy as np
+import pytest
+
+from tests.identify.prediction_coverage import KINDS, Campaign, campaigns, share_inside
+
+COUNT = 14  # campaigns of each kind
+HOLD = (0.92, 0.98)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Campaign]]:
+    folder = tmp_path_factory.mktemp("campaigns")
+    return {kind.label: list(campaigns(kind, COUNT, 31, folder)) for kind in KINDS}
+
+
+def test_intervals_at_new_poses_hold_the_deflections_of_another_hand(
+    found: dict[str, list[Campaign]],
+) -> None:
+    every = [campaign for kind in found.values() for campaign in kind]
+    assert HOLD[0] <= share_inside(every)[0] <= HOLD[1]
+    for label, own in found.items():
+        share, error = share_inside(own)
+        assert HOLD[0] - 3.0 * error <= share <= HOLD[1] + 3.0 * error, label
+    # The same question put to intervals of another width would be answered with no.
+    assert share_inside(every, narrower=1.4)[0] < HOLD[0]
+    assert share_inside(every, narrower=0.6)[0] > HOLD[1]
+
+
+def test_what_is_missing_is_found_and_only_then_counts(found: dict[str, list[Campaign]]) -> None:
+    for label, own in found.items():
+        shown = np.mean([campaign.significant for campaign in own])
+        if "missing" in label:
+            assert shown > 0.8
+            assert share_inside(own, remainder=False)[0] < 0.5  # parameters alone say too little
+        else:
+            assert shown < 0.3
