@@ -1,6 +1,5 @@
 """A smaller run of scripts/08_prediction_coverage.py: the ± of predictions is what it says."""
 
-
 import numpy as np
 import pytest
 

@@ -1,0 +1,107 @@
+"""What a fit tells its model of its uncertainty, against refits and readings that show nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff.effects import effect, situation_of, situation_of_load
+from sk120stiff.identify import fit, known_model
+from sk120stiff.identify.uncertainty import _steps_without_each_pose
+from sk120stiff.measurements import NoiseModel, NoiseStatement
+from sk120stiff.model import Model, joint_spring_model, predict_with_uncertainty
+from sk120stiff.plan import Schedule
+from sk120stiff.robot import Robot
+from tests.identify.conftest import readings_of, without_statement
+
+SIGMA = 10e-6
+
+
+@pytest.fixture(scope="module")
+def truth(springs: Model) -> Model:
+    return springs
+
+
+def stated(model: Model, **changes: object):
+    readings = readings_of(model, sigma=SIGMA, **changes)
+    return replace(readings, noise=NoiseStatement(sigma=SIGMA))
+
+
+def test_a_pose_left_out_moves_the_estimates_as_a_refit_without_it_does(truth: Model) -> None:
+    readings = stated(truth, poses=6, seed=4)
+    noise = NoiseModel(SIGMA, 0.0, "shared")
+    full = fit(truth, readings, noise=noise)
+    steps, usable = _steps_without_each_pose(full)
+    assert usable.all()
+    for number, label in enumerate(readings.poses):
+        use = np.array([pose != label for pose in readings.pose])
+        without = fit(truth, replace(readings, use=use), noise=noise)
+        moved = without.x - full.x
+        np.testing.assert_allclose(steps[number], moved, atol=0.02 * np.abs(moved).max())
+
+
+def test_the_covariance_is_that_of_the_fit(truth: Model) -> None:
+    found = fit(truth, stated(truth))
+    known = known_model(found).uncertainty
+    scale = found.problem.scale
+    np.testing.assert_allclose(
+        known.covariance, found.covariance * np.outer(scale, scale), rtol=1e-9
+    )
+    np.testing.assert_allclose(known.std, [p.std for p in found.parameters])
+    assert known.freedom is None and len(known.unseen) == 0
+    assert known.remainder is not None and not known.remainder.significant
+
+
+def test_a_remainder_is_found_with_its_size(truth: Model) -> None:
+    """A base that rocks is left out of the model; held against refits at poses left out."""
+    rocking = truth + effect(truth.robot, "base_rocking")
+    rocking = rocking.with_public(
+        **{f"base_rocking:base_link.stiffness_{axis}": 8e6 for axis in "xy"}
+    )
+    readings = stated(rocking, poses=20, seed=7)
+    found = fit(truth, readings)
+    left = known_model(found).uncertainty.remainder
+    squares = []
+    for label in readings.poses:
+        own = np.array([pose == label for pose in readings.pose])
+        without = fit(truth, replace(readings, use=~own), noise=found.problem.noise)
+        gap = readings.displacement[own] - without.model.predict(found.problem.situation.rows(own))
+        squares.append((gap**2).mean(axis=0))
+    held_out = np.sqrt(np.mean(squares, axis=0) - 2.0 * SIGMA**2)
+    assert left.significant and left.grows
+    np.testing.assert_allclose(left.rms, held_out, rtol=0.1)
+    assert (left.upper > left.rms).all() and (left.upper < 2.0 * left.rms.max()).all()
+
+
+def test_a_spring_that_does_not_show_makes_what_depends_on_it_unknown(robot: Robot) -> None:
+    """Forces at a point on the last joint's axis put no torque on it."""
+    six = joint_spring_model(robot, [1.4e6, 4e5, 9e5, 3e5, 3e5, 3e5])
+    readings = replace(stated(six), point=np.zeros(3), force_point=np.zeros(3))
+    readings = replace(readings, displacement=six.predict(situation_of(robot, readings)))
+    rng = np.random.default_rng(2)
+    noisy = readings.displacement + SIGMA * rng.normal(size=readings.displacement.shape)
+    known = known_model(fit(six, replace(readings, displacement=noisy, zero="separate")))
+    assert len(known.uncertainty.unseen) == 1
+    load = np.array([[100.0, 200.0, -300.0, 0.0, 0.0, 0.0]])
+    on_axis = predict_with_uncertainty(known, situation_of_load(robot, robot.rest, load))
+    assert np.isfinite(on_axis.std_parameters).all() and on_axis.blame == ((),)
+    away = situation_of_load(robot, robot.rest, load, point=[0.2, 0.1, 0.0])
+    off_axis = predict_with_uncertainty(known, away)
+    assert np.isinf(off_axis.std_parameters).any()
+    assert off_axis.blame == (("joint_springs:joint_6_t.stiffness",),)
+
+
+def test_a_spring_on_its_bound_is_not_sure(truth: Model, robot: Robot) -> None:
+    """The wrist is rigid in truth: some of its compliances are estimated as zero exactly."""
+    six = joint_spring_model(robot, [1.4e6, 4e5, 9e5, 3e5, 3e5, 3e5])
+    found = fit(six, stated(truth, seed=5))
+    assert found.at_bound.any()
+    known = known_model(found).uncertainty
+    assert (known.std[found.at_bound] > 0.0).all()
+
+
+def test_where_noise_is_all_that_is_known_there_is_no_remainder(truth: Model) -> None:
+    readings = without_statement(readings_of(truth, schedule=Schedule("ascending", 1), poses=30))
+    known = known_model(fit(truth, readings)).uncertainty
+    assert known.remainder is None and known.freedom == 87.0
+    assert known.reach() > 1.96
