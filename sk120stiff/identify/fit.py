@@ -16,9 +16,10 @@ from sk120stiff.identify.covariance import (
     internal_intervals,
     public_interval,
 )
-from sk120stiff.identify.polish import seen_directions
+from sk120stiff.identify.overlaid import Overlay, overlays
+from sk120stiff.identify.polish import FAINTEST, seen_directions
 from sk120stiff.identify.problem import Problem
-from sk120stiff.model import Model, Parameter
+from sk120stiff.model import ON_BOUND, TOGETHER, UNSEEN, Model, Parameter
 from sk120stiff.robot.coupling import Array
 
 
@@ -147,9 +148,31 @@ class Fit:
         return self.estimated + (0 if self.sigma_stated else 1)
 
     @cached_property
+    def overlays(self) -> tuple[Overlay, ...]:
+        """Parameters that lie on one another, of which the bounds alone say who carries what."""
+        reach = self.reach() * self.unit
+        bounds, span = self.problem.bounds, self.problem.span
+        return overlays(self.x, self.jacobian, self.residual, self.at_bound, bounds, span, reach)
+
+    @cached_property
+    def held(self) -> NDArray[np.bool_]:
+        """(P_free,) estimates on a bound that the readings put there.
+
+        Not so those that do not show, and those that lie on others.
+        """
+        length = np.linalg.norm(self.jacobian, axis=0)
+        held: NDArray[np.bool_] = self.at_bound & (length * self.problem.span > FAINTEST)
+        held[[k for group in self.overlays for k in group.held]] = False
+        return held
+
+    @cached_property
     def covariance(self) -> Array:
-        """(P_free, P_free) covariance of `x`; zero for estimates on a bound, infinite: unknown."""
-        covariance = covariance_of(self.jacobian, self.at_bound, self.problem.span)
+        """(P_free, P_free) covariance of `x`; zero for `held` estimates, infinite: unknown.
+
+        Where a bound decides which of several like parameters carries the load, all of them count
+        as free: what one has, another may.
+        """
+        covariance = covariance_of(self.jacobian, self.held, self.problem.span)
         if np.isfinite(self.unit):
             beside = np.zeros(len(self.x)) if self.doubt is None else self.doubt
             return np.asarray(covariance * self.unit**2 + np.diag(beside**2))
@@ -178,7 +201,7 @@ class Fit:
     def identifiable(self) -> NDArray[np.bool_]:
         """(P_free,) parameters that the readings determine at all, those on a bound included."""
         return np.asarray(
-            np.isfinite(np.diag(covariance_of(self.jacobian, self.at_bound, self.problem.span)))
+            np.isfinite(np.diag(covariance_of(self.jacobian, self.held, self.problem.span)))
         )
 
     def reach(self, level: float = 0.95) -> float:
@@ -232,8 +255,14 @@ def with_values(found: Fit) -> Fit:
     x = np.where(found.at_bound & (np.abs(found.x) < 1e-6), 0.0, found.x)
     model = problem.model.with_values(problem.values(x), std, origin="identified")
     parameters = list(model.parameters)
-    for index, held, shown in zip(problem.free, found.at_bound, found.identifiable, strict=True):
-        if held or not shown:
-            origin = "identified: on its bound" if held else "not identifiable, not to be trusted"
-            parameters[index] = replace(parameters[index], origin=origin)
+    together = {k for group in found.overlays for k in group.members}
+    for k, index in enumerate(problem.free):
+        origin = parameters[index].origin
+        if not found.identifiable[k]:
+            origin = UNSEEN
+        elif k in together:
+            origin = TOGETHER
+        elif found.at_bound[k]:
+            origin = ON_BOUND
+        parameters[index] = replace(parameters[index], origin=origin)
     return replace(found, model=replace(model, parameters=tuple(parameters)))

@@ -7,8 +7,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.effects.base import SPRINGS
 from sk120stiff.identify.covariance import covariance_of
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.overlaid import Overlay, separating
 from sk120stiff.identify.polish import seen_directions
 from sk120stiff.identify.unseen import why_unseen
 from sk120stiff.model import Parameter
@@ -22,18 +24,24 @@ LINKED = 0.1  # cosine of their parts in blind directions that ties two paramete
 def weak_directions(fit: Fit) -> tuple[str, ...]:
     """Sentences on what a fit cannot tell apart, hardly knows, or found on a physical bound.
 
-    Parameters that no reading shows come first, then those of which only combinations are known,
+    Parameters that lie on one another while a bound holds some come first, then those that no
+    reading shows, those of which only combinations are known,
     those that are strongly correlated, those on a bound, those that are larger than is plausible,
     and single values that are vague.
     """
     said: list[str] = []
     told: set[int] = set()
+    for overlay in fit.overlays:
+        said.append(overlaid_sentence(fit, overlay))
+        told.update(overlay.members)
     for group, size in _blind_groups(fit):
-        said.append(_unseen(fit, group, size))
-        told.update(group)
+        if not told.issuperset(group):
+            said.append(_unseen(fit, group, size))
+            told.update(group)
     for first, second in _correlated(fit):
-        said.append(_correlation(fit, first, second))
-    said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound)]
+        if not told.issuperset((first, second)):
+            said.append(_correlation(fit, first, second))
+    said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound & fit.held)]
     far = (np.abs(fit.x) > fit.problem.span) & fit.identifiable
     said += [_implausible(fit.parameters[k]) for k in np.flatnonzero(far)]
     if fit.degrees_of_freedom < 1 and not fit.sigma_stated:
@@ -54,6 +62,63 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
     return tuple(said)
 
 
+def overlaid_sentence(fit: Fit, group: Overlay) -> str:
+    """Which parameters lie on one another, what of them is known, and what would separate them."""
+    members = [fit.parameters[k] for k in group.members]
+    held = [fit.parameters[k] for k in group.held]
+    if {p.effect.name for p in members} == {SPRINGS}:
+        names = f"the springs of {_listed([p.effect.where for p in members])}"
+        bound = f"that {_listed([p.effect.where for p in held])} came out rigid"
+    else:
+        names = _listed([words_for(p) for p in members])
+        bound = f"that {_listed([words_for(p) for p in held])} lies on a physical bound"
+    low = 100.0 * group.likeness
+    return (
+        f"In these readings {names} lie on one another (they move the point alike by {low:.3f} % "
+        f"or more): {_known_of(fit, group)}, and how it is shared among them is not. The fit gave "
+        f"it where the misfit is least by a hair; {bound} is no finding. {_cure(fit, group)}"
+    )
+
+
+def _known_of(fit: Fit, group: Overlay) -> str:
+    """The one combination of overlaid parameters that the readings tell, with its doubt."""
+    own = list(group.members)
+    members = [fit.parameters[k] for k in own]
+    size = np.linalg.norm(fit.jacobian[:, own], axis=0) / fit.problem.scale[own]
+    first = next(i for i, k in enumerate(own) if k not in group.held)
+    sign = np.sign(fit.jacobian[:, own].T @ fit.jacobian[:, own[first]])
+    ratio = sign * size / size[first]
+    weights = np.zeros(len(fit.parameters))
+    weights[own] = ratio
+    value = float(ratio @ np.array([p.value for p in members]))
+    share = 100.0 * _std_of(fit, weights * fit.problem.scale) / max(abs(value), 1e-300)
+    kind = "compliances" if all(p.spec.reciprocal for p in members) else "values"
+    terms = [f"{words_for(members[first])}"]
+    terms += [
+        f"{'+' if r > 0 else '-'} {abs(r):.3g} x {words_for(p)}"
+        for i, (p, r) in enumerate(zip(members, ratio, strict=True))
+        if i != first
+    ]
+    return f"one sum of their {kind} is known to {share:.2g} % ({' '.join(terms)})"
+
+
+def _cure(fit: Fit, group: Overlay) -> str:
+    """The pose to measure."""
+    found = separating(fit.problem, group, fit.jacobian)
+    if found is None:
+        return (
+            "No measured pose with one joint turned separates them; let 'sk120stiff plan' choose."
+        )
+    robot = fit.problem.model.robot
+    slides = robot.prismatic[found.joint]
+    position = f"{found.position:.3g} m" if slides else f"{np.degrees(found.position):.0f} deg"
+    return (
+        f"A pose that separates them: as {found.pose}, with {robot.actuated[found.joint]} at "
+        f"{position} and the same load (one such reading makes the largest of their standard "
+        f"errors {found.gain:.0f} times smaller)."
+    )
+
+
 def words_for(parameter: Parameter) -> str:
     """A parameter in plain words, e.g. ``base rocking z (base_link)``."""
     what = parameter.effect.name.replace("_", " ")
@@ -63,10 +128,10 @@ def words_for(parameter: Parameter) -> str:
 
 def _blind_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
     """Sets of lost parameters that blind directions tie, and how many of these each has."""
-    moving = np.flatnonzero(~fit.at_bound)
+    moving = np.flatnonzero(~fit.held)
     span = fit.problem.span
     blind = seen_directions(fit.jacobian[:, moving], span[moving])[3]
-    covariance = covariance_of(fit.jacobian, fit.at_bound, span)
+    covariance = covariance_of(fit.jacobian, fit.held, span)
     left = [int(k) for k in np.flatnonzero(np.isinf(np.diag(covariance)[moving]))]
     part = blind / np.maximum(np.linalg.norm(blind, axis=1, keepdims=True), 1e-300)
     tied = np.abs(part @ part.T) > LINKED
@@ -100,7 +165,7 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
 
 
 def _pair(fit: Fit, group: Sequence[int]) -> str:
-    moving = np.flatnonzero(~fit.at_bound)
+    moving = np.flatnonzero(~fit.held)
     blind = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[3]
     place = [int(np.flatnonzero(moving == k)[0]) for k in group]
     part = blind[place] * (fit.problem.span * fit.problem.scale)[list(group)][:, None]
@@ -133,14 +198,14 @@ def _combination(fit: Fit, group: Sequence[int], blind: Array) -> tuple[str, flo
 
 def _std_of(fit: Fit, weights: Array) -> float:
     """Standard error of a combination (P,) of scaled parameters, along what is seen."""
-    moving = np.flatnonzero(~fit.at_bound)
+    moving = np.flatnonzero(~fit.held)
     span = fit.problem.span[moving]
     _, singular, V, _ = seen_directions(fit.jacobian[:, moving], span)
     return float(np.linalg.norm((V.T @ (weights[moving] * span)) / singular)) * fit.unit
 
 
 def _correlated(fit: Fit) -> list[tuple[int, int]]:
-    known = np.isfinite(np.diag(fit.covariance)) & ~fit.at_bound
+    known = np.isfinite(np.diag(fit.covariance)) & ~fit.held
     upper: NDArray[np.bool_] = np.triu(np.abs(fit.correlation) > TOGETHER, k=1)
     return [(int(i), int(j)) for i, j in np.argwhere(upper & np.outer(known, known))]
 

@@ -10,11 +10,21 @@ from sk120stiff.model.file import (
 )
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
-from sk120stiff.model.model import Model, Parameter, joint_spring_model
+from sk120stiff.model.model import (
+    ON_BOUND,
+    TOGETHER,
+    UNSEEN,
+    Model,
+    Parameter,
+    joint_spring_model,
+)
 from sk120stiff.model.predicted import Predicted, predict_with_uncertainty
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
 __all__ = [
+    "ON_BOUND",
+    "TOGETHER",
+    "UNSEEN",
     "Assembly",
     "LoadedStiffness",
     "Model",

@@ -152,7 +152,29 @@ def model_from_text(
                 remedy=f"Parameters are: {', '.join(s.name for s in found.parameters)}.",
             )
         model = model + parameters
+    _warn_of_untrusted(model, where)
     return uncertainty_of(content.uncertainty, model, where)
+
+
+def _warn_of_untrusted(model: Model, where: str) -> None:
+    """Say once that values are used which no readings stand behind."""
+    unseen = [p.name for p in model.untrusted if not p.seen]
+    shared = [p.name for p in model.untrusted if p.seen]
+    if unseen:
+        warnings.warn(
+            f"{where}: the readings behind this model do not show {', '.join(unseen)}. Its value "
+            "stands in the file all the same, and what rests on it is not to be trusted. Measure "
+            "poses and loads that show it, or write a value that you know, with its origin.",
+            ToolkitWarning,
+            stacklevel=4,
+        )
+    if shared:
+        warnings.warn(
+            f"{where}: the readings behind this model tell {', '.join(shared)} together only, not "
+            "each by itself. At other poses, what rests on them is not to be trusted.",
+            ToolkitWarning,
+            stacklevel=4,
+        )
 
 
 def base_model(robot: Robot) -> Model | None:

@@ -23,6 +23,11 @@ from sk120stiff.model.uncertainty import Uncertainty
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 
+UNTRUSTED = "not to be trusted"  # in the origin of a value that no readings stand behind
+UNSEEN = f"not identifiable, {UNTRUSTED}"
+TOGETHER = f"identified: known only together with others, {UNTRUSTED} alone"
+ON_BOUND = "identified: on its bound"
+
 BLOCK = 2048  # readings solved together: large enough for array work, small enough for the cache
 
 
@@ -68,6 +73,27 @@ class Parameter:
         """Standard error of the public value."""
         return None if self.std is None else self.spec.public_std(self.value, self.std)
 
+    @property
+    def seen(self) -> bool:
+        """The readings that it was identified from tell its value at all; True if given by hand."""
+        return self.origin != UNSEEN
+
+    @property
+    def trusted(self) -> bool:
+        """Its value may be used by itself."""
+        return UNTRUSTED not in self.origin
+
+    @property
+    def note(self) -> str:
+        """What is to be said beside the value, in words; empty where the number says it all."""
+        if not self.seen:
+            return "not seen in these readings"
+        if not self.trusted:
+            return "known only together with others"
+        if self.origin == ON_BOUND:
+            return "on its bound: rigid fits best" if self.spec.reciprocal else "on its bound"
+        return ""
+
 
 @dataclass(frozen=True, eq=False)
 class Model:
@@ -110,6 +136,11 @@ class Model:
     def values(self) -> Array:
         """(P,) internal values."""
         return np.array([parameter.value for parameter in self.parameters])
+
+    @property
+    def untrusted(self) -> tuple[Parameter, ...]:
+        """Parameters whose values no readings stand behind."""
+        return tuple(parameter for parameter in self.parameters if not parameter.trusted)
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
