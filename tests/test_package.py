@@ -57,7 +57,7 @@ def test_the_checkout_finds_its_robots() -> None:
 
 
 OTHER_NAMES = {"pinocchio": "pin", "yaml": "pyyaml"}  # import → package
-OPTIONAL = {"dask": "cluster", "distributed": "cluster", "xacrodoc": "xacro"}  # import → extra
+OPTIONAL = {"dask": "cluster", "distributed": "cluster", "xacro": "xacro"}  # import → extra
 
 
 def test_every_library_that_is_imported_is_a_named_dependency() -> None:

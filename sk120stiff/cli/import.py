@@ -20,6 +20,7 @@ from sk120stiff.measurements import Measurements, read_figaroh, write_measuremen
 from sk120stiff.measurements.registration import registration_doubts
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
+from sk120stiff.robot.naming import RobotName, robot_name
 from sk120stiff.units import parse_values
 
 
@@ -136,7 +137,7 @@ def command(
     )
     readings = replace(
         found.measurements,
-        robot=str(Path(arm.source).resolve()) if Path(arm.source).exists() else arm.source,
+        robot=_lasting(arm.source),
         base_frame=arm.base_frame,
         tool_frame=arm.tool_frame,
     )
@@ -173,6 +174,13 @@ def _positions(readings: Measurements, arm: Robot) -> tuple[Array, Array]:
     first = used[np.unique(readings.pose_index[used], return_index=True)[1]]
     measured = np.zeros((0, 3)) if readings.displacement is None else readings.displacement[first]
     return measured, arm.placement(readings.joints[first], point=readings.point)[..., :3, 3]
+
+
+def _lasting(source: str) -> str:
+    """The robot's name as it holds in any folder."""
+    name = robot_name(source)
+    path = Path(name.place)
+    return str(RobotName(str(path.resolve()), name.arguments)) if path.exists() else source
 
 
 def _point(text: str) -> Array:

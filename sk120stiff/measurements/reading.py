@@ -169,9 +169,13 @@ def _robot(text: str | None, folder: Path) -> str | None:
     """A path is relative to the file it stands in; a bundled name stays as written."""
     if text is None:
         return None
-    path = folder / text
-    is_path = "/" in text or "\\" in text or path.suffix.lower() in _ROBOT_FILES or path.exists()
-    return str(path.resolve()) if is_path else text
+    from sk120stiff.robot.naming import RobotName, robot_name  # Pinocchio comes with it
+
+    place, arguments = robot_name(text)
+    path = folder / place
+    is_path = any(mark in place for mark in "/\\") or path.suffix.lower() in _ROBOT_FILES
+    is_path = is_path or path.exists()
+    return str(RobotName(str(path.resolve()), arguments)) if is_path else text
 
 
 def _hash(*paths: Path | None) -> str:

@@ -193,4 +193,8 @@ def _robot(robot: str | None, folder: Path) -> str | None:
     """A path is written relative to the file, so that both can move together."""
     if robot is None or not Path(robot).is_absolute():
         return robot
-    return Path(os.path.relpath(robot, folder.resolve())).as_posix()
+    from sk120stiff.robot.naming import RobotName, robot_name  # Pinocchio comes with it
+
+    name = robot_name(robot)
+    seen = Path(os.path.relpath(name.place, folder.resolve())).as_posix()
+    return str(RobotName(seen, name.arguments))

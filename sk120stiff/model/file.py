@@ -37,6 +37,7 @@ from sk120stiff.model.uncertainty_file import (
     uncertainty_of,
 )
 from sk120stiff.robot import Robot, find_robot, load_robot
+from sk120stiff.robot.naming import RobotName, robot_name
 
 
 class _Strict(BaseModel):
@@ -187,9 +188,11 @@ def _seen_from(folder: Path | None, source: str) -> str:
     """A relative path to a robot as it reads from another folder; anything else as it is."""
     if folder is None or source.lstrip().startswith("<") or Path(source).is_absolute():
         return source
-    if not Path(source).exists():  # the name of a bundled robot
+    name = robot_name(source)
+    if not Path(name.place).exists():  # the name of a bundled robot
         return source
-    return Path(os.path.relpath(source, folder)).as_posix()
+    seen = Path(os.path.relpath(name.place, folder)).as_posix()
+    return str(RobotName(seen, name.arguments))
 
 
 def _warn_of_another_robot(said: str, robot: Robot, folder: Path | None, where: str) -> None:
@@ -204,12 +207,14 @@ def _warn_of_another_robot(said: str, robot: Robot, folder: Path | None, where: 
 
 def _same_file(said: str, source: str, folder: Path | None) -> bool:
     try:
-        meant, known = find_robot(said, relative_to=folder).urdf, find_robot(source).urdf
-        if isinstance(meant, Path) and isinstance(known, Path):
-            return meant.read_bytes() == known.read_bytes()
+        meant, known = find_robot(said, relative_to=folder), find_robot(source)
+        if meant.xacro != known.xacro:
+            return False
+        if isinstance(meant.urdf, Path) and isinstance(known.urdf, Path):
+            return meant.urdf.read_bytes() == known.urdf.read_bytes()
     except (InputError, OSError):
         return False
-    return meant == known
+    return meant.urdf == known.urdf
 
 
 def _parsed(text: str, where: str) -> _File:

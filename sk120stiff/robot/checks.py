@@ -80,7 +80,7 @@ def check_robot(
         The robot is refused. A robot in which nothing moves is no refusal here but a warning.
     """
     found = find_robot(source)
-    document = read_urdf(found.urdf)
+    document = read_urdf(found.urdf, xacro_arguments=found.xacro)
     findings = [*document.warnings, *suspicions(document)]
     arm = (*(found.description.actuated or ()), *told_joints(document, found.description))
     guessed = default_frames(document, arm)

@@ -68,6 +68,7 @@ class RobotDescription(_Strict):
 
     name: str | None = None
     urdf: str = "robot.urdf"
+    xacro: dict[str, str | bool | int | float] = Field(default_factory=dict)
     base_frame: str | None = None
     tool_frame: str | None = None
     actuated: tuple[str, ...] | None = None
@@ -77,6 +78,11 @@ class RobotDescription(_Strict):
     linkages: tuple[LinkageRule, ...] = ()
     foundation: Foundation | None = None
     notes: str = ""
+
+
+def xacro_value(value: str | bool | int | float) -> str:
+    """A value of `robot.yaml` as xacro reads it: true and false in small letters."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def read_description(path: Path) -> RobotDescription:

@@ -13,8 +13,9 @@ import numpy as np
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.bundled import bundled_robots
 from sk120stiff.robot.coupling import Array, Coupling, Follower, linear_coupling
-from sk120stiff.robot.description import RobotDescription, read_description
+from sk120stiff.robot.description import RobotDescription, read_description, xacro_value
 from sk120stiff.robot.loop_building import closures_of, loop_coupling, loop_drivers
+from sk120stiff.robot.naming import robot_name
 from sk120stiff.robot.robot import Linkage, Robot
 from sk120stiff.robot.tree import Tree
 from sk120stiff.robot.urdf import (
@@ -35,9 +36,13 @@ Source = str | os.PathLike[str]
 
 @dataclass(frozen=True)
 class RobotSource:
-    """Where a robot comes from: its URDF, and its `robot.yaml` where there is one."""
+    """Where a robot comes from: its URDF, and its `robot.yaml` where there is one.
+
+    `xacro` holds the arguments of its xacro.
+    """
 
     urdf: Source
+    xacro: Mapping[str, str] = field(default_factory=dict)
     folder: Path | None = None
     description: RobotDescription = field(default_factory=RobotDescription)
 
@@ -54,7 +59,7 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
     Parameters
     ----------
     source
-        Bundled name, path or XML text.
+        Bundled name, path or XML text; a name or a path may be followed by ``NAME:=VALUE``.
     relative_to
         Folder against which a relative path is tried first.
 
@@ -63,7 +68,7 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
     InputError
         Nothing of that name; the bundled robots are listed.
     """
-    text = os.fspath(source)
+    text, arguments = robot_name(os.fspath(source))
     if text.lstrip("\ufeff \t\r\n").startswith("<"):
         return RobotSource(urdf=text)
     bundled = bundled_robots()
@@ -82,8 +87,9 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
         )
     if path.is_dir() and (path / "robot.yaml").is_file():
         description = read_description(path / "robot.yaml")
-        return RobotSource(path / description.urdf, path, description)
-    return RobotSource(urdf=path)
+        told = {name: xacro_value(value) for name, value in description.xacro.items()}
+        return RobotSource(path / description.urdf, {**told, **arguments}, path, description)
+    return RobotSource(path, arguments)
 
 
 def _exists(path: Path) -> bool:
@@ -100,6 +106,7 @@ def load_robot(
     tool: str | None = None,
     actuated: Sequence[str] | None = None,
     lock: Mapping[str, float] | None = None,
+    xacro: Mapping[str, str] | None = None,
     relative_to: Path | None = None,
 ) -> Robot:
     """Load the rigid kinematics of any robot arm.
@@ -117,6 +124,8 @@ def load_robot(
         moving joints between base and tool that mimic no other.
     lock
         Values [rad or m] at which joints that are not actuated are held; zero else.
+    xacro
+        Values of the arguments of a xacro, on top of those of ``robot.yaml``.
     relative_to
         Folder against which a relative path is tried first.
 
@@ -125,9 +134,9 @@ def load_robot(
     InputError
         The file cannot be read or describes no arm; the message names place and remedy.
     """
-    found = find_robot(source, relative_to=relative_to)
-    document = read_urdf(found.urdf)
-    named = os.fspath(source)
+    named = str(robot_name(os.fspath(source)).with_arguments(xacro or {}))
+    found = find_robot(named, relative_to=relative_to)
+    document = read_urdf(found.urdf, xacro_arguments=found.xacro)
     return assemble(
         found, document, named=named, base=base, tool=tool, actuated=actuated, lock=lock
     )

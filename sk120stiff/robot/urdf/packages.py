@@ -5,11 +5,16 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
 from urllib.parse import unquote
 
 _PACKAGE_NAME = re.compile(rb"<name>\s*([\w.-]{1,200})\s*</name>")
 _LEVELS_UP = 12
+_CRAWLED_UP = 6  # of the folders around a description, so many are crawled for packages
+_DEPTH_AROUND, _DEPTH_OF_WORKSPACE = 2, 6
+_MOST_FOLDERS = 5_000  # looked into for one package
+_NO_PACKAGES = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})
 
 
 def package_folders(
@@ -17,31 +22,87 @@ def package_folders(
 ) -> tuple[Path, ...]:
     """Folders that may be a package or hold packages, first match wins.
 
-    `extra`, then the parents of the description, then ROS_PACKAGE_PATH, AMENT_PREFIX_PATH/share
-    and CMAKE_PREFIX_PATH/share.
+    `extra`, then the parents of the description, then the `workspaces`.
     """
     folders = [Path(folder).expanduser() for folder in extra]
     if path is not None:
         folders.extend(list(path.absolute().parents)[:_LEVELS_UP])
+    return tuple(dict.fromkeys((*folders, *workspaces())))
+
+
+def workspaces() -> tuple[Path, ...]:
+    """ROS_PACKAGE_PATH, and `share` below AMENT_PREFIX_PATH and CMAKE_PREFIX_PATH."""
+    folders: list[Path] = []
     for variable, below in (
         ("ROS_PACKAGE_PATH", ""),
         ("AMENT_PREFIX_PATH", "share"),
         ("CMAKE_PREFIX_PATH", "share"),
     ):
         entries = os.environ.get(variable, "").split(os.pathsep)
-        folders.extend(Path(entry) / below for entry in entries if entry)
+        for entry in filter(None, entries):
+            inside = Path(entry).expanduser() / below
+            folders.append(inside if inside.is_dir() else Path(entry).expanduser())
     return tuple(dict.fromkeys(folders))
 
 
 def find_package(name: str, folders: Sequence[Path]) -> list[Path]:
-    """Candidate roots of a package: folders of its name, or whose package.xml says so."""
+    """Candidate roots of a package: folders of its name, or whose package.xml says so.
+
+    Only if none of `folders` is or directly holds it, the packages are sought that lie in or near
+    them under another folder's name: beside the description and beside the folders above it, and
+    anywhere in a workspace.
+    """
     found = []
     for folder in folders:
         if folder.name == name or _package_name(folder) == name:
             found.append(folder)
         if (folder / name).is_dir():
             found.append(folder / name)
+    if not found:
+        deep = {folder: _DEPTH_AROUND for folder in folders[:_CRAWLED_UP] if _is_near(folder)}
+        deep |= {folder: _DEPTH_OF_WORKSPACE for folder in workspaces() if folder in folders}
+        for folder, depth in deep.items():
+            known = _packages_below(folder, depth, _changed(folder))
+            found += [place for place, said in known if said == name]
     return list(dict.fromkeys(found))
+
+
+def _is_near(folder: Path) -> bool:
+    """A folder that may hold somebody's packages; not the root, /home, /tmp or one's own home."""
+    return len(folder.parts) > 2 and folder != Path.home()
+
+
+def _changed(folder: Path) -> int:
+    try:
+        return folder.stat().st_mtime_ns
+    except OSError:
+        return 0
+
+
+@lru_cache(maxsize=64)
+def _packages_below(folder: Path, depth: int, _changed: int) -> tuple[tuple[Path, str], ...]:
+    """Packages in a folder and down to `depth` below it, nearest first; none within another."""
+    found: list[tuple[Path, str]] = []
+    level, looked = [folder], 0
+    for _ in range(depth + 1):
+        below: list[Path] = []
+        for place in level:
+            looked += 1
+            if looked > _MOST_FOLDERS:
+                return tuple(found)
+            name = _package_name(place)
+            if name is not None and place != folder:
+                found.append((place, name))
+                continue
+            try:
+                with os.scandir(place) as entries:
+                    inside = sorted(entries, key=lambda entry: entry.name)
+            except OSError:
+                continue
+            if not _NO_PACKAGES & {entry.name for entry in inside}:
+                below += [Path(e.path) for e in inside if e.is_dir() and e.name[:1] != "."]
+        level = below
+    return tuple(found)
 
 
 def resolve(address: str, path: Path | None, folders: Sequence[Path]) -> tuple[Path | None, str]:

@@ -16,7 +16,7 @@ from sk120stiff.robot.urdf.mimics import checked_mimics, without_orphans
 from sk120stiff.robot.urdf.packages import package_folders as folders_around
 from sk120stiff.robot.urdf.source import RawSource, read_source
 from sk120stiff.robot.urdf.structure import declared_links, find_root
-from sk120stiff.robot.urdf.xacro import expand, has_substitutions, uses_xacro
+from sk120stiff.robot.urdf.xacro import expand, is_xacro, refuse_empty, with_environment
 from sk120stiff.robot.urdf.xml_text import decode
 from sk120stiff.robot.urdf.xml_tree import Element, parse_robot
 
@@ -45,7 +45,7 @@ def read_urdf(
     package_folders
         Folders that hold packages, tried before the parent folders and ROS_PACKAGE_PATH.
     xacro_arguments
-        Values of ``<xacro:arg>``.
+        Values of ``<xacro:arg>``; one that the xacro does not know is refused.
 
     Returns
     -------
@@ -61,39 +61,50 @@ def read_urdf(
     notes = Notebook(raw.label)
     folders = folders_around(raw.path, package_folders)
     text = decode(raw.data, notes)
-    if raw.is_xacro:
-        return _expanded(raw, text, folders, xacro_arguments, notes)
-    if uses_xacro(text):
-        try:
-            return _expanded(raw, text, folders, xacro_arguments, notes)
-        except MissingPart:
-            raise
-        except InputError as refusal:  # a URDF that somebody expanded by hand
-            notes = Notebook(raw.label)
-            notes.warn("xacro_skipped", "", f"xacro elements were ignored: {refusal.what}")
-            try:
-                return _document(parse_robot(text, notes), raw, folders, notes)
-            except InputError:
-                raise refusal from None
+    arguments = dict(xacro_arguments or {})
+    if not is_xacro(raw, text):
+        if arguments:
+            notes.refuse(
+                f"this is no xacro and takes no arguments ({', '.join(arguments)})",
+                remedy="Leave the arguments out, or give the .xacro file.",
+            )
+        return _plain(raw, text, folders, notes)
+    if raw.is_xacro or arguments:
+        return _expanded(raw, text, folders, arguments, notes)
     try:
-        return _document(parse_robot(text, notes), raw, folders, notes)
-    except InputError:
-        if not has_substitutions(text):
-            raise
-    # $(optenv ...) in a plain URDF: let xacro put in the values
-    return _expanded(raw, text, folders, xacro_arguments, Notebook(raw.label))
+        return _expanded(raw, text, folders, arguments, notes)
+    except MissingPart:
+        raise
+    except InputError as refusal:  # a URDF that somebody expanded by hand
+        notes = Notebook(raw.label)
+        notes.warn("xacro_skipped", "", f"xacro elements were ignored: {refusal.what}")
+        try:
+            return _document(parse_robot(text, notes), raw, folders, notes)
+        except InputError:
+            raise refusal from None
+
+
+def _plain(raw: RawSource, text: str, folders: tuple[Path, ...], notes: Notebook) -> UrdfDocument:
+    """A file without xacro; `$(optenv ...)`, which some generators leave behind, gets its value."""
+    filled = with_environment(text)
+    if filled != text:
+        notes.warn("environment_value", "", "$(env ...) was replaced by values of the environment")
+    return _document(parse_robot(filled, notes), raw, folders, notes)
 
 
 def _expanded(
     raw: RawSource,
     text: str,
     folders: tuple[Path, ...],
-    arguments: Mapping[str, str] | None,
+    arguments: Mapping[str, str],
     notes: Notebook,
 ) -> UrdfDocument:
-    text = expand(raw, text, folders, arguments or {}, notes)
+    expanded = expand(raw, text, folders, arguments, notes)
     notes.source = f"{raw.label} (expanded)"
-    return _document(parse_robot(text, notes), raw, folders, notes)
+    root = parse_robot(expanded, notes)
+    if root.first("link") is None:
+        refuse_empty(raw, text, notes)
+    return _document(root, raw, folders, notes)
 
 
 def _document(

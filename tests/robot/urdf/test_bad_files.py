@@ -138,7 +138,7 @@ REPAIRED = [
     ("parent_undeclared.urdf", "link_undeclared", "joint 'mount'", "parent link 'table'"),
     ("robot_without_name.urdf", "robot_name_missing", "line 2", "called 'robot_without_name'"),
     ("text_behind_the_end.urdf", "xml_syntax", "line 22", "text behind </robot>"),
-    ("value_from_environment.urdf", "xacro_expanded", "", "expanded text"),
+    ("value_from_environment.urdf", "environment_value", "", "values of the environment"),
     ("velocity_negative.urdf", "velocity_negative", "line 14", "velocity -3 is negative"),
     ("visual_with_a_word.urdf", "visual_unreadable", "line 6", "'a b c'"),
     ("world_undeclared.urdf", "link_undeclared", "joint 'mount'", "parent link 'world'"),

@@ -131,7 +131,7 @@ def test_xacro_runs_no_code_that_lies_beside_it(
 ) -> None:
     path = xacro_tree(tmp_path)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "elsewhere"))
-    for module in ("yaml", "json", "xacrodoc", "rospkg", "sk120stiff"):
+    for module in ("yaml", "json", "xacro", "packages", "sk120stiff"):
         (path.parent / f"{module}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
     monkeypatch.chdir(path.parent)
     assert read_urdf(path).name == "arm"
