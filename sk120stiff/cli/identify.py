@@ -17,7 +17,6 @@ from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import effect
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.explain.mistakes import mistakes, without_copies
 from sk120stiff.files import will_write
 from sk120stiff.identify import (
     Compared,
@@ -36,6 +35,7 @@ from sk120stiff.identify import (
 from sk120stiff.identify.report import noise_sentence, place_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, read_model, write_model
+from sk120stiff.slips import look, refuse_unbelievable, without_copies
 
 Interval = tuple[float, float]
 
@@ -98,8 +98,10 @@ def command(
     for name in effects or ():
         start = with_effect(start, name, readings)
     start = with_freedom(start, fix or (), free)
-    for said in mistakes(plain, readings):
-        warnings.warn(f"{said}.", ToolkitWarning, stacklevel=2)
+    doubts = look(plain, readings)
+    refuse_unbelievable(doubts, plain, readings)
+    for said in doubts.sentences:
+        warnings.warn(said, ToolkitWarning, stacklevel=2)
     readings, told = without_copies(readings)
     if told:
         warnings.warn(told, ToolkitWarning, stacklevel=2)

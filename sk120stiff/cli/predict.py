@@ -20,6 +20,7 @@ from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Predicted, held_loads, predict_with_uncertainty
 from sk120stiff.robot.coupling import Array
+from sk120stiff.slips import look
 
 AXES = "xyz"
 UNHELD = "no static equilibrium: the springs cannot hold this load"
@@ -37,6 +38,8 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     will_write(out)
     readings, robot = open_data(data)
     believed = start_model(robot, model)
+    for said in look(believed, readings).sentences:
+        warnings.warn(said, ToolkitWarning, stacklevel=2)
     predicted = predict_what_holds(believed, situation_of(robot, readings))
     frame = prediction_table(readings, predicted)
     if out is not None:

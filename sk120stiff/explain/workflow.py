@@ -8,12 +8,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from sk120stiff.effects import situation_of
-from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.adequacy import Adequacy, adequacy
 from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.doubt import with_doubt
 from sk120stiff.explain.explanation import Explanation
-from sk120stiff.explain.mistakes import mistakes, without_copies
 from sk120stiff.explain.naming import SHADOW, Named, judged
 from sk120stiff.explain.noise_race import race
 from sk120stiff.explain.settling import Attempt, attempt, with_effects
@@ -23,6 +22,7 @@ from sk120stiff.identify import refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
+from sk120stiff.slips import look, refuse_unbelievable, without_copies
 
 LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
 
@@ -152,12 +152,11 @@ def _best_attempt(
 
 def _sound(model: Model, measurements: Measurements) -> Measurements:
     """The readings with copied rows masked, once nothing in them looks like a slip of the pen."""
-    for said in mistakes(model, measurements):
-        raise Refusal(
-            said,
-            where=str(measurements.path or "the measurements"),
-            remedy="No cause is sought before this is settled.",
-        )
+    doubts = look(model, measurements)
+    refuse_unbelievable(doubts, model, measurements)
+    doubts.refuse_to_explain(str(measurements.path or "the measurements"))
+    for said in doubts.sentences:
+        warnings.warn(said, ToolkitWarning, stacklevel=3)
     single, told = without_copies(measurements)
     if told:
         warnings.warn(told, ToolkitWarning, stacklevel=3)

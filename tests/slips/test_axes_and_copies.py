@@ -1,4 +1,4 @@
-"""Slips of the pen are told as such, and good data are never called wrong."""
+"""Signs and axes of loads and displacements, copied rows; good data are never called wrong."""
 
 from dataclasses import replace
 from itertools import permutations
@@ -9,9 +9,9 @@ import pytest
 from sk120stiff import base_model, load_robot
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.explain import explain
-from sk120stiff.explain.mistakes import mistakes, repeated_rows, without_copies
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
+from sk120stiff.slips import look, repeated_rows, without_copies
 from tests.explain.readings import hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 
@@ -33,12 +33,12 @@ def moved(data: Measurements, change: np.ndarray) -> Measurements:
 
 
 def test_good_data_are_not_doubted(model: Model, good: Measurements) -> None:
-    assert mistakes(model, good) == ()
+    assert look(model, good).sentences == ()
     assert not len(repeated_rows(good))
 
 
 def test_a_flipped_sign_is_told_and_nothing_is_named(model: Model, good: Measurements) -> None:
-    (said,) = mistakes(model, moved(good, -np.eye(3)))
+    (said,) = look(model, moved(good, -np.eye(3))).sentences
     assert "point against each other in " in said
     assert f" of {len(good.pose)} rows: check the sign convention" in said
     with pytest.raises(Refusal, match="check the sign convention"):
@@ -50,7 +50,7 @@ def test_swapped_axes_are_told_in_the_order_that_mends_them(
     model: Model, good: Measurements, order: tuple[int, int, int]
 ) -> None:
     swapped = replace(good, displacement=good.displacement[:, order])
-    (said,) = mistakes(model, swapped)
+    (said,) = look(model, swapped).sentences
     back = "".join("xyz"[order.index(k)] for k in range(3))
     assert f"dx, dy, dz look like {', '.join(back)}" in said
 
@@ -59,20 +59,20 @@ def test_swapped_axes_are_told_in_the_order_that_mends_them(
 def test_one_axis_with_the_wrong_sign(model: Model, good: Measurements, axis: int) -> None:
     signs = np.eye(3)
     signs[axis, axis] = -1.0
-    (said,) = mistakes(model, moved(good, signs))
+    (said,) = look(model, moved(good, signs)).sentences
     assert said.startswith(f"d{'xyz'[axis]} seems to have the wrong sign")
 
 
 @pytest.mark.parametrize("factor", [1e3, 1e-3])
 def test_a_wrong_unit(model: Model, good: Measurements, factor: float) -> None:
-    (said,) = mistakes(model, moved(good, factor * np.eye(3)))
+    (said,) = look(model, moved(good, factor * np.eye(3))).sentences
     assert "check the units" in said
 
 
 def test_noise_alone_is_no_mistake(model: Model, good: Measurements) -> None:
     rng = np.random.default_rng(1)
     noise = rng.normal(0.0, 1e-5, good.displacement.shape)
-    assert mistakes(model, replace(good, displacement=noise)) == ()
+    assert look(model, replace(good, displacement=noise)).sentences == ()
 
 
 def test_copied_rows_are_masked_and_told(model: Model, good: Measurements) -> None:
@@ -94,7 +94,7 @@ def test_repeats_that_coincide_on_a_coarse_instrument_are_kept(good: Measurement
 
 def test_a_soft_foundation_is_no_mistake(model: Model) -> None:
     soft = hidden(BaseRocking("base_link", {"x": 5e-7, "y": 1e-6}), poses=8)
-    assert mistakes(model, soft) == ()
+    assert look(model, soft).sentences == ()
 
 
 def test_a_file_pasted_twice_names_what_it_would_name_once(

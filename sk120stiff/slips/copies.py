@@ -1,0 +1,55 @@
+"""Rows that were pasted twice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.measurements import Measurements
+
+
+def repeated_rows(measurements: Measurements) -> NDArray[np.intp]:
+    """(k,) rows that repeat an earlier one to the last digit, load and all three axes.
+
+    Such rows are copies, not repeats: the noise that they claim to show is zero. Rows that the file
+    itself tells apart, by order, time, branch or repeat, are readings of their own.
+    """
+    if measurements.displacement is None:
+        return np.zeros(0, dtype=np.intp)
+    whole = np.column_stack([measurements.joints, measurements.wrench, measurements.displacement])
+    first: dict[tuple[bytes, tuple[object, ...]], int] = {}
+    copies = []
+    for row in np.flatnonzero(measurements.use):
+        if not measurements.displacement[row].all():
+            continue
+        told_apart = tuple(
+            None if column is None else column[row]
+            for column in (
+                measurements.order,
+                measurements.time,
+                measurements.branch,
+                measurements.repeat,
+            )
+        )
+        key = ((whole[row] + 0.0).tobytes(), told_apart)
+        if first.setdefault(key, int(row)) != row:
+            copies.append(row)
+    return np.array(copies, dtype=np.intp)
+
+
+def without_copies(measurements: Measurements) -> tuple[Measurements, str | None]:
+    """The readings with copied rows masked, and the sentence that says so."""
+    copies = repeated_rows(measurements)
+    if not len(copies):
+        return measurements, None
+    use = measurements.use.copy()
+    use[copies] = False
+    lines = [str(measurements.line[row]) for row in copies[:5]]
+    more = " …" if len(copies) > 5 else ""
+    said = (
+        f"{len(copies)} rows repeat earlier ones to the last digit "
+        f"(line {', '.join(lines)}{more}). Copies show no noise, so they are masked here."
+    )
+    return replace(measurements, use=use), said

@@ -1,0 +1,131 @@
+"""What readings say against themselves, before any spring is fitted: the one place that decides.
+
+Whoever works with readings asks here. Slips of the pen are told with what mends them; readings that
+no passive arm can have given, and a stated uncertainty that they contradict, are refused.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.errors import Refusal
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+from sk120stiff.slips.limits import limits_doubt
+from sk120stiff.slips.passive import Passive
+from sk120stiff.slips.scale import Scale, scale_doubt
+from sk120stiff.slips.search import SPARE, Slip, as_it_stands, find_slip
+from sk120stiff.slips.sheet import sheet_of
+
+HALF = 0.5  # of the readings' squares: what a passive arm explains at the very least
+NOISY = 3.0  # stated uncertainties that may be left before noise is no excuse
+OVERSTATED = 3.0  # times what is left, where a stated uncertainty exceeds the readings too
+
+
+@dataclass(frozen=True)
+class Doubts:
+    """What looks wrong in readings.
+
+    Attributes
+    ----------
+    slip
+        What was written down wrongly beyond doubt, or None.
+    scale
+        Everything yields far too much or too little, or None.
+    limits
+        Readings beyond the joint limits, in a sentence, or None.
+    """
+
+    slip: Slip | None = None
+    scale: Scale | None = None
+    limits: str | None = None
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """All of it as warnings."""
+        found = [None if self.slip is None else f"{self.slip.said}. {self.slip.remedy}"]
+        found += [None if self.scale is None else f"{self.scale.sentence}.", self.limits]
+        return tuple(said for said in found if said is not None)
+
+    def refuse_to_explain(self, where: str) -> None:
+        """Stop before a cause is sought for what is no cause.
+
+        Raises
+        ------
+        Refusal
+            A slip of the pen, or a unit that can only be wrong.
+        """
+        remedy = "No cause is sought before this is settled."
+        if self.slip is not None:
+            raise Refusal(self.slip.said, where=where, remedy=f"{self.slip.remedy} {remedy}")
+        if self.scale is not None and self.scale.certain:
+            raise Refusal(self.scale.sentence, where=where, remedy=remedy)
+
+
+def look(model: Model, measurements: Measurements) -> Doubts:
+    """What looks wrong in readings that a model is held against.
+
+    Parameters
+    ----------
+    model
+        Its robot decides; its springs are only asked for the scale of everything.
+    measurements
+        Readings; masked ones are left out, and a plan has nothing wrong.
+    """
+    slip = find_slip(model.robot, measurements)
+    scale = None if slip is not None else scale_doubt(model, measurements)
+    return Doubts(slip, scale, limits_doubt(model.robot, measurements))
+
+
+def refuse_unbelievable(doubts: Doubts, model: Model, measurements: Measurements) -> None:
+    """Stop where fitting springs would only put a number on nonsense.
+
+    Raises
+    ------
+    Refusal
+        No passive arm explains half of the readings and their noise does not excuse it, or the
+        stated uncertainty is larger than the readings and than anything they show.
+    """
+    sheet = sheet_of(model.robot, measurements)
+    if sheet is None or not sheet.exists() or not sheet.measured.any():
+        return
+    where = str(measurements.path or "the measurements")
+    found = as_it_stands(sheet).found
+    stated = measurements.noise.sigma
+    _refuse_overstated(found, sheet.measured, stated, where)
+    excused = stated is not None and found.left < (NOISY * stated) ** 2
+    if found.share >= HALF or excused or found.count < model.robot.n + SPARE:
+        return
+    size, left = (1e6 * np.sqrt(x) for x in (found.left / (1.0 - found.share), found.left))
+    remedy = (
+        "Check that every row's joints, load and reading belong together (sorted, shifted or "
+        "shuffled columns), the frames, the units, and that the robot is the right one."
+    )
+    if doubts.slip is not None:
+        remedy = f"It looks as if: {doubts.slip.said}. {doubts.slip.remedy}"
+    raise Refusal(
+        f"whatever its springs and bearings, this arm explains only {found.share:.0%} of these "
+        f"readings ({size:.3g} µm rms per axis, of which {left:.3g} remain)",
+        where=where,
+        remedy=remedy,
+    )
+
+
+def _refuse_overstated(
+    found: Passive, measured: np.ndarray, stated: float | None, where: str
+) -> None:
+    """A σ above the readings that scatter far less than it: its unit is wrong."""
+    if stated is None:
+        return
+    size = float(np.sqrt(np.mean(measured**2)))
+    above = stated > size and OVERSTATED * np.sqrt(found.left) < stated
+    if above or stated > np.abs(measured).max():
+        raise Refusal(
+            f"the stated uncertainty of one reading, {1e6 * stated:.4g} µm, is larger than the "
+            f"readings themselves ({1e6 * size:.4g} µm rms per axis)",
+            where=where,
+            remedy="Check noise: {sigma: ..., unit: ...} in the YAML file beside the readings; "
+            "without it the uncertainty is estimated.",
+        )

@@ -1,0 +1,140 @@
+"""Scale slips: everything yields so much more, or less, than such an arm could.
+
+All springs together, the force's scale and the reading's scale are one number to such readings: no
+fit can tell a soft arm from kilogram-force labelled N. What can be said is how far the springs that
+follow lie from those the model brings, or from those usual for an arm of that size.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.effects import situation_of
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model, joint_spring_model
+from sk120stiff.robot.anatomy import arm_length
+
+#: Softest and stiffest usual drive of a base joint, by the arm's stretched length. A gear winds up
+#: by about 1 mrad at its rated torque (cycloidal reducers: data sheets give 108 N·m per arcmin at
+#: 412 N·m rated, 980 at 3.1 kN·m), a strain-wave gear with its joint by 2 to 7 mrad, and rated
+#: torque goes with payload times reach. Measured: 4.0e5, 9.4e5, 1.4e6 on 2.9 m and 120 kg (the 2005
+#: paper), 0.9e6 to 2.7e6 on 2.9 m and 210 kg (public readings), 1e4 to 3e4 on light arms of 1 to
+#: 1.4 m, whence the wide range there: light arms and industrial ones share these lengths.
+USUAL = (
+    (0.5, 1e3, 2e4),  # payload 1 kg
+    (1.0, 4e3, 1e5),  # 3 to 7 kg
+    (1.5, 1.2e4, 4e5),  # 10 to 20 kg
+    (2.0, 8e4, 1e6),  # 30 to 60 kg
+    (2.9, 2.5e5, 3.5e6),  # 120 to 210 kg
+    (4.0, 7e5, 1e7),  # 300 to 700 kg
+)  # (m, N·m/rad, N·m/rad)
+WRIST = 0.25  # a wrist drive's stiffness over that of a base joint
+KNOWN = 3.0  # no arm is so many times softer or stiffer than the springs identified for it
+CERTAIN = 200.0  # no arm is so much softer or stiffer than another; a unit is
+BEYOND = 1.3  # times softer or stiffer than usual for its size, from where on it is told
+ALIKE = 0.3  # share of the readings' squares that one factor must explain to say anything
+UNITS = (
+    (4.448, "forces in lbf labelled N", "forces in N labelled lbf"),
+    (9.807, "forces in kgf labelled N", "forces in N labelled kgf"),
+    (10.0, "displacements in mm labelled cm", "displacements in cm labelled mm"),
+    (25.4, "displacements in mm labelled inch", "displacements in inch labelled mm"),
+    (39.37, "displacements in um labelled thou of an inch", "displacements in inch labelled m"),
+    (100.0, "displacements in mm labelled dm", "displacements in dm labelled mm"),
+    (1000.0, "displacements in um labelled mm, or in mm labelled m; forces in kN labelled N",
+     "displacements in mm labelled um, or in m labelled mm; forces in N labelled kN"),
+    (1e6, "displacements in um labelled m", "displacements in m labelled um"),
+)  # fmt: skip
+
+
+def yields_times(model: Model, measurements: Measurements) -> float | None:
+    """How many times as much the arm yields as the model's springs let it.
+
+    None where the readings do not look like such an arm at all, so that one factor says nothing.
+    """
+    used = measurements.masked()
+    if used.displacement is None:
+        return None
+    elastic = [k for k, p in enumerate(model.parameters) if p.spec.reciprocal]
+    situation = situation_of(model.robot, used)
+    _, S = model.predict_with_sensitivities(situation, np.zeros(len(model.values)))
+    expected = S[:, :, elastic] @ model.values[elastic]
+    size = float((expected**2).sum())
+    along = float((expected * used.displacement).sum())
+    whole = float((used.displacement**2).sum())
+    return along / size if along > 0.0 and along**2 > ALIKE * size * whole else None
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Everything yields too much or too little.
+
+    Attributes
+    ----------
+    sentence
+        What was seen and what it may be.
+    certain
+        By so much that only a unit can be wrong.
+    """
+
+    sentence: str
+    certain: bool
+
+
+def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
+    """Are the springs that follow implausible for this arm, or for one of its size?"""
+    robot = model.robot
+    if any(p.spec.reciprocal and p.origin != "starting value" for p in model.parameters):
+        times = yields_times(model, measurements)
+        if times is None:
+            return None
+        said = _times(times, "the model's springs let it")
+        return _doubt(said, times, 1.0 / KNOWN, KNOWN)
+    length = arm_length(robot)
+    if any(robot.prismatic) or not USUAL[0][0] <= length <= USUAL[-1][0]:
+        return None
+    softest, stiffest = usual_stiffness(length)
+    middle = float(np.sqrt(softest * stiffest))
+    base = np.where(np.arange(robot.n) < 3, middle, WRIST * middle)
+    times = yields_times(joint_spring_model(robot, base), measurements)
+    if times is None:
+        return None
+    said = (
+        f"the springs of the base joints come out at about {middle / times:.2g} N*m/rad, "
+        f"usual on an arm of {length:.2g} m are {softest:.2g} to {stiffest:.2g}"
+    )
+    return _doubt(said, times, middle / stiffest / BEYOND, middle / softest * BEYOND)
+
+
+def usual_stiffness(length: float) -> tuple[float, float]:
+    """Softest and stiffest usual base drive [N·m/rad] of an arm of that stretched length [m]."""
+    sizes, *ends = np.log(np.array(USUAL)).T
+    softest, stiffest = (float(np.exp(np.interp(np.log(length), sizes, end))) for end in ends)
+    return softest, stiffest
+
+
+def _times(times: float, whose: str) -> str:
+    much = f"{times:.3g} times as much as" if times > 1.0 else f"1/{1.0 / times:.3g} of what"
+    return f"the arm yields {much} {whose}"
+
+
+def _doubt(said: str, times: float, low: float, high: float) -> Scale | None:
+    """The sentence, where `times` lies outside; units that bring it inside, the likeliest first."""
+    if low < times < high:
+        return None
+    softer = times > high
+    middle = np.sqrt(low * high)
+    reach = high / middle  # within it, the unit is as good as any other
+    off = {
+        soft if softer else stiff: abs(np.log(times / middle / (unit if softer else 1.0 / unit)))
+        for unit, soft, stiff in UNITS
+    }
+    likely = [words for words in sorted(off, key=lambda w: off[w]) if off[words] < np.log(reach)]
+    guess = f" Likely: {'; or '.join(likely[:3])}." if likely else ""
+    return Scale(
+        f"{said}: check the units of displacement and force.{guess} All springs together, the "
+        "force's scale and the reading's scale are one number to these readings: which of them is "
+        "wrong they cannot tell",
+        certain=max(times, 1.0 / times) > CERTAIN,
+    )

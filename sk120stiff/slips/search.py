@@ -1,0 +1,204 @@
+"""The search for slips of the pen: correct, refit what a passive arm could do, compare.
+
+Slips are told with confidence only. A correction must leave less than 1/`CLEARER` of the mean
+square that the file as it stands leaves, more than luck explains, and it must end in a sound fit.
+On sound readings no correction comes near: turning a sign or moving a row makes a fit worse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from sk120stiff.errors import ToolkitError
+from sk120stiff.measurements import Measurements
+from sk120stiff.robot import Robot
+from sk120stiff.robot.coupling import Array
+from sk120stiff.slips.correction import Correction
+from sk120stiff.slips.of_axes import of_axes
+from sk120stiff.slips.of_joints import floor, floors, of_joints, sign_of
+from sk120stiff.slips.of_rows import of_rows
+from sk120stiff.slips.passive import Passive, passive
+from sk120stiff.slips.sheet import Sheet, sheet_of
+
+CLEARER = 1.7  # times as much that is left without the correction
+CLEARER_TOGETHER = 2.5  # the same for several joints at once: more is tried, so more is asked
+LUCK = 30.0  # twice the log-likelihood that the best of a hundred useless corrections never gains
+SOUND = 0.9  # share of the readings' squares that a passive arm explains once they are right
+DOUBTFUL = 0.97  # share below which several joints are tried at once
+NEXT_TO = 1.5  # times as much left by another correction that is told beside the best one
+STEPS = 3  # slips told of one file
+SPARE = 6  # numbers beyond the compliances that it takes to judge a fit
+MANY = 300  # readings that suffice to rank many corrections at once
+
+
+@dataclass(frozen=True)
+class Slip:
+    """What was written down wrongly, and what mends it.
+
+    Attributes
+    ----------
+    corrections
+        One or more, to be made together.
+    before, after
+        Share of the readings' squares that a passive arm explains without and with them.
+    rival
+        Another correction that explains nearly as much, or None.
+    """
+
+    corrections: tuple[Correction, ...]
+    before: float
+    after: float
+    rival: Correction | None = None
+
+    @property
+    def said(self) -> str:
+        """What looks wrong, without a full stop."""
+        what = "; ".join(correction.said for correction in self.corrections)
+        return (
+            f"{what} (the arm's springs and bearings could then explain {self.after:.3g} of the "
+            f"readings' squares, as they stand {self.before:.3g})"
+        )
+
+    @property
+    def remedy(self) -> str:
+        """The edits, as sentences."""
+        text = " ".join(correction.remedy for correction in self.corrections)
+        if self.rival is not None:
+            text += f" Nearly as good: {self.rival.said}. {self.rival.remedy}"
+        return text
+
+
+@dataclass(frozen=True)
+class Tried:
+    """One correction, and what a passive arm leaves of the mended sheet."""
+
+    corrections: tuple[Correction, ...]
+    sheet: Sheet
+    found: Passive
+
+    @property
+    def left(self) -> float:
+        """Mean square left, as if no axis had been stretched [m²]."""
+        return self.found.left * float(np.exp(-2.0 / 3.0 * self.sheet.stretch))
+
+
+def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
+    """What looks written down wrongly in readings of a robot, or None.
+
+    Parameters
+    ----------
+    robot
+        The rigid robot. Springs are not asked for: they are refitted for every correction.
+    measurements
+        Readings; masked ones are left out.
+    """
+    sheet = sheet_of(robot, measurements)
+    if sheet is None or not sheet.exists() or not sheet.measured.any():
+        return None
+    stated = measurements.noise.sigma
+    start = as_it_stands(sheet)
+    now, rival = _one_by_one(start, enough=(1.5 * stated) ** 2 if stated is not None else 0.0)
+    if now.found.share < DOUBTFUL:
+        together = _joints_together(start)
+        if together is not None and _clearly(now, together, CLEARER):
+            now, rival = together, None
+    if not now.corrections or now.found.share < SOUND:
+        return None
+    return Slip(now.corrections, start.found.share, now.found.share, rival)
+
+
+def _one_by_one(start: Tried, enough: float) -> tuple[Tried, Correction | None]:
+    """One correction after the other, as long as each is clearly needed; and the last one's rival.
+
+    What leaves no more than `enough` [m²] leaves what the instrument leaves.
+    """
+    now, rival = start, None
+    for _ in range(STEPS):
+        if now.left < enough:
+            break
+        tried = sorted(_tried(now, _single(now.sheet)), key=lambda each: each.left)
+        better = [each for each in tried if _clearly(now, each, CLEARER)]
+        if not better:
+            break
+        now = better[0]
+        near = [each for each in better[1:] if each.left < NEXT_TO * now.left]
+        rival = near[0].corrections[-1] if near else None
+    return now, rival
+
+
+def as_it_stands(sheet: Sheet) -> Tried:
+    """The sheet without a correction."""
+    return Tried((), sheet, passive(_columns(sheet), sheet.measured))
+
+
+def _single(sheet: Sheet) -> Iterator[Correction]:
+    yield from of_axes(sheet)
+    yield from of_joints(sheet)
+    yield from of_rows(sheet)
+
+
+def _tried(now: Tried, corrections: Iterable[Correction]) -> Iterator[Tried]:
+    known = _columns(now.sheet)
+    for correction in corrections:
+        sheet = correction.mend(now.sheet)
+        own = known
+        if not sheet.same_columns(now.sheet):
+            if not sheet.exists():
+                continue
+            try:
+                own = _columns(sheet)
+            except ToolkitError:
+                continue  # the arm cannot stand so
+        yield Tried((*now.corrections, correction), sheet, passive(own, sheet.measured))
+
+
+def _columns(sheet: Sheet) -> Array:
+    """Unit displacements; of few readings only those of the drives, or they would explain all."""
+    columns = sheet.columns()
+    enough = 3 * len(columns) >= columns.shape[2] + SPARE
+    return columns if enough else columns[:, :, : sheet.robot.n]
+
+
+def _clearly(now: Tried, other: Tried, ratio: float) -> bool:
+    """Is it better by more than luck and by more than laws that are not quite right?"""
+    if other.left <= 0.0:
+        return now.left > 0.0
+    gained = np.log(now.left / other.left)
+    return bool(gained > np.log(ratio) and other.found.count * gained > LUCK)
+
+
+def _joints_together(start: Tried) -> Tried | None:
+    """Signs of several joints, and one joint against the floor: a controller's own convention.
+
+    Of the conventions that do about as well, the one that changes least; None: none is needed.
+    """
+    few = as_it_stands(start.sheet.thinned(MANY))
+    n = few.sheet.robot.n
+    tried = []
+    for flips in product((False, True), repeat=n):
+        signs = [sign_of(few.sheet, k) for k in range(n) if flips[k]]
+        bent = [floor(few.sheet, *each) for each in floors(few.sheet) if not flips[each[0]]]
+        conventions = [tuple(signs), *((one, *signs) for one in bent)]
+        # One correction alone was tried before.
+        tried += [_all_of(each, few.sheet) for each in conventions if len(each) > 1]
+    good = [each for each in tried if each is not None and _clearly(few, each, CLEARER_TOGETHER)]
+    best = min((each.left for each in good), default=0.0)
+    near = [each for each in good if each.left < 1.1 * best]
+    if not near:
+        return None
+    chosen = min(near, key=lambda each: (len(each.corrections), each.left))
+    whole = _all_of(chosen.corrections, start.sheet)
+    return whole if whole is not None and _clearly(start, whole, CLEARER_TOGETHER) else None
+
+
+def _all_of(corrections: tuple[Correction, ...], sheet: Sheet) -> Tried | None:
+    """The sheet with all corrections, in their order; None if the arm cannot stand so."""
+    for correction in corrections:
+        sheet = correction.mend(sheet)
+    if not sheet.exists():
+        return None
+    return Tried(corrections, sheet, passive(_columns(sheet), sheet.measured))

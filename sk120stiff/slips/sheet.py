@@ -1,0 +1,145 @@
+"""What stands in the file, as arrays that a correction can change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.data import Frame
+from sk120stiff.robot import Robot, Screws
+from sk120stiff.robot.coupling import Array
+from sk120stiff.slips.passive import unit_displacements
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """N readings as the file states them.
+
+    Attributes
+    ----------
+    robot
+        The rigid robot.
+    joints
+        (N, n) actuated coordinates [rad or m].
+    wrench
+        (N, 6) in axes of `force_frame` [N, N·m].
+    displacement
+        (N, 3) in axes of `displacement_frame` [m].
+    force_frame, displacement_frame
+        ``"base"`` or ``"tool"``.
+    point, force_point
+        (3,) in the tool frame [m].
+    kept
+        (N,) rows that are in use.
+    stretch
+        Logarithm of the factor by which a correction changed the volume of (dx, dy, dz): noise that
+        was equal on all axes was changed by it too.
+    """
+
+    robot: Robot
+    joints: Array
+    wrench: Array
+    displacement: Array
+    force_frame: Frame
+    displacement_frame: Frame
+    point: Array
+    force_point: Array
+    kept: NDArray[np.bool_]
+    stretch: float = 0.0
+
+    @property
+    def measured(self) -> Array:
+        """(M, 3) displacements of the rows in use [m]."""
+        return self.displacement[self.kept]
+
+    def same_columns(self, other: Sheet) -> bool:
+        """Would unit compliances displace the point just as on the other sheet?"""
+        return (
+            self.joints is other.joints
+            and self.wrench is other.wrench
+            and self.kept is other.kept
+            and self.force_frame == other.force_frame
+            and self.displacement_frame == other.displacement_frame
+        )
+
+    def columns(self) -> Array:
+        """(M, 3, k) see `unit_displacements`."""
+        at, wrench = self.at, self.wrench[self.kept]
+        if self.force_frame == "tool":
+            turned = at.rotation @ wrench.reshape(-1, 2, 3).swapaxes(1, 2)
+            wrench = turned.swapaxes(1, 2).reshape(-1, 6)
+        columns = unit_displacements(at, self.force_point, wrench)
+        if self.displacement_frame == "tool":
+            columns = at.rotation.swapaxes(1, 2) @ columns
+        return np.asarray(columns)
+
+    @cached_property
+    def at(self) -> Screws:
+        """The M poses of the rows in use; each is worked out once, whatever its loads."""
+        unique, row = np.unique(self.joints[self.kept], axis=0, return_inverse=True)
+        row = row.reshape(-1)
+        at = self.robot.screws(unique, point=self.point)
+        return replace(
+            at,
+            axes=at.axes[row],
+            origins=at.origins[row],
+            rotation=at.rotation[row],
+            frame_position=at.frame_position[row],
+            first=at.first[row] if at.first.ndim == 3 else at.first,
+            second=None,
+            carried=None,
+        )
+
+    def exists(self) -> bool:
+        """Are there readings left, and can the arm stand as they say?"""
+        if not self.kept.any():
+            return False
+        return bool(self.robot.closes(np.unique(self.joints[self.kept], axis=0)).all())
+
+    def thinned(self, most: int) -> Sheet:
+        """No more than `most` of the rows in use, spread evenly."""
+        rows = np.flatnonzero(self.kept)
+        if len(rows) <= most:
+            return self
+        kept = np.zeros_like(self.kept)
+        kept[rows[np.linspace(0, len(rows) - 1, most).astype(np.intp)]] = True
+        return replace(self, kept=kept)
+
+    def moved(self, rows: NDArray[np.intp], *, joints: bool = False, wrench: bool = False) -> Sheet:
+        """The displacements (or these columns) of row `rows[i]` in row i; -1: of no row."""
+        known = rows >= 0
+        kept = self.kept & known & self.kept[rows]
+        if joints:
+            return replace(self, kept=kept, joints=self.joints[rows])
+        if wrench:
+            return replace(self, kept=kept, wrench=self.wrench[rows])
+        return replace(self, kept=kept, displacement=self.displacement[rows])
+
+
+def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
+    """The readings on a robot; None for a plan.
+
+    Raises
+    ------
+    InputError
+        The file's joints are not the robot's actuated joints.
+    """
+    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
+    measurements = measurements.with_joints(robot.actuated, kinds)
+    if measurements.displacement is None:
+        return None
+    return Sheet(
+        robot=robot,
+        joints=measurements.joints,
+        wrench=measurements.wrench,
+        displacement=measurements.displacement,
+        force_frame=measurements.force_frame,
+        displacement_frame=measurements.displacement_frame,
+        point=measurements.point,
+        force_point=measurements.force_point,
+        kept=measurements.use & measurements.wrench.any(axis=1),
+    )

@@ -1,0 +1,54 @@
+"""Units of everything at once: told where the springs that follow are implausible, no finding."""
+
+from dataclasses import replace
+
+import pytest
+
+from sk120stiff.measurements import Measurements
+from sk120stiff.slips import find_slip, look
+from sk120stiff.slips.scale import USUAL, usual_stiffness
+from tests.slips.readings import ARMS
+
+
+def loads_as_if(data: Measurements, factor: float) -> Measurements:
+    return replace(data, wrench=data.wrench / factor)
+
+
+@pytest.mark.parametrize(
+    ("factor", "unit"),
+    [(4.448, "forces in lbf labelled N"), (9.807, "forces in kgf labelled N"),
+     (1 / 4.448, "forces in N labelled lbf"), (25.4, "displacements in mm labelled inch"),
+     (0.1, "displacements in cm labelled mm"), (1 / 25.4, "displacements in inch labelled mm")],
+)  # fmt: skip
+def test_a_scale_beyond_the_known_springs_is_told_as_a_doubt(factor: float, unit: str) -> None:
+    known = ARMS["sk120"]()
+    data = loads_as_if(known.readings, factor)
+    found = look(known.model, data)
+    assert found.slip is None
+    assert found.scale is not None and not found.scale.certain
+    assert unit in found.scale.sentence
+    assert "one number to these readings" in found.scale.sentence
+    assert find_slip(known.robot, data) is None  # and it is never called found
+
+
+def test_without_known_springs_the_size_of_the_arm_speaks() -> None:
+    known = ARMS["ur5"]()
+    assert look(known.model, known.readings).scale is None
+    found = look(known.model, loads_as_if(known.readings, 9.807)).scale
+    assert found is not None
+    assert "the springs of the base joints come out at about" in found.sentence
+    assert "forces in kgf labelled N" in found.sentence
+
+
+@pytest.mark.parametrize("length", [0.5, 1.0, 1.7, 2.9, 3.3])
+def test_larger_arms_are_stiffer(length: float) -> None:
+    softest, stiffest = usual_stiffness(length)
+    assert 0.99 * USUAL[0][1] < softest < stiffest < USUAL[-1][2]
+    assert usual_stiffness(1.2 * length)[0] > softest
+
+
+def test_the_paper_lies_in_the_table() -> None:
+    known = ARMS["sk120"]()
+    springs = known.model.joint_stiffness()[:3]
+    softest, stiffest = usual_stiffness(2.87)
+    assert softest < springs.min() and springs.max() < stiffest
