@@ -21,6 +21,7 @@ from typing import Annotated, NoReturn, TextIO
 import typer
 
 from sk120stiff.cli.document import SCHEMA, as_json_text
+from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
 from sk120stiff.errors import ToolkitError
 from sk120stiff.files import running
 
@@ -55,13 +56,21 @@ class Answer:
 
 
 def framed(body: Callable[..., Answer]) -> Callable[..., None]:
-    """`body` with --json and --debug, run under `guarded`, its answer printed."""
+    """`body` with --json and --debug, run under `guarded`, its answer printed.
+
+    A command that takes a robot gets --xacro-arg too.
+    """
     signature = inspect.signature(body, eval_str=True)
+    robots = [name for name, p in signature.parameters.items() if takes_robot(p)]
 
     @functools.wraps(body)
-    def run(*, as_json: bool, debug: bool, **options: object) -> None:
+    def run(
+        *, as_json: bool, debug: bool, xacro_args: list[str] | None = None, **options: object
+    ) -> None:
         with running(), _messages(debug=debug) as told:
             with guarded(debug=debug, as_json=as_json):
+                if xacro_args:
+                    with_xacro_arguments(options, robots, xacro_args)
                 answer = body(**options)
                 emit(answer, as_json=as_json, warned=told)
             if answer.afterwards is not None:
@@ -72,6 +81,10 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
 
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [p.replace(kind=keyword) for p in signature.parameters.values()]
+    if robots:
+        parameters.append(
+            inspect.Parameter("xacro_args", keyword, default=None, annotation=XacroArgs)
+        )
     for name, annotation in (("as_json", AsJson), ("debug", Debug)):
         parameters.append(inspect.Parameter(name, keyword, default=False, annotation=annotation))
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]

@@ -69,7 +69,7 @@ ToolOption = Annotated[
         "--tool",
         metavar="FRAME",
         help="Frame (URDF link) at the end of the arm.",
-        show_default="the robot's own, else the only or longest leaf",
+        show_default="the robot's own, else the end of its longest arm",
     ),
 ]
 ModelOption = Annotated[

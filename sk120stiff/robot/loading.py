@@ -118,7 +118,7 @@ def load_robot(
         ``robot.yaml``, or URDF text.
     base, tool
         Frames (URDF links) between which the arm is described. Default: what ``robot.yaml`` says,
-        else the root and the only or longest leaf.
+        else the root and the end of the longest arm (`Robot.choice`).
     actuated
         Joints that motors drive, in the wanted order. Default: what ``robot.yaml`` says, else all
         moving joints between base and tool that mimic no other.
