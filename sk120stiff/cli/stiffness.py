@@ -16,7 +16,14 @@ from sk120stiff.cli.options import (
     WrenchOption,
 )
 from sk120stiff.cli.tables import table
-from sk120stiff.model import LoadedStiffness, loaded_stiffness
+from sk120stiff.cli.uncertainty import blame_reason, plus_minus, sentences, uncertainty_keys
+from sk120stiff.model import (
+    LoadedStiffness,
+    LoadedUncertainty,
+    Model,
+    loaded_stiffness,
+    loaded_uncertainty,
+)
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import Definiteness
 
@@ -32,6 +39,7 @@ UNITS = {
     "principal_stiffness": "N/m; null: rigid",
     "deflection": "m; null: no equilibrium exists",
     "critical_load_factor": "1; null: this load is never critical",
+    "uncertainty": "as what it belongs to; null: unknown, or not stored",
 }
 
 
@@ -47,14 +55,17 @@ def command(
     """How stiff the arm is: here, this way, under this load.
 
     Prints the Cartesian stiffness with and without the load's own contribution (K_C), the softest
-    and stiffest directions, whether the arm is stable, and how far the load bends it.
+    and stiffest directions, whether the arm is stable, and how far the load bends it. With a model
+    that 'identify' or 'explain' wrote, ± their standard uncertainty.
 
     Example: sk120stiff stiffness motoman_sk120 --pose 'joint_2_l=20 deg' --wrench '0,0,-490 N'
     """
     arm = open_robot(robot, base, tool)
     a, load = pose_of(arm, pose), wrench_of(wrench)
     frame = at or arm.tool_frame
-    found = loaded_stiffness(open_model(arm, model), a, load, frame)
+    believed = open_model(arm, model)
+    found = loaded_stiffness(believed, a, load, frame)
+    doubt = loaded_uncertainty(believed, a, load, found, frame)
     document = {
         "robot": arm.name,
         "base_frame": arm.base_frame,
@@ -85,16 +96,64 @@ def command(
             "equilibrium": found.deflection_equilibrium,
         },
         "critical_load_factor": found.critical_factor,
+        "uncertainty": _uncertainty(believed, doubt),
         "units": UNITS,
     }
-    return Answer(document, parts=_parts(arm.name, frame, found, load))
+    parts = _parts(arm.name, frame, found, load, doubt)
+    return Answer(document, parts=[*parts, *_doubts(believed, doubt, load)])
+
+
+def _uncertainty(model: Model, doubt: LoadedUncertainty | None) -> dict[str, object]:
+    keys = uncertainty_keys(model)
+    if doubt is None:
+        return keys
+    bent = doubt.deflection
+    return {
+        **keys,
+        "principal_stiffness": {"std": doubt.principal, "interval_95": doubt.principal_interval},
+        "deflection": {
+            "std_parameters": None if bent is None else _single(bent.std_parameters),
+            "std_remainder": None if bent is None else _single(bent.std_remainder),
+        },
+        "unknown_because": blame_reason(doubt.blame) or None,
+    }
+
+
+def _single(std: Array | None) -> Array | None:
+    return None if std is None else std[0]
+
+
+def _doubts(model: Model, doubt: LoadedUncertainty | None, load: Array) -> list[str]:
+    if doubt is None:
+        return sentences(model, None, None)
+    bent = doubt.deflection
+    said = []
+    if load.any() and bent is not None:
+        said += sentences(model, bent.std_parameters, bent.std_remainder)
+    if doubt.blame:
+        said.append(f"A ± of '?' {blame_reason(doubt.blame)}.")
+    return said
+
+
+def _with(value: float, std: float | None, factor: float) -> object:
+    return value * factor if std is None else plus_minus(value * factor, std * factor)
+
+
+def _cells(std: Array) -> list[str]:
+    return [f"{x * 1e6:.2g}" if np.isfinite(x) else "?" for x in std]
 
 
 def _if_it_exists(matrix: Array) -> Array | None:
     return matrix if np.isfinite(matrix).all() else None
 
 
-def _parts(name: str, frame: str, found: LoadedStiffness, load: Array) -> list[object]:
+def _parts(
+    name: str,
+    frame: str,
+    found: LoadedStiffness,
+    load: Array,
+    doubt: LoadedUncertainty | None,
+) -> list[object]:
     axes = ("x", "y", "z")
     stiffness: object = "K_X does not exist here: in a direction the arm cannot yield."
     if np.isfinite(found.K_X_enhanced).all() and np.isfinite(found.K_X_conventional).all():
@@ -110,7 +169,7 @@ def _parts(name: str, frame: str, found: LoadedStiffness, load: Array) -> list[o
         [
             (
                 str(k + 1),
-                value * 1e-6,
+                _with(value, None if doubt is None else doubt.principal[k], 1e-6),
                 *(f"{round(component, 4) + 0.0:.4f}" for component in direction),
             )
             for k, (value, direction) in enumerate(
@@ -123,14 +182,13 @@ def _parts(name: str, frame: str, found: LoadedStiffness, load: Array) -> list[o
         "enhanced": found.deflection_enhanced,
         "at equilibrium": found.deflection_equilibrium,
     }
-    deflection = table(
-        "Deflection [µm]",
-        ["", *axes, "length"],
-        [
-            (label, *(1e6 * component for component in (*x, np.linalg.norm(x))))
-            for label, x in deflections.items()
-        ],
-    )
+    rows: list[tuple[object, ...]] = [
+        (label, *(1e6 * component for component in (*x, np.linalg.norm(x))))
+        for label, x in deflections.items()
+    ]
+    if doubt is not None and doubt.deflection is not None and doubt.deflection.std is not None:
+        rows.append(("  ± (one standard deviation)", *_cells(doubt.deflection.std[0]), ""))
+    deflection = table("Deflection [µm]", ["", *axes, "length"], rows)
     parts: list[object] = [
         f"{name}, {frame}; what yields: {', '.join(found.soft)}",
         stiffness,

@@ -10,6 +10,7 @@ from sk120stiff.model.file import (
 )
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
+from sk120stiff.model.loaded_uncertainty import LoadedUncertainty, loaded_uncertainty
 from sk120stiff.model.model import (
     ON_BOUND,
     TOGETHER,
@@ -27,6 +28,7 @@ __all__ = [
     "UNSEEN",
     "Assembly",
     "LoadedStiffness",
+    "LoadedUncertainty",
     "Model",
     "Parameter",
     "Predicted",
@@ -37,6 +39,7 @@ __all__ = [
     "held_loads",
     "joint_spring_model",
     "loaded_stiffness",
+    "loaded_uncertainty",
     "model_from_text",
     "model_text",
     "predict_with_uncertainty",

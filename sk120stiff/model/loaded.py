@@ -114,7 +114,7 @@ def loaded_stiffness(
     ToolkitWarning
         No equilibrium exists: the load is beyond what the springs can hold.
     """
-    model, point = _seen_from(model.physical(), frame or model.robot.tool_frame)
+    model, point = seen_from(model.physical(), frame or model.robot.tool_frame)
     load = np.asarray(wrench, dtype=float)
     unloaded = model.solve(situation_of_load(model.robot, a, np.zeros(6), point=point))
     mechanism = model.assembly.mechanism
@@ -164,7 +164,7 @@ def _at_equilibrium(model: Model, a: ArrayLike, load: Array, point: Array) -> Ar
         return np.full(3, np.nan)
 
 
-def _seen_from(model: Model, frame: str) -> tuple[Model, Array]:
+def seen_from(model: Model, frame: str) -> tuple[Model, Array]:
     """The model of the arm up to `frame`, and the frame's origin in that arm's tool frame [m]."""
     robot = model.robot
     if _same_body(robot, frame):

@@ -1,0 +1,143 @@
+"""± of what `loaded_stiffness` answers.
+
+A compliance is linear in the compliances that it is made of, so its derivative carries drawn
+parameters exactly, and 3×3 eigenvalues of thousands of draws cost nothing. Principal values must be
+drawn: where two are nearly equal, they push each other apart, and no derivative says by how much.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+
+from sk120stiff.effects import situation_of_load
+from sk120stiff.errors import Refusal
+from sk120stiff.model.loaded import LoadedStiffness, seen_from
+from sk120stiff.model.model import Model
+from sk120stiff.model.predicted import Predicted, blamed, predict_with_uncertainty
+from sk120stiff.model.uncertainty import spread
+from sk120stiff.robot.coupling import Array
+from sk120stiff.stiffness import complementary_stiffness, symmetric_part
+
+STEP = 1e-3  # of a usual size; compliances enter linearly, so it does not matter
+SLIGHT = 0.01  # share of a stiffness that nobody asks about
+DRAWS, SEED = 4000, 1  # of parameters; the same question has the same answer
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedUncertainty:
+    """± of principal stiffness and deflection at one pose under one load.
+
+    Attributes
+    ----------
+    principal
+        (3,) standard uncertainty of the principal stiffness [N/m]; infinite where a value counts
+        that the readings of the fit do not show.
+    principal_interval
+        (3, 2) 95 % intervals [N/m]. They are made of compliances and turned over: so one that
+        reaches to a compliance of zero is open upwards.
+    deflection
+        Of the point at exact equilibrium, base axes (one reading); None where there is none.
+    blame
+        Parameters that make a ± infinite.
+    """
+
+    principal: Array
+    principal_interval: Array
+    deflection: Predicted | None
+    blame: tuple[str, ...]
+
+
+def loaded_uncertainty(
+    model: Model,
+    a: ArrayLike,
+    wrench: ArrayLike,
+    found: LoadedStiffness,
+    frame: str | None = None,
+) -> LoadedUncertainty | None:
+    """The uncertainty of `found`, `loaded_stiffness` of the same arguments.
+
+    None if the model does not know how well its parameters are known.
+    """
+    known = model.uncertainty
+    if known is None:
+        return None
+    model, point = seen_from(model.physical(), frame or model.robot.tool_frame)
+    load = np.asarray(wrench, dtype=float)
+    C = _compliance(model, model.values, a, load, point)
+    change = np.stack(_derivative(model, a, load, point), axis=-1)  # (3, 3, P)
+    change = 0.5 * (change + np.swapaxes(change, 0, 1))
+    directions = found.principal.directions  # (3, 3), one per row
+    by_parameter = np.einsum("ki,ijp,kj->kp", directions, change, directions)
+    L, B = known.factors(model.names)
+    softness = np.linalg.eigvalsh(symmetric_part(C))[::-1]
+    lost = np.isinf(spread(by_parameter @ L, by_parameter @ B, SLIGHT * np.abs(softness)))
+    drawn = _drawn(symmetric_part(C), change @ np.concatenate([L, B], axis=1))
+    stiffness = found.principal.values
+    with np.errstate(invalid="ignore"):
+        std = np.where(lost | np.isinf(stiffness), np.inf, drawn.std(axis=0) * stiffness**2)
+    stretch = known.reach(0.95) / float(stats.norm.ppf(0.975))
+    ends = np.quantile(drawn, [0.025, 0.975], axis=0)  # (2, 3)
+    low, high = np.asarray(softness + stretch * (ends - softness), dtype=float)
+    deflection = _deflection(model, a, load, point)
+    blame = [*blamed(known, model.names, by_parameter[lost])] if lost.any() else []
+    blame += [name for names in (deflection.blame if deflection else ()) for name in names]
+    return LoadedUncertainty(
+        std, _reciprocals(softness, low, high, lost), deflection, tuple(dict.fromkeys(blame))
+    )
+
+
+def _drawn(C: Array, change: Array) -> Array:
+    """(DRAWS, 3) principal compliances, largest first, for changes (3, 3, r) of unit variance."""
+    normal = np.random.default_rng(SEED).normal(size=(DRAWS // 2, change.shape[-1]))
+    every = C + np.einsum("ijr,dr->dij", change, np.concatenate([normal, -normal]))
+    return np.asarray(np.linalg.eigvalsh(every)[:, ::-1])
+
+
+def _deflection(model: Model, a: ArrayLike, load: Array, point: Array) -> Predicted | None:
+    try:
+        return predict_with_uncertainty(model, situation_of_load(model.robot, a, load, point=point))
+    except Refusal:
+        return None
+
+
+def _compliance(model: Model, values: Array, a: ArrayLike, load: Array, point: Array) -> Array:
+    """(3, 3) J (I − C K_C)⁻¹ C Jᵀ of the point for other parameter values, without the load."""
+    situation = situation_of_load(model.robot, a, np.zeros(6), point=point)
+    rest = model.solve(situation, values).rest
+    C_theta = np.asarray(rest.compliance[0])
+    screws = model.assembly.mechanism.screws(rest.z[0], point)
+    newton = np.eye(len(C_theta)) - C_theta @ complementary_stiffness(screws, load)
+    J = screws.jacobian[:3]
+    return np.asarray(J @ np.linalg.solve(newton, C_theta @ J.T))
+
+
+def _derivative(model: Model, a: ArrayLike, load: Array, point: Array) -> list[Array]:
+    """Derivatives (3, 3) of the compliance by every parameter, by central differences."""
+    changes = []
+    for k, parameter in enumerate(model.parameters):
+        step = STEP * max(abs(parameter.value), parameter.spec.typical)
+        ends = []
+        for side in (step, -step):
+            values = model.values.copy()
+            values[k] += side
+            ends.append(_compliance(model, values, a, load, point))
+        changes.append((ends[0] - ends[1]) / (2.0 * step))
+    return changes
+
+
+def _reciprocals(softness: Array, low: Array, high: Array, lost: NDArray[np.bool_]) -> Array:
+    """(3, 2) stiffness of an interval of compliance.
+
+    Open where that reaches to a compliance of zero: upwards from the stable side; from the
+    unstable one, or where nothing is known, nothing is excluded at all.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.stack([1.0 / high, 1.0 / low], axis=-1)
+    across = (low <= 0.0) & (high >= 0.0)
+    ends[across, 1] = np.inf
+    ends[(across & (softness < 0.0)) | lost] = (-np.inf, np.inf)
+    return ends
