@@ -73,7 +73,7 @@ def loaded_uncertainty(
     directions = found.principal.directions  # (3, 3), one per row
     by_parameter = np.einsum("ki,ijp,kj->kp", directions, change, directions)
     L, B = known.factors(model.names)
-    softness = np.linalg.eigvalsh(symmetric_part(C))[::-1]
+    softness = np.asarray(np.linalg.eigvalsh(symmetric_part(C))[::-1], dtype=float)
     lost = np.isinf(spread(by_parameter @ L, by_parameter @ B, SLIGHT * np.abs(softness)))
     drawn = _drawn(symmetric_part(C), change @ np.concatenate([L, B], axis=1))
     stiffness = found.principal.values
@@ -81,7 +81,7 @@ def loaded_uncertainty(
         std = np.where(lost | np.isinf(stiffness), np.inf, drawn.std(axis=0) * stiffness**2)
     stretch = known.reach(0.95) / float(stats.norm.ppf(0.975))
     ends = np.quantile(drawn, [0.025, 0.975], axis=0)  # (2, 3)
-    low, high = np.asarray(softness + stretch * (ends - softness), dtype=float)
+    low, high = (softness + stretch * (end - softness) for end in ends)
     deflection = _deflection(model, a, load, point)
     blame = [*blamed(known, model.names, by_parameter[lost])] if lost.any() else []
     blame += [name for names in (deflection.blame if deflection else ()) for name in names]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.effects import Situation
 from sk120stiff.model.model import Model
-from sk120stiff.model.uncertainty import UNSEEN, Uncertainty, spread
+from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
 from sk120stiff.robot.coupling import Array
 
 
@@ -117,5 +117,5 @@ def blamed(known: Uncertainty, names: tuple[str, ...], derivative: Array) -> tup
     share = (derivative.reshape(-1, len(names), 1) * B) ** 2  # (k, P, b)
     size = share.sum(axis=(0, 2))
     return tuple(
-        name for name, own in zip(names, size, strict=True) if own > UNSEEN * size.max(initial=0.0)
+        name for name, own in zip(names, size, strict=True) if own > HIDDEN * size.max(initial=0.0)
     )

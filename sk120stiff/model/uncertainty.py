@@ -23,7 +23,7 @@ from scipy import stats
 from sk120stiff.errors import InputError
 from sk120stiff.robot.coupling import Array
 
-UNSEEN = 0.1  # variance that an unseen change may bring, over what is known of it, before it counts
+HIDDEN = 0.1  # variance that an unseen change may bring, over what is known of it, before it counts
 ROUNDED = 1e-8  # least eigenvalue of a correlation matrix that rounding may have made of zero
 
 
@@ -193,5 +193,5 @@ def spread(seen: Array, unseen: Array, floor: Array | float) -> Array:
     more of what is known of it; where they move it by less, that is added.
     """
     known, hidden = (seen**2).sum(axis=-1), (unseen**2).sum(axis=-1)
-    lost = hidden > UNSEEN * (known + np.asarray(floor) ** 2)
+    lost = hidden > HIDDEN * (known + np.asarray(floor) ** 2)
     return np.asarray(np.where(lost, np.inf, np.sqrt(known + hidden)))
