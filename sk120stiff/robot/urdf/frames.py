@@ -48,6 +48,8 @@ class FrameChoice:
         The frames taken.
     why_base, why_tool
         The reasons, in a few words.
+    motors
+        Joints before the tool frame that follow no other.
     others
         The best frame at the end of every other arm, leg or head, and the motors before it; the
         longest first.
@@ -61,6 +63,7 @@ class FrameChoice:
     tool: str
     why_base: str
     why_tool: str
+    motors: int
     others: tuple[tuple[str, int], ...] = ()
     beside: tuple[str, ...] = ()
     fingers: tuple[str, ...] = ()
@@ -131,6 +134,7 @@ def default_frames(document: UrdfDocument, arm: Collection[str] = ()) -> FrameCh
         tool=tool,
         why_base="the root of the URDF",
         why_tool=_why(tool, chosen),
+        motors=len(chosen.motors),
         others=tuple((tools[id(end)], len(end.motors)) for end in others),
         beside=tuple(link for link in reach if link != tool and not _HELPER.search(link)),
         fingers=fingers,
