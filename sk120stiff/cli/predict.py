@@ -18,7 +18,13 @@ from sk120stiff.effects import Situation, situation_of
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model, Predicted, held_loads, predict_with_uncertainty
+from sk120stiff.model import (
+    Model,
+    Predicted,
+    held_loads,
+    predict_with_uncertainty,
+    warn_of_far_bend,
+)
 from sk120stiff.robot.coupling import Array
 from sk120stiff.slips import look
 
@@ -66,6 +72,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     }
     parts = _parts(predicted, readings, rms, per_pose, int(used.sum()))
     parts += sentences(believed, predicted.std_parameters, predicted.std_remainder)
+    warn_of_far_bend(believed, predicted.displacement)
     lost = [reason for reason in _reasons(predicted) if reason]
     if lost:
         parts.append(f"{len(lost)} of {len(frame)} rows have no known uncertainty: {lost[0]}.")

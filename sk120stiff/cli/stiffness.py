@@ -37,7 +37,7 @@ UNITS = {
     "K_X_6x6": "N/m, N/rad, N*m/rad; null: fewer than six directions yield",
     "compliance": "m/N, rad/N, rad/(N*m)",
     "principal_stiffness": "N/m; null: rigid",
-    "deflection": "m; null: no equilibrium exists",
+    "deflection": "m; null: none exists, see why_null",
     "critical_load_factor": "1; null: this load is never critical",
     "uncertainty": "as what it belongs to; null: unknown, or not stored",
 }
@@ -92,8 +92,9 @@ def command(
         },
         "deflection": {
             "conventional": found.deflection_conventional,
-            "enhanced": found.deflection_enhanced,
-            "equilibrium": found.deflection_equilibrium,
+            "enhanced": _if_it_exists(found.deflection_enhanced),
+            "equilibrium": _if_it_exists(found.deflection_equilibrium),
+            "why_null": found.no_deflection,
         },
         "critical_load_factor": found.critical_factor,
         "uncertainty": _uncertainty(believed, doubt),
@@ -185,6 +186,7 @@ def _parts(
     rows: list[tuple[object, ...]] = [
         (label, *(1e6 * component for component in (*x, np.linalg.norm(x))))
         for label, x in deflections.items()
+        if np.isfinite(x).all()
     ]
     if doubt is not None and doubt.deflection is not None and doubt.deflection.std is not None:
         rows.append(("  ± (one standard deviation)", *_cells(doubt.deflection.std[0]), ""))
@@ -201,10 +203,16 @@ def _parts(
         f"K_theta - K_C is {found.definiteness_of_K_theta_minus_K_C}."
     )
     if found.definiteness_of_K_theta_minus_K_C != Definiteness.POSITIVE_DEFINITE:
-        classes += " The arm is not stable under this load."
+        classes += " The unloaded pose is not stable under this load."
     growth = (
         f"{found.critical_factor:.4g} times this load would make the arm unstable."
         if np.isfinite(found.critical_factor)
         else "No multiple of this load makes the arm unstable."
     )
-    return [*parts, deflection, classes, growth]
+    missing = [f"No {label} deflection: {why}." for label, why in found.no_deflection.items()]
+    if "enhanced" in found.no_deflection and "equilibrium" not in found.no_deflection:
+        missing.append(
+            "Followed from zero load, the arm bends away from its pose and comes to rest where the "
+            "last row says; K_X holds at the unloaded pose, not there."
+        )
+    return [*parts, deflection, *missing, classes, growth]

@@ -8,7 +8,7 @@ from sk120stiff.model.file import (
     read_model,
     write_model,
 )
-from sk120stiff.model.holding import held_loads
+from sk120stiff.model.holding import held_loads, warn_of_far_bend
 from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
 from sk120stiff.model.loaded_uncertainty import LoadedUncertainty, loaded_uncertainty
 from sk120stiff.model.model import (
@@ -44,5 +44,6 @@ __all__ = [
     "model_text",
     "predict_with_uncertainty",
     "read_model",
+    "warn_of_far_bend",
     "write_model",
 ]

@@ -1,13 +1,39 @@
-"""Which loads a model's springs can hold at all."""
+"""Which loads a model's springs can hold at all, and at what bend they are not believed."""
 
 from __future__ import annotations
+
+import warnings
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.effects import Situation
-from sk120stiff.errors import Refusal
+from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model.model import Model
+from sk120stiff.robot.anatomy import arm_length
+from sk120stiff.robot.coupling import Array
+
+FAR = 0.05  # of the arm's length: a gear that yields by more than some mrad is no gear of a robot
+
+
+def warn_of_far_bend(model: Model, displacement: Array) -> None:
+    """Tell that displacements (..., 3) [m] are larger than any arm's.
+
+    Warns
+    -----
+    ToolkitWarning
+        One of them is.
+    """
+    size = np.linalg.norm(displacement, axis=-1)
+    largest = float(np.max(size, initial=0.0, where=np.isfinite(size)))
+    share = largest / max(arm_length(model.robot), 1e-9)
+    if share > FAR:
+        warnings.warn(
+            f"the arm bends by {largest:.3g} m, {100 * share:.0f} % of the arm's length: no arm "
+            "does. Check the units of springs and loads",
+            ToolkitWarning,
+            stacklevel=2,
+        )
 
 
 def held_loads(model: Model, situation: Situation) -> NDArray[np.bool_]:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.model.holding import warn_of_far_bend
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
@@ -62,8 +63,10 @@ class LoadedStiffness:
     critical_factor
         Factor on the load at which K_θ − K_C loses positive definiteness; infinite if none does.
     deflection_conventional, deflection_enhanced, deflection_equilibrium
-        (3,) displacement of the point by eq. (8), by eq. (10), and at exact equilibrium [m]. The
-        last one is NaN where the springs cannot hold the load.
+        (3,) displacement of the point by eq. (8), by eq. (10), and at exact equilibrium [m]. NaN
+        where there is none, see `no_deflection`.
+    no_deflection
+        Why a deflection is NaN, by its name without ``deflection_``.
     """
 
     coordinates: tuple[str, ...]
@@ -84,6 +87,7 @@ class LoadedStiffness:
     deflection_conventional: Array
     deflection_enhanced: Array
     deflection_equilibrium: Array
+    no_deflection: dict[str, str]
 
 
 def loaded_stiffness(
@@ -112,7 +116,8 @@ def loaded_stiffness(
     Warns
     -----
     ToolkitWarning
-        No equilibrium exists: the load is beyond what the springs can hold.
+        No equilibrium exists: the load is beyond what the springs can hold; or the arm bends as no
+        arm does.
     """
     model, point = seen_from(model.physical(), frame or model.robot.tool_frame)
     load = np.asarray(wrench, dtype=float)
@@ -133,6 +138,14 @@ def loaded_stiffness(
     enhanced = K_soft - K_C_soft
     C_conventional = cartesian_compliance(J @ V, K_soft)
     C_enhanced = cartesian_compliance(J @ V, enhanced)
+    stable = definiteness_of(enhanced)
+    equilibrium, refused = _at_equilibrium(model, a, load, point)
+    missing = {"equilibrium": refused} if refused else {}
+    if stable is not Definiteness.POSITIVE_DEFINITE:
+        missing["enhanced"] = (
+            f"at the unloaded pose K_theta - K_C is {stable}: eq. (10) points to a balance that "
+            "does not hold"
+        )
     names = (*model.robot.actuated, *(joint.name for joint in mechanism.virtual))
     return LoadedStiffness(
         coordinates=names,
@@ -148,20 +161,28 @@ def loaded_stiffness(
         K_X_6x6_enhanced=_inverse(C_enhanced),
         principal=principal_stiffness(C_enhanced[:3, :3]),
         definiteness_of_K_C=definiteness_of(K_C_soft),
-        definiteness_of_K_theta_minus_K_C=definiteness_of(enhanced),
+        definiteness_of_K_theta_minus_K_C=stable,
         critical_factor=_critical_factor(c, K_C_soft),
         deflection_conventional=(C_conventional @ load)[:3],
-        deflection_enhanced=(C_enhanced @ load)[:3],
-        deflection_equilibrium=_at_equilibrium(model, a, load, point),
+        deflection_enhanced=np.full(3, np.nan)
+        if "enhanced" in missing
+        else (C_enhanced @ load)[:3],
+        deflection_equilibrium=equilibrium,
+        no_deflection=missing,
     )
 
 
-def _at_equilibrium(model: Model, a: ArrayLike, load: Array, point: Array) -> Array:
+def _at_equilibrium(
+    model: Model, a: ArrayLike, load: Array, point: Array
+) -> tuple[Array, str | None]:
+    """(3,) deflection, or NaN and the reason."""
     try:
-        return np.asarray(model.deflect(a, load, point=point)[0])
+        found = np.asarray(model.deflect(a, load, point=point)[0])
     except Refusal as refusal:
         warnings.warn(str(refusal), ToolkitWarning, stacklevel=3)
-        return np.full(3, np.nan)
+        return np.full(3, np.nan), refusal.what
+    warn_of_far_bend(model, found)
+    return found, None
 
 
 def seen_from(model: Model, frame: str) -> tuple[Model, Array]:

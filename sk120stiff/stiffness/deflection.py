@@ -13,6 +13,7 @@ from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.cartesian import cartesian_compliance, spring_matrix
 from sk120stiff.stiffness.complementary import complementary_stiffness
 from sk120stiff.stiffness.equilibrium import equilibrium, linear_springs
+from sk120stiff.stiffness.principal import definiteness
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +26,10 @@ class Deflection:
         J K_θ⁻¹ Jᵀ W, eq. (8).
     enhanced
         J (K_θ − K_C)⁻¹ Jᵀ W, eq. (10) and (11): the paper's formula. It lacks the curvature of the
-        path, so it is not of second order.
+        path, so it is not of second order. NaN where K_θ − K_C is not positive definite: there the
+        formula points to a balance that does not hold.
     second_order
-        The enhanced one with the path's curvature, + ½ δᵀ H δ.
+        The enhanced one with the path's curvature, + ½ δᵀ H δ; NaN where that one is.
     equilibrium
         The exact one, at the loaded equilibrium.
     """
@@ -82,7 +84,8 @@ def deflection(
             "K_θ − K_C is singular: this load is exactly critical and the deflection has no bound",
             remedy="Lower the load.",
         ) from error
-    enhanced = (J[..., :3, :] @ step)[..., 0]
+    holds = definiteness(K_theta - K_C) == 0
+    enhanced = np.where(holds[..., None], (J[..., :3, :] @ step)[..., 0], np.nan)
     curvature = _path_curvature(start, soft, step[..., 0])
     at_rest = equilibrium(mechanism, coordinates, load, linear_springs(springs), point=point)
     return Deflection(

@@ -22,6 +22,11 @@ ElasticLaw = Callable[[Array], tuple[Array, Array]]
 
 MAX_ITERATIONS = 60
 TOLERANCE = 1e-13  # relative to one radian or one metre
+LONGEST_STEP = 0.5  # rad or m: beyond it Newton cannot be trusted
+FOLLOWED_ITERATIONS, FOLLOWED_TOLERANCE = 6, 1e-9  # of Newton at one step of the load
+FIRST_STEP, LEAST_STEP = 0.25, 1e-4  # of the load
+SHRINK, GROW = 0.25, 2.0  # of the step, after it failed and after it held
+FARTHEST = np.pi  # rad or m from the unloaded pose: no linear spring means more
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +106,10 @@ def equilibrium(
     The load is constant in base axes and moves with its point. Newton's matrix is I − C K_C, with C
     the tangent compliance: rigid coordinates (zero compliance) need no special treatment.
 
+    Of several equilibria the one is meant at which the arm comes to rest as the load grows from
+    zero. Newton's method finds it by itself while I − C K_C stays positive on its way; elsewhere
+    the load is followed in steps (natural continuation; Allgower & Georg 1990, ch. 2).
+
     Parameters
     ----------
     mechanism
@@ -123,60 +132,165 @@ def equilibrium(
     Raises
     ------
     Refusal
-        No equilibrium was reached, or one at which the arm would not stay: the load is beyond what
-        the springs can hold.
+        On the way from zero load the arm loses its balance, or a joint goes farther than half a
+        turn: the load is beyond what the springs can hold.
     """
-    z_0 = np.asarray(z_0, dtype=float)
+    start = np.asarray(z_0, dtype=float)
     load = np.asarray(wrench, dtype=float)
-    batch = np.broadcast_shapes(z_0.shape[:-1], load.shape[:-1])
-    z = np.broadcast_to(z_0, (*batch, z_0.shape[-1])).copy()
+    batch = np.broadcast_shapes(start.shape[:-1], load.shape[:-1])
+    start = np.broadcast_to(start, (*batch, start.shape[-1]))
+    pick = np.arange(start.shape[-1]) if soft is None else soft
     loaded_point = point if force_point is None else force_point
-    pick = np.arange(z.shape[-1]) if soft is None else soft
-    identity = np.eye(len(pick))
-    for step in range(MAX_ITERATIONS):
-        screws = mechanism.screws(z, loaded_point)
+    statics = _Statics(mechanism, start, load, law, loaded_point, pick, weight)
+    full = np.ones(batch)
+    z, trusted, state, steps = statics.newton(start.copy(), full, full)
+    if not trusted.all():
+        z, trusted, state, steps = statics.newton(_followed(statics, z, trusted), full, full)
+    if not trusted.all():
+        raise _beyond(1.0)
+    screws = state.screws if force_point is None else state.screws.at(_given(point))
+    compliance = np.broadcast_to(state.compliance, state.K_C.shape)
+    return Equilibrium(
+        z, screws, state.torques, compliance, state.K_C, state.weights, state.feedback, steps
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """What holds at coordinates z: `error` (..., s) is what they are off, of those that yield."""
+
+    screws: Screws
+    torques: Array
+    compliance: Array
+    K_C: Array
+    weights: Array
+    feedback: Array
+    error: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Statics:
+    """An equilibrium problem whose load and weight can be taken in part."""
+
+    mechanism: Mechanism
+    z_0: Array
+    load: Array
+    law: ElasticLaw
+    point: Array | None
+    pick: NDArray[np.intp]
+    weight: Weight | None
+
+    def at(self, z: Array, loaded: Array, hung: Array) -> _State:
+        """The state at z under shares (...,) of the load and of the weight."""
+        share, heavy = loaded[..., None], hung[..., None]
+        load = self.load * share
+        screws = self.mechanism.screws(z, self.point)
         torques = screws.torques(load)
-        elongation, compliance = law(torques)
+        elongation, compliance = self.law(torques)
         K_C = complementary_stiffness(screws, load)
         feedback = compliance @ K_C
         weights = np.zeros_like(torques)
-        if weight is not None:
-            weights = gravity_torques(screws, weight.gravity)
-            elongation = elongation + (weight.compliance @ weights[..., None])[..., 0]
-            feedback = feedback + weight.compliance @ gravity_stiffness(screws, weight.gravity)
-        error = (z - z_0 - elongation)[..., pick]
-        newton = identity - feedback[..., pick[:, None], pick]
-        try:
-            change = np.linalg.solve(newton, error[..., None])[..., 0]
-        except np.linalg.LinAlgError:
-            break
-        if not np.isfinite(change).all():
-            break
-        if np.max(np.abs(change), initial=0.0) <= TOLERANCE:
-            _refuse_unstable(feedback[..., pick[:, None], pick])
-            measured = screws if force_point is None else screws.at(_given(point))
-            compliance = np.broadcast_to(compliance, K_C.shape)
-            return Equilibrium(z, measured, torques, compliance, K_C, weights, feedback, step)
-        # A step of more than half a radian would leave the region in which Newton can be trusted.
-        largest = np.max(np.abs(change), axis=-1, keepdims=True, initial=0.0)
-        z[..., pick] -= change * np.minimum(1.0, 0.5 / np.maximum(largest, 1e-300))
-    raise _beyond("no static equilibrium was found")
+        if self.weight is not None:
+            sag, gravity = self.weight.compliance, self.weight.gravity
+            weights = gravity_torques(screws, gravity) * heavy
+            elongation = elongation + (sag @ weights[..., None])[..., 0]
+            hanging = gravity_stiffness(screws, gravity) * heavy[..., None]
+            feedback = feedback + sag @ hanging
+        error = (z - self.z_0 - elongation)[..., self.pick]
+        return _State(screws, torques, compliance, K_C, weights, feedback, error)
+
+    def newton(
+        self,
+        z: Array,
+        loaded: Array,
+        hung: Array,
+        iterations: int = MAX_ITERATIONS,
+        tolerance: float = TOLERANCE,
+    ) -> tuple[Array, NDArray[np.bool_], _State, int]:
+        """Coordinates from z on, where they can be trusted (...,), their state, the steps taken.
+
+        Not to be trusted is an answer that did not settle, or on the way to which the balance was
+        not stable. Rows without hope stay where they lost it.
+        """
+        pick = self.pick
+        identity = np.eye(len(pick))
+        good = np.ones(z.shape[:-1], dtype=bool)
+        for step in range(iterations + 1):
+            state = self.at(z, loaded, hung)
+            inner = state.feedback[..., pick[:, None], pick]
+            good = good & _stable(inner) & np.isfinite(state.error).all(axis=-1)
+            if not good.any():
+                break
+            matrix = np.where(good[..., None, None], identity - inner, identity)
+            error = np.where(good[..., None], state.error, 0.0)
+            change = np.linalg.solve(matrix, error[..., None])[..., 0]
+            largest = np.max(np.abs(change), axis=-1, keepdims=True, initial=0.0)
+            if np.max(largest, initial=0.0) <= tolerance:
+                break
+            if step == iterations:
+                good = good & (largest[..., 0] <= tolerance)
+                break
+            z[..., pick] -= change * np.minimum(1.0, LONGEST_STEP / np.maximum(largest, 1e-300))
+        return z, good, state, step
 
 
-def _refuse_unstable(feedback: Array) -> None:
-    """Refuse a balance from which the least push makes the arm fall: C K_C with an eigenvalue ≥ 1.
+def _followed(statics: _Statics, found: Array, trusted: NDArray[np.bool_]) -> Array:
+    """Coordinates (..., n) on the way from no weight and no load: first the weight, then the load.
 
-    With springs K_θ = C⁻¹ that is where K_θ − K_C is no longer positive definite. A matrix whose
-    Frobenius norm is below one has no such eigenvalue, so few readings are looked at closely.
+    Rows that are trusted keep what was found. The steps of the others shrink where the balance
+    would be lost; it is, where even the least step loses it.
     """
-    doubtful = feedback[np.asarray((feedback**2).sum((-1, -2)) >= 1.0)]
-    if len(doubtful) and (np.linalg.eigvals(doubtful).real >= 1.0).any():
-        raise _beyond("the only static equilibrium that was found is not stable")
+    z = np.where(trusted[..., None], found, statics.z_0)
+    legs = 2.0 if statics.weight is not None else 1.0
+    way = np.where(trusted, legs, 0.0)
+    stride = np.full(way.shape, FIRST_STEP)
+
+    brief = (FOLLOWED_ITERATIONS, FOLLOWED_TOLERANCE)
+
+    def shares(at: Array) -> tuple[Array, Array]:
+        return np.clip(at - (legs - 1.0), 0.0, 1.0), np.clip(at, 0.0, 1.0)
+
+    # The unloaded arm stands where its law says that it does (lost motion is taken up at once).
+    z, good, _, _ = statics.newton(z.copy(), *shares(way), *brief)
+    while good.all() and (way < legs).any():
+        ahead = np.minimum(way + stride, np.where(way < legs - 1.0, legs - 1.0, legs))
+        tried, held, _, _ = statics.newton(z.copy(), *shares(ahead), *brief)
+        held &= np.abs(tried - z).max(axis=-1, initial=0.0) <= LONGEST_STEP
+        held &= np.abs(tried - statics.z_0).max(axis=-1, initial=0.0) <= FARTHEST
+        z = np.where(held[..., None], tried, z)
+        way = np.where(held, ahead, way)
+        stride = stride * np.where(held, GROW, SHRINK)
+        good = held | (stride > LEAST_STEP)
+    if good.all():
+        return z
+    reached = float(way[~good].min())
+    if reached < legs - 1.0:
+        raise Refusal(
+            f"the arm falls under its own weight, at {reached:.3g} of it: these springs cannot "
+            "hold it",
+            remedy="Check masses, gravity and springs.",
+        )
+    raise _beyond(reached - (legs - 1.0))
 
 
-def _beyond(what: str) -> Refusal:
+def _stable(feedback: Array) -> NDArray[np.bool_]:
+    """(...,) does the arm stay when pushed a little: has C K_C no eigenvalue ≥ 1?
+
+    With springs K_θ = C⁻¹ that is where K_θ − K_C is positive definite. A matrix whose Frobenius
+    norm is below one has no such eigenvalue, so few readings are looked at closely.
+    """
+    size = np.asarray((feedback**2).sum((-1, -2)))
+    stable = np.asarray(size < 1.0)
+    close = ~stable & np.isfinite(size)
+    if close.any():
+        stable[close] = (np.linalg.eigvals(feedback[close]).real < 1.0).all(axis=-1)
+    return stable
+
+
+def _beyond(reached: float) -> Refusal:
     return Refusal(
-        f"{what}: the load is beyond what these springs can hold",
+        f"no static equilibrium: followed from zero, the arm gives way at {reached:.3g} of this "
+        "load, which is beyond what these springs can hold",
         remedy="Check the units of load and springs; see the critical load with "
         "'sk120stiff stiffness'.",
     )

@@ -50,28 +50,49 @@ def test_a_plan_has_predictions_and_no_gap(run, tmp_path: Path) -> None:
     assert "Predicted" in run("predict", MODEL, str(plan)).stdout
 
 
+COLUMN = """<robot name="column"><link name="floor"/><link name="bar"/><link name="top"/>
+<joint name="hinge" type="revolute"><parent link="floor"/><child link="bar"/>
+<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="0" velocity="0"/></joint>
+<joint name="end" type="fixed"><parent link="bar"/><child link="top"/>
+<origin xyz="0 0 2"/></joint></robot>"""
+
+
 def test_loads_that_nothing_holds_are_left_empty_and_say_so(run, tmp_path: Path) -> None:
-    """Springs of 500 N·m/rad: for three of the paper's loads no equilibrium is found."""
+    """A column of 2 m on 1000 N·m/rad carries 500 N and no more."""
+    urdf, soft = tmp_path / "column.urdf", tmp_path / "soft.yaml"
+    urdf.write_text(COLUMN, encoding="utf-8")
+    write_model(joint_spring_model(load_robot(str(urdf)), [1000.0]), soft)
+    data, out = tmp_path / "loads.csv", tmp_path / "predicted.csv"
+    rows = ["pose,hinge[deg],fx[N],fy[N],fz[N]", "a,0,0,0,-490", "b,0,0,0,-600", "c,0,1,0,-450"]
+    data.write_text("\n".join(rows), encoding="utf-8")
+    data.with_suffix(".yaml").write_text("robot: column.urdf\n", encoding="utf-8")
+    outcome = run("predict", str(soft), str(data), "--out", str(out), "--json")
+    assert outcome.code == 0
+    assert "1 of 3 loads are beyond what the springs can hold" in outcome.stderr
+    found = outcome.document["rows"]
+    assert [row["predicted_dx[mm]"] is None for row in found] == [False, True, False]
+    assert ["no static equilibrium" in row["reason"] for row in found] == [False, True, False]
+    assert "no static equilibrium" in out.read_text(encoding="utf-8")
+    data.write_text("\n".join([rows[0], rows[2]]), encoding="utf-8")
+    refused = run("predict", str(soft), str(data), "--json")
+    assert (refused.code, refused.answered) == (1, False)
+
+
+def test_an_arm_that_bends_like_no_arm_is_doubted(run, tmp_path: Path) -> None:
+    """Springs of 500 N·m/rad for 5e5: the way from zero load is stable, and ends far away."""
     robot = load_robot("motoman_sk120")
     soft = tmp_path / "soft.yaml"
     write_model(joint_spring_model(robot, [500.0] * 3 + [np.inf] * 3), soft)
-    data, out = str(DATA / "table2_measured.csv"), tmp_path / "predicted.csv"
-    outcome = run("predict", str(soft), data, "--out", str(out), "--json")
+    data = str(DATA / "table2_measured.csv")
+    outcome = run("predict", str(soft), data, "--json")
     assert outcome.code == 0
-    assert "3 of 15 loads are beyond what the springs can hold" in outcome.stderr
-    found = outcome.document["rows"]
-    missing = [k for k, row in enumerate(found) if row["predicted_dx[mm]"] is None]
-    assert len(missing) == 3
-    for k, row in enumerate(found):
-        assert ("no static equilibrium" in row["reason"]) == (k in missing)
-    assert "no static equilibrium" in out.read_text(encoding="utf-8")
-    rows = Path(data).read_text(encoding="utf-8").splitlines()
-    alone = tmp_path / "alone.csv"
-    alone.write_text("\n".join([rows[0], rows[1 + missing[0]]]), encoding="utf-8")
-    settings = (DATA / "table2_measured.yaml").read_text(encoding="utf-8")
-    alone.with_suffix(".yaml").write_text(settings, encoding="utf-8")
-    refused = run("predict", str(soft), str(alone), "--json")
-    assert (refused.code, refused.answered) == (1, False)
+    assert all(row["predicted_dx[mm]"] is not None for row in outcome.document["rows"])
+    assert "of the arm's length" in outcome.stderr
+    pose, wrench = ("--pose", "0,30,0,0,0,0 deg"), ("--wrench", "0,0,-400 N")
+    shown = run("stiffness", "motoman_sk120", "--model", str(soft), *pose, *wrench, "--json")
+    assert "of the arm's length" in shown.stderr
+    usual = run("stiffness", "motoman_sk120", *pose, *wrench, "--json")
+    assert "of the arm's length" not in usual.stderr
 
 
 def test_bad_input(run) -> None:

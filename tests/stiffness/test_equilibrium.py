@@ -5,8 +5,15 @@ import pytest
 
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import load_robot
-from sk120stiff.stiffness import complementary_stiffness, equilibrium, linear_springs
-from tests.stiffness.arms import POINT, mixed_arm, sk120, sk120_poses
+from sk120stiff.stiffness import (
+    complementary_stiffness,
+    critical_load,
+    equilibrium,
+    linear_springs,
+)
+from tests.oracles.mujoco_serial import deflect_urdf
+from tests.oracles.numpy_kinematics import UrdfTree
+from tests.stiffness.arms import POINT, mixed_arm, mixed_urdf, sk120, sk120_poses, uncoupled
 
 LOAD = np.array([2000.0, 1500.0, -1000.0, 300.0, -200.0, 100.0])
 ELSEWHERE = np.array([-0.3, 0.1, 0.2])
@@ -106,16 +113,64 @@ COLUMN = """<robot name="column"><link name="floor"/><link name="top"/>
 <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="0" velocity="0"/></joint></robot>"""
 
 
-@pytest.mark.parametrize("push", [0.0, 1e-3])
-def test_a_column_that_would_tip_over_is_no_rest(push):
-    """A weight P on a column of 2 m on a spring k stands up to P = k / 2 m and not beyond."""
+def column_at_rest(weight: float, push: float) -> float:
+    """Angle of a column of 2 m on a spring of 1000 N·m/rad: P on its top, and a side force."""
     mechanism = load_robot(COLUMN).mechanism()
-    top, spring = np.array([0.0, 0.0, 2.0]), linear_springs([1000.0])
+    load = np.array([push, 0, -weight, 0, 0, 0])
+    top = np.array([0.0, 0.0, 2.0])
+    return equilibrium(mechanism, np.zeros(1), load, linear_springs([1000.0]), point=top).z[0]
 
-    def rest(weight):
-        load = np.array([push * weight, 0, -weight, 0, 0, 0])
-        return equilibrium(mechanism, np.zeros(1), load, spring, point=top).z[0]
 
-    assert abs(rest(450.0)) < 0.1
-    with pytest.raises(Refusal, match="not stable"):
-        rest(600.0)
+def test_a_column_stands_up_to_its_critical_load_and_not_beyond():
+    """A weight P on a column of length L on a spring k stands up to P = k / L."""
+    for weight in (450.0, 499.9):
+        assert column_at_rest(weight, 0.0) == 0.0
+    for weight in (500.1, 600.0, 5000.0):
+        with pytest.raises(Refusal, match=f"gives way at {500 / weight:.3g} of this load"):
+            column_at_rest(weight, 0.0)
+
+
+@pytest.mark.parametrize("push", [-1e-3, 1e-3, 1e-5, 0.3])
+@pytest.mark.parametrize("weight", [450.0, 500.0, 510.0, 600.0, 900.0, 1200.0])
+def test_a_column_that_leans_follows_its_load_to_its_own_side(weight, push):
+    """Pushed a little, the column bends away and holds at k θ = P L (sin θ + push cos θ).
+
+    That balance grows from zero with the load and never breaks; the mirrored one and the upright
+    one, to which Newton's method may lead from the unloaded pose, are not on its way.
+    """
+    from scipy.optimize import brentq
+
+    found = column_at_rest(weight, push * weight)
+
+    def off(angle):
+        return 1000.0 * angle - 2.0 * weight * (np.sin(angle) + push * np.cos(angle))
+
+    # the one root on the side of the push, where the spring wins at the far end
+    side = np.sign(push)
+    expected = brentq(off, side * 1e-9, side * np.pi, xtol=1e-14)
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3, 4, 5])
+def test_beyond_buckling_arms_come_to_rest_where_bodies_do(seed):
+    """K_θ − K_C indefinite at the unloaded pose, yet stable on the way from zero: as in MuJoCo."""
+    text = uncoupled(mixed_urdf(seed)).replace('type="prismatic"', 'type="revolute"')
+    robot, tree = load_robot(text, base="l0", tool="l7"), UrdfTree(text)
+    rng = np.random.default_rng(seed)
+    a, springs = rng.uniform(-0.5, 0.5, 7), rng.uniform(2e3, 4e3, 7)
+    mechanism = robot.mechanism()
+    screws = mechanism.screws(a, POINT)
+    # The load that bends the arm least at first of those that make it unstable soonest.
+    forces = rng.normal(size=(200, 3))
+    forces /= np.linalg.norm(forces, axis=1, keepdims=True)
+    loads = np.concatenate([forces, np.zeros((200, 3))], axis=1)
+    critical = critical_load(screws, springs, loads)
+    load = loads[np.argmin(critical)] * 1.15 * critical.min()
+    K_C = complementary_stiffness(screws, load)
+    assert np.linalg.eigvalsh(np.diag(springs) - 0.5 * (K_C + K_C.T))[0] < 0.0
+    rest = equilibrium(mechanism, a, load, linear_springs(springs), point=POINT)
+    values = dict(zip(robot.actuated, a, strict=True))
+    elastic = dict(zip(robot.actuated, springs, strict=True))
+    bodies = deflect_urdf(tree, "l7", values, elastic, load, POINT)
+    assert np.linalg.norm(bodies.displacement) > 0.1
+    assert np.allclose(rest.screws.position - screws.position, bodies.displacement, atol=1e-7)
