@@ -22,11 +22,13 @@ from sk120stiff.plan import (
     Pool,
     Region,
     d_optimal,
+    feasible_pool,
+    lowest_points,
     random_choice,
-    random_pool,
     rivalry,
     well_spread,
 )
+from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 
@@ -59,7 +61,12 @@ def command(
             metavar="CSV", help="Readings there are already; points and noise are theirs."
         ),
     ] = None,
-    force: Annotated[str, typer.Option(metavar="FORCE", help="Size of the loads.")] = "400 N",
+    force: Annotated[
+        str,
+        typer.Option(
+            metavar="FORCE", help="Size of the loads, less where the motors cannot hold it."
+        ),
+    ] = "400 N",
     noise: Annotated[
         str | None,
         typer.Option(
@@ -78,7 +85,13 @@ def command(
     ] = None,
     lowest: Annotated[
         str | None,
-        typer.Option(metavar="LENGTH", help="Height in the base frame below which nothing may go."),
+        typer.Option(
+            "--floor",
+            "--lowest",
+            metavar="LENGTH",
+            help="Height in the base frame below which nothing may go: '-0.3 m'.",
+            show_default="as low as --data went, else none",
+        ),
     ] = None,
     box: Annotated[
         str | None,
@@ -97,15 +110,17 @@ def command(
 ) -> Answer:
     """The poses and loads to measure next.
 
-    D-optimal for the parameters that count, or T-optimal between two effects; within joint limits
-    and the region that is given. `gain` is the precision (or evidence) over that of random poses.
+    D-optimal for the parameters that count, or T-optimal between two effects; within joint limits,
+    the efforts of the URDF and the region that is given, and clear of the base column. `gain` is
+    the precision (or evidence) over that of random poses.
 
-    Example: sk120stiff plan --model model.yaml --count 15 --out plan.csv
+    Example: sk120stiff plan --model model.yaml --count 15 --floor '-0.8 m' --out plan.csv
     """
     declare_readings(out)
     known, start = _opened(model, data)
     at, force_at = _points(known, point)
-    pool = random_pool(
+    region = _region(lowest, box, start.robot, known, at)
+    pool = feasible_pool(
         start.robot,
         poses=candidates,
         directions=directions,
@@ -113,7 +128,7 @@ def command(
         point=at,
         force_point=force_at,
         seed=seed,
-        region=_region(lowest, box),
+        region=region,
     )
     sigma = _sigma(known, noise)
     before = None if known is None else Pool(situation_of(start.robot, known.masked()))
@@ -124,7 +139,18 @@ def command(
             chosen = _telling(start, pool, before, between, count, sigma, seed)
     rows, document, said = chosen
     poses, plan = _plan(start, pool, rows, known)
-    document = {"poses": poses, **document, "sigma_um": sigma * 1e6, "seed": seed, "out": out}
+    heights = lowest_points(start.robot, plan.joints, at)
+    document = {
+        "poses": poses,
+        **document,
+        "sigma_um": sigma * 1e6,
+        "seed": seed,
+        "floor_m": region.lowest if np.isfinite(region.lowest) else None,
+        "lowest_m": float(heights.min()),
+        "remarks": pool.remarks,
+        "out": out,
+    }
+    said += [*pool.remarks, _height(plan, heights, region.lowest, lowest)]
     if out is not None:
         write_measurements(plan, out)
         said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
@@ -273,13 +299,18 @@ def _one(text: str, kind: str, where: str) -> float:
     return float(values[0])
 
 
-def _region(lowest: str | None, box: str | None) -> Region:
+def _region(
+    lowest: str | None, box: str | None, robot: Robot, known: Measurements | None, point: Array
+) -> Region:
+    """Where the arm may stand; without a floor that is told, as low as it stood already."""
     least, low, high = -np.inf, None, None
     if lowest is not None:
-        values = parse_values(lowest, "length", where="--lowest")
+        values = parse_values(lowest, "length", where="--floor")
         if len(values) != 1:
-            raise InputError(f"{lowest!r} is not one height", where="--lowest")
+            raise InputError(f"{lowest!r} is not one height", where="--floor")
         least = float(values[0])
+    elif known is not None:
+        least = float(lowest_points(robot, known.joints, point).min())
     if box is not None:
         corners = parse_values(box, "length", where="--box")
         if len(corners) != 6:
@@ -288,6 +319,18 @@ def _region(lowest: str | None, box: str | None) -> Region:
             )
         low, high = corners[:3], corners[3:]
     return Region(least, low, high)
+
+
+def _height(plan: Measurements, heights: Array, floor: float, told: str | None) -> str:
+    row = int(np.argmin(heights))
+    text = (
+        f"The arm's lowest point is {1e3 * heights[row]:.0f} mm high (base frame, {plan.pose[row]})"
+    )
+    if not np.isfinite(floor):
+        return f"{text}: give --floor if that is too low."
+    if told is None:
+        return f"{text}, no lower than the readings there are: {1e3 * floor:.0f} mm."
+    return f"{text}, the floor {1e3 * floor:.0f} mm."
 
 
 def _named(model: Model, text: str) -> tuple[Model, list[str]]:

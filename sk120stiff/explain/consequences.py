@@ -12,7 +12,7 @@ from sk120stiff.explain.localise import localise
 from sk120stiff.explain.regression import Regression
 from sk120stiff.explain.score import score_set
 from sk120stiff.explain.where_words import where_sentences
-from sk120stiff.plan import discriminating_readings, random_pool
+from sk120stiff.plan import Region, discriminating_readings, feasible_pool, lowest_points
 
 SEEN = 4.6  # √λ at which a one-parameter effect is named in four of five cases
 READINGS_TO_MEASURE = 10
@@ -63,7 +63,10 @@ def detectable(
 def next_poses(
     answer: Explanation, *, seed: int, count: int = READINGS_TO_MEASURE
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Poses (K, n) and wrenches (K, 6) that tell the first unsettled pair of names apart."""
+    """Poses (K, n) and wrenches (K, 6) that tell the first unsettled pair of names apart.
+
+    They go no lower than the poses that were measured: what was measured could be driven.
+    """
     for finding in answer.findings:
         rivals = [name for name in finding.alternatives if name not in finding.exact]
         if not rivals:
@@ -71,13 +74,16 @@ def next_poses(
         situation = answer.final.problem.situation
         model = answer.final.model
         force = float(np.linalg.norm(situation.wrench[:, :3], axis=1).max())
-        pool = random_pool(
+        floor = float(lowest_points(model.robot, situation.a, situation.point).min())
+        pool = feasible_pool(
             model.robot,
             poses=400,
             directions=3,
             force=max(force, 1.0),
             point=situation.point,
+            force_point=situation.force_point,
             seed=seed,
+            region=Region(lowest=floor),
         )
         name, _, where = rivals[0].partition(":")
         rival = effect(model.robot, name, where, poses=situation.poses)

@@ -8,13 +8,15 @@ from sk120stiff.plan.discriminate import (
     rivalry,
     signature_columns,
 )
-from sk120stiff.plan.pool import Pool, Region, random_pool, random_poses
+from sk120stiff.plan.feasible import Column, base_column, lowest_points
+from sk120stiff.plan.pool import Pool, Region, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
 from sk120stiff.plan.spread import random_choice, well_spread
 
 __all__ = [
     "Choice",
+    "Column",
     "Design",
     "Pool",
     "Region",
@@ -22,8 +24,11 @@ __all__ = [
     "Schedule",
     "Simulated",
     "as_positions",
+    "base_column",
     "d_optimal",
     "discriminating_readings",
+    "feasible_pool",
+    "lowest_points",
     "random_choice",
     "random_pool",
     "random_poses",

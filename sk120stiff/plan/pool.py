@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.effects import Situation, situation_of_load
 from sk120stiff.errors import InputError, Refusal
+from sk120stiff.plan.feasible import Column, base_column, clear_of, held_loads_of, lowest_points
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 
@@ -27,9 +28,12 @@ class Pool:
     ----------
     situation
         Their poses and loads.
+    remarks
+        What was done so that they can be driven, and what nobody checked, in sentences.
     """
 
     situation: Situation
+    remarks: tuple[str, ...] = ()
 
     @property
     def count(self) -> int:
@@ -47,11 +51,14 @@ class Region:
         Height above which every joint and the measured point must stay.
     low, high
         (3,) corners of a box that the measured point must not leave.
+    column
+        What the arm stands on and must not run into.
     """
 
     lowest: float = -np.inf
     low: Array | None = None
     high: Array | None = None
+    column: Column | None = None
 
     def __post_init__(self) -> None:
         for name in ("low", "high"):
@@ -66,14 +73,15 @@ class Region:
     def holds(self, robot: Robot, a: Array, point: Array) -> NDArray[np.bool_]:
         """(N,) poses a (N, n) that lie in the region, coupled joints within their limits too."""
         at = robot.screws(a, point=point).position
-        good = at[:, 2] >= self.lowest
+        good = np.ones(len(a), dtype=bool)
         if self.low is not None:
             good &= (at >= self.low).all(axis=1)
         if self.high is not None:
             good &= (at <= self.high).all(axis=1)
         if np.isfinite(self.lowest):
-            for frame in robot.frames:
-                good &= robot.placement(a, frame)[:, 2, 3] >= self.lowest - 1e-9
+            good &= lowest_points(robot, a, point) >= self.lowest - 1e-9
+        if self.column is not None:
+            good &= clear_of(self.column, robot, a, point)
         return good & _coupled_within_limits(robot, a)
 
 
@@ -120,6 +128,43 @@ def random_pool(
     loads[:, :3] *= force / np.linalg.norm(loads[:, :3], axis=1, keepdims=True)
     repeated = np.repeat(a, directions, axis=0)
     return Pool(situation_of_load(robot, repeated, loads, point=point, force_point=force_point))
+
+
+def feasible_pool(
+    robot: Robot,
+    *,
+    poses: int,
+    directions: int,
+    force: float,
+    point: Array,
+    seed: int = 0,
+    region: Region | None = None,
+    force_point: Array | None = None,
+) -> Pool:
+    """`random_pool` of what can be driven: clear of the base column, within the motors' efforts.
+
+    Loads are scaled down to what the efforts of the URDF hold beside the arm's weight; poses whose
+    weight alone is too much are left out. `Pool.remarks` says so, and what was not checked.
+
+    Raises
+    ------
+    Refusal
+        Next to no pose lies in the region, or the motors cannot hold the arm itself.
+    """
+    within = replace(region or Region(), column=base_column(robot))
+    drawn = random_pool(
+        robot, poses=poses, directions=directions, force=force, point=point, seed=seed,
+        region=within, force_point=force_point,
+    )  # fmt: skip
+    situation = drawn.situation
+    loaded = situation.force_point
+    held = held_loads_of(robot, situation.a, situation.wrench, loaded)
+    remarks = list(held.remarks)
+    if within.column is None:
+        remarks.append("The first joint does not turn: what the arm stands on is not kept clear.")
+    if not np.isfinite(within.lowest):
+        remarks.append("No floor was given: poses may go below the ground.")
+    return Pool(replace(situation.rows(held.rows), wrench=held.wrench), tuple(remarks))
 
 
 def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
@@ -181,7 +226,7 @@ def poses_in(
         f"only {count - missing} of {DRAWS * max(count, 64)} poses drawn within the joint limits "
         "lie where the arm may stand",
         where=robot.name,
-        remedy="Lower the least height or widen the box.",
+        remedy="Lower the floor or widen the box.",
     )
 
 

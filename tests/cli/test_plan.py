@@ -111,7 +111,7 @@ def test_seeds_decide(run) -> None:
         (("--point", "1,2 mm"), 2, "--point"),
         (("--box", "1,2,3 m"), 2, "--box"),
         (("--box", "1,1,1,0,0,0 m"), 2, "inside"),
-        (("--lowest", "20 m"), 1, "least height"),
+        (("--lowest", "20 m"), 1, "Lower the floor"),
         (("--count", "5000"), 2, "candidates"),
     ],
 )
