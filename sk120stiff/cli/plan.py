@@ -12,8 +12,9 @@ import typer
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, open_data, start_model
 from sk120stiff.cli.options import SeedOption
+from sk120stiff.cli.plan_wishes import named_parameters, two_effects
 from sk120stiff.cli.tables import progress_bar, table
-from sk120stiff.effects import Effect, effect, situation_of
+from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, write_measurements
@@ -171,7 +172,7 @@ def _precise(
 ) -> Chosen:
     names: list[str] = []
     for text in wanted or ():
-        model, found = _named(model, text)
+        model, found = named_parameters(model, text)
         names += found
     design = d_optimal(
         model, pool, count=count, sigma=sigma, parameters=names or None, known=before
@@ -227,7 +228,7 @@ def _telling(
     sigma: float,
     seed: int,
 ) -> Chosen:
-    first, second = _two_effects(model, between)
+    first, second = two_effects(model, between)
     rivals = rivalry(model, first, second, pool, sigma=sigma, known=before)
     choice = rivals.best(count)
 
@@ -331,54 +332,6 @@ def _height(plan: Measurements, heights: Array, floor: float, told: str | None) 
     if told is None:
         return f"{text}, no lower than the readings there are: {1e3 * floor:.0f} mm."
     return f"{text}, the floor {1e3 * floor:.0f} mm."
-
-
-def _named(model: Model, text: str) -> tuple[Model, list[str]]:
-    """The model with the parameter's effect in it, and the parameters that are meant."""
-    head, dot, _ = text.rpartition(".")
-    if dot and text in model.names:
-        return model, [text]
-    present = [p.name for p in model.parameters if text in (p.effect.id, p.effect.name)]
-    if present:
-        return model, present
-    name, _, where = (head if dot else text).partition(":")
-    added = effect(model.robot, name, where or None)
-    larger = model if added.id in {e.id for e in model.effects} else model + added
-    if not dot:
-        return larger, [p.name for p in larger.parameters if p.effect.id == added.id]
-    return larger, [larger.parameter(text).name]
-
-
-def _two_effects(model: Model, text: str) -> tuple[Effect, Effect]:
-    """Two effects in one text; the name of a place may hold a comma itself."""
-    words = text.split(",")
-    failure: InputError | None = None
-    for cut in range(1, len(words)):
-        try:
-            first, second = (
-                _effect(model, ",".join(part).strip()) for part in (words[:cut], words[cut:])
-            )
-        except InputError as error:
-            failure = failure or error
-            continue
-        if first.id == second.id:
-            raise InputError(f"{first.id!r} stands there twice", where="--between")
-        return first, second
-    if failure is not None:
-        raise failure
-    raise InputError(
-        f"{text!r} does not name two effects",
-        where="--between",
-        remedy="Write two with a comma between them: 'base_rocking,joint_tilt:joint_1_s'.",
-    )
-
-
-def _effect(model: Model, text: str) -> Effect:
-    for present in model.effects:
-        if text in (present.id, present.name):
-            return present
-    name, _, where = text.partition(":")
-    return effect(model.robot, name, where or None)
 
 
 def _plan(
