@@ -77,6 +77,7 @@ _PRODUCT = rf"{_FACTOR}(?:[*/]{_FACTOR})*"
 _JOINED_MOMENT = re.compile(r"\b([kMmu]?N)([mcu]?m)\b")
 _HYPHEN = re.compile(r"(?<=[A-Za-z])-(?=[A-Za-z])")  # N-m, lbf-in
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?=$|[^\d.])")
+LARGEST = 1e15  # of a number as written; squares and products of such still are finite
 _NOT_FINITE = re.compile(r"\s*[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
 
 
@@ -120,9 +121,17 @@ def to_si(
     Raises
     ------
     InputError
-        No unit, an unknown unit, a unit of another kind, or a number that is not finite.
+        No unit, an unknown unit, a unit of another kind, or a number that is not finite or beyond
+        `LARGEST`.
     """
     array = _finite(values, where)
+    if np.any(np.abs(array) > LARGEST):
+        bad = array[np.abs(array) > LARGEST].flat[0]
+        raise InputError(
+            f"{bad:g} is beyond all that is measured at a robot",
+            where=where,
+            remedy="Write the number that was read, in the unit that is stated.",
+        )
     scale, divide = _conversion(unit, kind, where)
     return array / scale if divide else array * scale
 

@@ -22,7 +22,7 @@ import typer
 
 from sk120stiff.cli.document import SCHEMA, as_json_text
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
-from sk120stiff.errors import ToolkitError
+from sk120stiff.errors import Refusal, ToolkitError
 from sk120stiff.files import running
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
@@ -114,7 +114,7 @@ def guarded(*, debug: bool, as_json: bool = False) -> Iterator[None]:
         failure = Failure(error.exit_code, error.kind, error.what, error.where, error.remedy)
         _leave(failure, f"Error: {error}", trace=debug, as_json=as_json)
     except BrokenPipeError:
-        _hush(sys.stdout, sys.stderr)
+        hush(sys.stdout, sys.stderr)
         raise typer.Exit(NOBODY_READS) from None
     except OSError as error:
         place = str(error.filename) if error.filename else None
@@ -162,7 +162,15 @@ class Failure:
 
 
 def emit(answer: Answer, *, as_json: bool, warned: Sequence[str] = ()) -> None:
-    """Print an answer on stdout: one JSON document, or its parts for people."""
+    """Print an answer on stdout: one JSON document, or its parts for people.
+
+    Raises
+    ------
+    Refusal
+        There is no standard output.
+    """
+    if sys.stdout is None:
+        raise Refusal("standard output is closed, so the answer cannot be printed")
     refused: Mapping[str, object] = {}
     if answer.exit_code:
         said = next((part for part in answer.parts if isinstance(part, str)), "no result to give")
@@ -236,13 +244,14 @@ def _leave(
         if as_json:
             print(as_json_text(failure.document), flush=True)
     except BrokenPipeError:
-        _hush(sys.stdout, sys.stderr)
+        hush(sys.stdout, sys.stderr)
     raise typer.Exit(failure.exit_code) from None
 
 
-def _hush(*streams: TextIO) -> None:
+def hush(*streams: TextIO | None) -> None:
     """Nobody reads these any more: keep the interpreter from complaining when it flushes them."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in streams:
-        os.dup2(nowhere, stream.fileno())
+        if stream is not None:  # closed from the beginning
+            os.dup2(nowhere, stream.fileno())
     os.close(nowhere)

@@ -12,6 +12,8 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
+from sk120stiff.cli.environment import prepare
+
 PROGRAM = "sk120stiff"
 BAD_USAGE = 2
 _ASKED_FOR_JSON = ContextVar("asked for JSON", default=False)
@@ -113,15 +115,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments
         What follows the program's name; the process's own arguments by default.
     """
+    prepare()
     words = list(sys.argv[1:] if arguments is None else arguments)
     _ASKED_FOR_JSON.set("--json" in words)
     try:
         code = application().main(args=words, prog_name=PROGRAM, standalone_mode=False)
+    except OSError as error:  # nobody takes the help
+        return _unheard(error)
     except _UsageError as error:
         return _misused(error, as_json=_ASKED_FOR_JSON.get())
     except SystemExit as leaving:
         code = leaving.code
     return code if isinstance(code, int) else int(code is not None)
+
+
+def _unheard(error: OSError) -> int:
+    """A stream that takes no more: say so on the other, and let the interpreter end quietly."""
+    from sk120stiff.cli.frame import INTERNAL, NOBODY_READS, hush
+
+    if isinstance(error, BrokenPipeError):
+        hush(sys.stdout, sys.stderr)
+        return NOBODY_READS
+    hush(sys.stdout)
+    print(f"Error: {error.strerror or error}.", file=sys.stderr)
+    return INTERNAL
 
 
 def _misused(error: Any, *, as_json: bool) -> int:

@@ -8,11 +8,14 @@ from sk120stiff.files.file_set import together
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
 from sk120stiff.files.reading import read_bytes, read_text
 from sk120stiff.files.writing import write_atomically
+from sk120stiff.files.yaml_text import parse_yaml, read_yaml
 
 __all__ = [
     "note_read",
+    "parse_yaml",
     "read_bytes",
     "read_text",
+    "read_yaml",
     "running",
     "together",
     "will_fill",

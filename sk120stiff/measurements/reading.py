@@ -18,7 +18,7 @@ from sk120stiff.measurements import columns
 from sk120stiff.measurements.columns import Roles
 from sk120stiff.measurements.data import Measurements, NoiseStatement
 from sk120stiff.measurements.poses import refuse_differing_joints
-from sk120stiff.measurements.rows import read_rows
+from sk120stiff.measurements.rows import SMALLEST_SIGMA, read_rows
 from sk120stiff.measurements.subtraction import displacements
 from sk120stiff.measurements.table import Table, read_table
 
@@ -162,7 +162,14 @@ def _sigma(file: SettingsFile) -> float | None:
     noise = file.settings.noise
     if noise.sigma is None:
         return None
-    return float(units.to_si(noise.sigma, noise.unit, "length", where=file.place("noise.unit")))
+    sigma = float(units.to_si(noise.sigma, noise.unit, "length", where=file.place("noise.unit")))
+    if sigma < SMALLEST_SIGMA:
+        raise InputError(
+            f"a standard uncertainty of {noise.sigma:g} {noise.unit} is smaller than any reading's",
+            where=file.place("noise.sigma"),
+            remedy="Write the standard uncertainty of one reading per axis, or leave it out.",
+        )
+    return sigma
 
 
 def _robot(text: str | None, folder: Path) -> str | None:

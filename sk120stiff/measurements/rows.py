@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
+SMALLEST_SIGMA = 1e-15  # m; its inverse square still is a number to compute with
 _FLAGS = {"1": True, "0": False, "true": True, "false": False, "1.0": True, "0.0": False}
 
 
@@ -150,11 +151,12 @@ def _branches(table: Table, loaded: Mask) -> tuple[str, ...]:
 
 def _uncertainties(table: Table) -> Floats:
     values = quantities(table, UNCERTAINTIES, "length")
-    if np.any(values <= 0.0):
-        row, column = (int(k) for k in np.argwhere(values <= 0.0)[0])
+    if np.any(values < SMALLEST_SIGMA):
+        row, column = (int(k) for k in np.argwhere(values < SMALLEST_SIGMA)[0])
         name = UNCERTAINTIES[column]
         raise InputError(
-            f"a standard uncertainty of {table.cells[name][row]} is not positive",
+            f"a standard uncertainty of {table.cells[name][row]} is not positive"
+            + (f" (below {SMALLEST_SIGMA:g} m)" if values[row, column] > 0.0 else ""),
             where=table.place(name, row),
             remedy="Write the standard uncertainty of the reading, or leave the three columns out.",
         )

@@ -138,20 +138,9 @@ def read_settings(path: Path | None) -> SettingsFile:
     """
     if path is None:
         return SettingsFile(Settings(), None, {})
-    text = files.read_text(path)
-    try:
-        node = yaml.compose(text, Loader=yaml.SafeLoader)
-        content = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        mark = getattr(error, "problem_mark", None)
-        place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        reason = str(getattr(error, "problem", None) or error).partition("\n")[0]
-        raise InputError(
-            f"this is not YAML ({reason})",
-            where=f"{path}{place}",
-            remedy="Write one 'key: value' per line, text with a colon in quotation marks.",
-        ) from error
-    lines = dict(_keys(node, str(path)))
+    text = files.read_yaml(path)
+    content = text.content
+    lines = dict(_keys(text.node, str(path)))
     if content is None:
         content = {}
     if not isinstance(content, dict):

@@ -28,7 +28,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sk120stiff.effects import effect
 from sk120stiff.effects.gear import breaks_of
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.files import read_text, write_atomically
+from sk120stiff.files import parse_yaml, read_text, write_atomically
 from sk120stiff.model.model import Model, Parameter
 from sk120stiff.model.uncertainty_file import (
     ModelDumper,
@@ -219,15 +219,7 @@ def _same_file(said: str, source: str, folder: Path | None) -> bool:
 
 def _parsed(text: str, where: str) -> _File:
     try:
-        return _File.model_validate(yaml.safe_load(text) or {})
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f", line {mark.line + 1}" if mark else ""
-        raise InputError(
-            f"this is not valid YAML ({getattr(error, 'problem', error)})",
-            where=f"{where}{line}",
-            remedy="Mend the syntax at that line.",
-        ) from error
+        return _File.model_validate(parse_yaml(text, where).content or {})
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])

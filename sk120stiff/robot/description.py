@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sk120stiff.errors import InputError
-from sk120stiff.files import read_text
+from sk120stiff.files import read_yaml
 
 
 class _Strict(BaseModel):
@@ -93,16 +92,7 @@ def read_description(path: Path) -> RobotDescription:
     InputError
         Not YAML, an unknown key, or a value of the wrong kind; file, line or key are named.
     """
-    try:
-        content = yaml.safe_load(read_text(path))
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f", line {mark.line + 1}" if mark else ""
-        raise InputError(
-            f"this is not valid YAML ({getattr(error, 'problem', error)})",
-            where=f"{path}{line}",
-            remedy="Mend the syntax at that line.",
-        ) from error
+    content = read_yaml(path).content
     try:
         return RobotDescription.model_validate(content or {})
     except ValidationError as error:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+from collections.abc import Iterable, Mapping
 from functools import cache
 from html import escape
 from importlib.resources import files
@@ -14,7 +16,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from sk120stiff.errors import MissingPart
+from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
 from sk120stiff.show.payload import scene_payload
@@ -81,9 +83,35 @@ def render_page(payload: dict[str, Any], *, viewer: str | None) -> str:
 
 
 def json_for_script(payload: object) -> str:
-    """JSON that cannot end the `<script>` element it stands in."""
-    text = json.dumps(payload, allow_nan=False, separators=(",", ":"))
+    """JSON that cannot end the `<script>` element it stands in.
+
+    Raises
+    ------
+    InputError
+        A number of it is not finite: something in the input overflows.
+    """
+    try:
+        text = json.dumps(payload, allow_nan=False, separators=(",", ":"))
+    except ValueError as error:
+        raise InputError(
+            "a number of this picture is not finite, because a length, mass or load is too large",
+            where=_not_finite(payload) or None,
+            remedy="Look for extreme numbers in the robot, the model and the load.",
+        ) from error
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _not_finite(value: object, key: str = "") -> str:
+    """The key of the first number that is not finite."""
+    if isinstance(value, float):
+        return "" if math.isfinite(value) else key
+    items: Iterable[tuple[object, object]] = ()
+    if isinstance(value, Mapping):
+        items = value.items()
+    elif isinstance(value, list | tuple):
+        items = enumerate(value)
+    inside = (_not_finite(part, f"{key}.{name}" if key else str(name)) for name, part in items)
+    return next((found for found in inside if found), "")
 
 
 @cache

@@ -15,6 +15,11 @@ from sk120stiff.robot.urdf.xml_tree import Element
 _NUMBER = re.compile(r"[+-]?(?:\d{1,400}\.?\d{0,400}|\.\d{1,400})(?:[eE][+-]?\d{1,6})?\Z", re.ASCII)
 _NOT_FINITE = re.compile(r"[+-]?(?:inf|infinity|nan)\Z", re.IGNORECASE)
 _SMALLEST = 1e-300
+LARGEST = 1e15  # of lengths, angles, masses; files state limits of 1e16 where there is none
+_MEASURES = (
+    "xyz", "rpy", "value", "radius", "length", "size", "scale", "offset",
+    "multiplier", "ixx", "iyy", "izz", "ixy", "ixz", "iyz",
+)  # fmt: skip
 _ZERO_WIDTH = dict.fromkeys(map(ord, "\u200b\u200c\u200d\ufeff"), None)
 
 
@@ -124,7 +129,7 @@ class Fields:
             value = float(plain)
             if abs(value) < _SMALLEST:
                 value = 0.0  # C++ parsers choke on denormal numbers
-            if not math.isfinite(value):
+            if not math.isfinite(value) or (abs(value) > LARGEST and attribute in _MEASURES):
                 self._refuse(element, attribute, text, "is too large for a number")
             if plain != word:
                 note = f"{attribute} {shown(text)}: the 'f' was ignored"
