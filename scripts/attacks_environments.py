@@ -105,13 +105,15 @@ def limits(folder: Path) -> Iterator[Verdict]:
     desk(folder)
     for name, before in LIMITS.items():
         command = f"identify {folder}/m.csv --out {folder}/found.yaml"
-        yield apart(f"{name}: {command}", command.split(), before=before, cwd=folder, codes=(0, 1, 2, 3))
+        yield apart(
+            f"{name}: {command}", command.split(), before=before, cwd=folder, codes=(0, 1, 2, 3)
+        )
 
 
 def _may_run_python() -> bool:
     """May another user run this interpreter? Not where it lies in root's own folder."""
     try:
-        subprocess.run([sys.executable, "-c", ""], user=65534, check=True)  # noqa: S603
+        subprocess.run([sys.executable, "-c", ""], user=65534, check=True)
     except (OSError, subprocess.CalledProcessError):
         return False
     return True
@@ -126,7 +128,8 @@ def strangers(folder: Path) -> Iterator[Verdict]:
     if os.geteuid() != 0 or not _may_run_python():
         return
     for command in ("identify m.csv", "identify m.csv --out x.yaml", "view rob --static v.html",
-                    "explain m.csv --out e", "map rob --grid joint_2_l=0:9:3deg --out m.zarr"):  # fmt: skip
+                    "explain m.csv --out e",
+                    "map rob --grid joint_2_l=0:9:3deg --out m.zarr"):  # fmt: skip
         yield apart(
             f"nobody in a folder of root: {command}", command.split(), cwd=folder,
             user=65534, group=65534, environment={"HOME": "/nonexistent"},

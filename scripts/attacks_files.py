@@ -25,7 +25,8 @@ YAML_VALUES = (
     "1e400", "'1'", "'\\x1b[31m'", "{a: {b: {c: {d: 1}}}}", "0o9", "0b2", "190:20:30", "|", ">",
     "? x", "!!str 3", "[1, 2]", "[1, 2, 3, 4]", "[1e308, 1e308, 1e308]", "[nan, nan, nan]", "a: b",
     "@x", "`x`", "%x", "!<tag:yaml.org,2002:float> abc", "9" * 400, "1" * 5000, "../..",
-    "/dev/zero",    "/", ".", "''", "!!merge x", "<<", "=", "[{}]", "{1: 2}", "{[1]: 2}", "{? {a: 1} : 2}",
+    "/dev/zero", "/", ".", "''", "!!merge x",
+    "<<", "=", "[{}]", "{1: 2}", "{[1]: 2}", "{? {a: 1} : 2}",
 )  # fmt: skip
 NESTED = "[" * 3000 + "]" * 3000
 LAUGHS = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
@@ -159,7 +160,8 @@ def _whole(text: str, draw: random.Random) -> str:
     return draw.choice(
         ("", "- 1\n- 2\n", "3", "null", NESTED, LAUGHS + text, f"{text}\ndeep: {NESTED}\n",
          text * 2, f"{text}\n---\n{text}", "&a [*a]", f"{text}\nme: &b {{you: *b}}\n", "\t" + text,
-         "!!set {}", f"{text}\nwhen: 2001-99-99\n", "? [a]\n: b\n", f"%YAML 9.9\n---\n{text}", "2001-99-99")
+         "!!set {}", f"{text}\nwhen: 2001-99-99\n", "? [a]\n: b\n", f"%YAML 9.9\n---\n{text}",
+         "2001-99-99")
     )  # fmt: skip
 
 

@@ -44,7 +44,8 @@ COMMANDS = {  # what is mutated → commands that read it, the cheap ones often
         "compensate @mod.yaml @path.csv --out @c.csv",
     ],
     "rob/robot.yaml": ["check @rob", "stiffness @rob", "predict @rob/model.yaml @m.csv"],
-    "rob/sk120.urdf": ["check @rob", "stiffness @rob --wrench 0,0,-100N", "view @rob --static @v.html"],
+    "rob/sk120.urdf": ["check @rob", "stiffness @rob --wrench 0,0,-100N",
+        "view @rob --static @v.html"],
     "path.csv": ["compensate @mod.yaml @path.csv --out @c.csv"],
 }  # fmt: skip
 

@@ -27,7 +27,8 @@ HEAVY = {
     "yaml",
 }
 INFRASTRUCTURE = {
-    "__init__", "document", "explain_output", "frame", "main", "opening", "options", "tables",
+    "__init__", "document", "environment", "explain_output", "frame", "main", "opening", "options",
+    "tables",
 }  # fmt: skip
 
 

@@ -108,7 +108,7 @@ def test_gears_in_steps_come_back_from_the_names_of_their_parameters():
 
 
 BAD = {
-    "no YAML": ("robot: [", "not valid YAML.*"),
+    "no YAML": ("robot: [", "not YAML.*"),
     "a list": ("- robot", "key"),
     "no robot": ("effects: []", "key 'robot'"),
     "unknown key": (GOOD + "notes: none\n", "key 'notes'"),
