@@ -112,7 +112,7 @@ def test_frames_as_told() -> None:
 
 def test_lengths_beyond_all_robots_are_refused() -> None:
     text = arm("0 0 1", "0 1 0").replace('xyz="0.5 0 0"', 'xyz="1e308 1e308 0"')
-    with pytest.raises(InputError, match="line 1, joint 'j1': .*too large for a number"):
+    with pytest.raises(InputError, match=r"line 1, joint 'j1': .*too large for a number"):
         check_robot(text)
     assert "units" in codes(check_robot(text.replace("1e308", "1e12")))
 
