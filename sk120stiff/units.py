@@ -121,17 +121,11 @@ def to_si(
     Raises
     ------
     InputError
-        No unit, an unknown unit, a unit of another kind, or a number that is not finite or beyond
-        `LARGEST`.
+        No unit, an unknown unit, a unit of another kind, or a number beyond `LARGEST`.
     """
     array = _finite(values, where)
     if np.any(np.abs(array) > LARGEST):
-        bad = array[np.abs(array) > LARGEST].flat[0]
-        raise InputError(
-            f"{bad:g} is beyond all that is measured at a robot",
-            where=where,
-            remedy="Write the number that was read, in the unit that is stated.",
-        )
+        raise InputError(f"{np.abs(array).max():g} is beyond all that is measured", where=where)
     scale, divide = _conversion(unit, kind, where)
     return array / scale if divide else array * scale
 

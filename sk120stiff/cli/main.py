@@ -26,7 +26,7 @@ COMMANDS = {
     "check": "Does a robot load, what moves, what is suspicious.",
     "stiffness": "How stiff the arm is: here, this way, under this load.",
     "identify": "Spring values and their uncertainty from measured deflections.",
-    "predict": "Predicted displacement of every reading, and the gap to it.",
+    "predict": "Predicted displacement of every reading ± its uncertainty, and the gap to it.",
     "explain": "What is missing when simulation and measurement disagree.",
     "plan": "The poses and loads to measure next.",
     "simulate": "Synthetic measurements from a model: loads, noise, zeros.",

@@ -28,7 +28,7 @@ HEAVY = {
 }
 INFRASTRUCTURE = {
     "__init__", "document", "environment", "explain_output", "frame", "main", "opening", "options",
-    "tables",
+    "plan_wishes", "tables", "uncertainty", "xacro_option",
 }  # fmt: skip
 
 
