@@ -50,15 +50,14 @@ def finger_joints(document: UrdfDocument, arm: Collection[str] = ()) -> tuple[st
     children = children_of(document)
     named = {joint.name for joint in document.moving_joints if _is_named_finger(joint)}
     first = named | _sliding_pairs(document, children) | _branches_of_palms(document, children)
-    found = {name for joint in first for name in _behind(_of(document, joint), children)}
+    found: set[str] = set()
+    for joint in document.joints:
+        if joint.name in first and joint.name not in found:
+            found.update(_behind(joint, children))
     found -= set(arm)
     if not any(j.mimic is None and j.name not in found for j in document.moving_joints):
         return ()
     return tuple(joint.name for joint in document.moving_joints if joint.name in found)
-
-
-def _of(document: UrdfDocument, name: str) -> JointSpec:
-    return next(joint for joint in document.joints if joint.name == name)
 
 
 def _is_named_finger(joint: JointSpec) -> bool:

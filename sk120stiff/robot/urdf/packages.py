@@ -79,6 +79,13 @@ def _changed(folder: Path) -> int:
         return 0
 
 
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link that leads round in a circle
+        return False
+
+
 @lru_cache(maxsize=64)
 def _packages_below(folder: Path, depth: int, _changed: int) -> tuple[tuple[Path, str], ...]:
     """Packages in a folder and down to `depth` below it, nearest first; none within another."""
@@ -100,7 +107,7 @@ def _packages_below(folder: Path, depth: int, _changed: int) -> tuple[tuple[Path
             except OSError:
                 continue
             if not _NO_PACKAGES & {entry.name for entry in inside}:
-                below += [Path(e.path) for e in inside if e.is_dir() and e.name[:1] != "."]
+                below += [Path(e.path) for e in inside if e.name[:1] != "." and _is_folder(e)]
         level = below
     return tuple(found)
 

@@ -16,7 +16,13 @@ from sk120stiff.robot.urdf.mimics import checked_mimics, without_orphans
 from sk120stiff.robot.urdf.packages import package_folders as folders_around
 from sk120stiff.robot.urdf.source import RawSource, read_source
 from sk120stiff.robot.urdf.structure import declared_links, find_root
-from sk120stiff.robot.urdf.xacro import expand, is_xacro, refuse_empty, with_environment
+from sk120stiff.robot.urdf.xacro import (
+    expand,
+    is_xacro,
+    refuse_empty,
+    refuse_text,
+    with_environment,
+)
 from sk120stiff.robot.urdf.xml_text import decode
 from sk120stiff.robot.urdf.xml_tree import Element, parse_robot
 
@@ -89,7 +95,12 @@ def _plain(raw: RawSource, text: str, folders: tuple[Path, ...], notes: Notebook
     filled = with_environment(text)
     if filled != text:
         notes.warn("environment_value", "", "$(env ...) was replaced by values of the environment")
-    return _document(parse_robot(filled, notes), raw, folders, notes)
+    try:
+        return _document(parse_robot(filled, notes), raw, folders, notes)
+    except InputError:
+        if raw.path is None:  # what xacro elements are left over in a readable text are ignored
+            refuse_text(text, notes)
+        raise
 
 
 def _expanded(

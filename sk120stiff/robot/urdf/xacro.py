@@ -6,6 +6,7 @@ import importlib.util
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -48,6 +49,21 @@ def is_xacro(raw: RawSource, text: str) -> bool:
         return False
     named = raw.path.suffix.lower() == ".xacro"
     return bool(_ELEMENT.search(plain) or (named and _SUBSTITUTION.search(plain)))
+
+
+def refuse_text(text: str, notes: Notebook) -> None:
+    """Refuse xacro that was given as text: only a file is expanded, and knows its neighbours.
+
+    Raises
+    ------
+    InputError
+        There are xacro elements.
+    """
+    if _ELEMENT.search(without_comments(text)):
+        notes.refuse(
+            "xacro is expanded from a file only, and this is text",
+            remedy="Save it as a .xacro file and give its path.",
+        )
 
 
 def with_environment(text: str) -> str:
@@ -171,11 +187,13 @@ def _refuse_missing(
     absent = [name for name, default in declared.items() if default is None and name not in given]
     needed = list(dict.fromkeys([missing, *absent]))
     values = {name: declared.get(name) or "VALUE" for name in needed}
-    command = " ".join(f"--xacro-arg {name}:={value}" for name, value in values.items())
+    words = ["sk120stiff", "check", str(raw.path)]
+    for name, value in values.items():
+        words += ["--xacro-arg", f"{name}:={value}"]
     keys = ", ".join(f"{name}: {value}" for name, value in values.items())
     notes.refuse(
         f"this xacro has no value for its argument {', '.join(map(shown, needed))}",
-        remedy=f"Write: sk120stiff check {raw.path} {command} (or xacro: {{{keys}}} in "
+        remedy=f"Write: {shlex.join(words)} (or xacro: {{{keys}}} in "
         f"robot.yaml).{_takes(declared, needed)}",
     )
 
