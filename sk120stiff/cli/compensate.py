@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Annotated
 
@@ -9,21 +10,28 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument
-from sk120stiff.cli.tables import table
-from sk120stiff.errors import InputError
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, joint_spring_model, read_model
+from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
+from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
+    Branch,
     Compensation,
     LoadedPath,
     Standing,
+    branch_of,
     compensate,
     elastic_arm,
     joints_along,
+    lowest_floor,
     read_path,
     standing,
+    stays_above,
     write_joints,
 )
 
@@ -65,29 +73,59 @@ def command(
             show_default="the model that corrects",
         ),
     ] = None,
+    start: Annotated[
+        str | None,
+        typer.Option(
+            metavar="POSE",
+            help="For positions: the pose near which the arm begins, as in --pose elsewhere; it "
+            "stays in that branch.",
+            show_default="a branch above the floor, near the zero pose",
+        ),
+    ] = None,
+    floor: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH",
+            help="Height in the base frame below which no joint should go: '-0.3 m'.",
+            show_default="the base plane, or the path where that is lower",
+        ),
+    ] = None,
 ) -> Answer:
     """Joint commands that cancel the deflection along a loaded path.
 
     The loaded tool then stands, at exact equilibrium, where the unloaded nominal robot would have
     stood. Weight and wrong geometry that the model knows are corrected too. Says what remains and
-    why.
+    why, and in which branch the arm runs.
 
-    Example: sk120stiff compensate model.yaml path.csv --out corrected.csv
+    Example: sk120stiff compensate model.yaml path.csv --start '0,20,-30,0,-60,0 deg' --out new.csv
     """
     will_write(out)
     believed = read_model(model)
     robot = believed.robot
     movable = None if only is None else _movable(believed, only)
     given = read_path(path, robot)
-    nominal = joints_along(given, elastic_arm(joint_spring_model(robot), frame=at))
-    found = compensate(
-        believed,
-        nominal,
-        given.wrench,
-        frame=at,
-        orientation=orientation,
-        movable=movable,
-    )
+    wanted = None if start is None else pose_of(robot, start, option="--start")
+    ground = _floor(robot, floor, given)
+    with progress_bar("Finding the joints") as report:
+        nominal = joints_along(
+            given,
+            elastic_arm(joint_spring_model(robot), frame=at),
+            wanted,
+            stays_above=lambda a: stays_above(robot, a, ground),
+            progress=report,
+        )
+    branch = branch_of(robot, nominal, ground)
+    _warn_of_branch(branch, given)
+    with progress_bar("Compensating") as report:
+        found = compensate(
+            believed,
+            nominal,
+            given.wrench,
+            frame=at,
+            orientation=orientation,
+            movable=movable,
+            progress=report,
+        )
     after = found.after
     if against is not None:
         truth = read_model(against, robot)
@@ -111,11 +149,73 @@ def command(
             for k, reason in enumerate(found.reasons)
             if reason
         ],
+        "branch": _branch_keys(branch, given, robot),
         "judged_by": str(against or model),
         "out": str(out),
     }
     held = bool(found.before.exists.any())
-    return Answer(document, parts=_parts(document, given, found), exit_code=0 if held else 1)
+    parts = [_branch_words(branch, robot), *_parts(document, given, found)]
+    return Answer(document, parts=parts, exit_code=0 if held else 1)
+
+
+def _floor(robot: Robot, text: str | None, path: LoadedPath) -> float:
+    if text is None:
+        heights = None if path.position is None else path.position[:, 2]
+        return lowest_floor(robot, path.joints, heights)
+    values = parse_values(text, "length", where="--floor")
+    if len(values) != 1:
+        raise InputError(f"{text!r} is not one height", where="--floor", remedy="Write '-0.3 m'.")
+    return float(values[0])
+
+
+def _warn_of_branch(branch: Branch, path: LoadedPath) -> None:
+    lines = path.table.lines
+    if branch.below:
+        warnings.warn(
+            f"at {branch.below} of {path.count} points a joint of the arm lies below the floor "
+            f"({1e3 * branch.floor:.0f} mm): {branch.lowest_joint} at "
+            f"{1e3 * branch.lowest:.0f} mm, line {lines[branch.lowest_point]}. Choose another "
+            "branch with --start, or say where the floor is with --floor",
+            ToolkitWarning,
+            stacklevel=2,
+        )
+    for k in branch.jumps[:1]:
+        warnings.warn(
+            f"between lines {lines[k]} and {lines[k + 1]} (and {len(branch.jumps) - 1} more pairs) "
+            "a joint moves by more than 30 deg (or 0.5 m): the arm changes its posture there",
+            ToolkitWarning,
+            stacklevel=2,
+        )
+
+
+def _branch_keys(branch: Branch, path: LoadedPath, robot: Robot) -> dict[str, object]:
+    return {
+        "first": dict(zip(robot.actuated, branch.first.tolist(), strict=True)),
+        "elbow": branch.elbow,
+        "elbow_up": branch.elbow_up if branch.elbow else None,
+        "elbow_height_m": branch.elbow_height,
+        "lowest_m": branch.lowest,
+        "lowest_joint": branch.lowest_joint,
+        "lowest_line": path.table.lines[branch.lowest_point],
+        "floor_m": branch.floor,
+        "points_below_floor": branch.below,
+        "jumps_after_lines": [path.table.lines[k] for k in branch.jumps],
+    }
+
+
+def _branch_words(branch: Branch, robot: Robot) -> str:
+    values = ", ".join(
+        f"{name} {1e3 * x:.0f} mm" if slides else f"{name} {np.degrees(x):.1f}°"
+        for name, x, slides in zip(robot.actuated, branch.first, robot.prismatic, strict=True)
+    )
+    elbow = "stretched"
+    if branch.elbow:
+        side = "up" if branch.elbow_up else "down"
+        elbow = f"elbow {side} ({branch.elbow} {1e3 * branch.elbow_height:.0f} mm high)"
+    return (
+        f"Branch at the first point: {elbow}; {values}. Lowest joint along the path: "
+        f"{branch.lowest_joint}, {1e3 * branch.lowest:.0f} mm."
+    )
 
 
 def _movable(model: Model, text: str) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

@@ -83,12 +83,12 @@ def open_model(robot: Robot, path: Path | None) -> Model:
     return model
 
 
-def pose_of(robot: Robot, text: str | None) -> Array:
-    """Actuated coordinates (n,) [rad or m] from --pose; the rest pose without it."""
+def pose_of(robot: Robot, text: str | None, option: str = "--pose") -> Array:
+    """Actuated coordinates (n,) [rad or m] from an option; the rest pose without it."""
     if text is None:
         return robot.rest
     kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    a = parse_pose(text, robot.actuated, kinds, where="--pose")
+    a = parse_pose(text, robot.actuated, kinds, where=option)
     slack = 1e-9  # a limit itself, written in degrees, is within the limits
     for k in np.flatnonzero((a < robot.lower - slack) | (a > robot.upper + slack)):
         low, here, high = robot.lower[k], a[k], robot.upper[k]

@@ -1,6 +1,7 @@
 """Stiffness over the workspace: maps, the best posture, deflections compensated, exports."""
 
 from sk120stiff.workspace.arm import ElasticArm, elastic_arm
+from sk120stiff.workspace.branch import Branch, branch_of, joint_heights, lowest_floor, stays_above
 from sk120stiff.workspace.compensate import Compensation, Standing, compensate, standing
 from sk120stiff.workspace.export import FORMATS, mjcf_text, sdf_text
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
@@ -31,6 +32,7 @@ __all__ = [
     "STATUS",
     "Axis",
     "BestPosture",
+    "Branch",
     "Compensation",
     "ElasticArm",
     "Grid",
@@ -49,10 +51,13 @@ __all__ = [
     "Standing",
     "Task",
     "best_posture",
+    "branch_of",
     "compensate",
     "damaged_map",
     "elastic_arm",
+    "joint_heights",
     "joints_along",
+    "lowest_floor",
     "mjcf_text",
     "open_map",
     "parse_axes",
@@ -64,6 +69,7 @@ __all__ = [
     "spring_arm",
     "standing",
     "starting_poses",
+    "stays_above",
     "summarise_map",
     "verify_map",
     "write_joints",

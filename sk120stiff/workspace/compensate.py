@@ -7,6 +7,7 @@ of the deflection, so the rigid Jacobian leads there in a few steps.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +22,7 @@ from sk120stiff.workspace.arm import seen_from
 from sk120stiff.workspace.inverse import rotation_vector
 
 STEPS = 40
-REST = 1e-12  # m: a correction smaller than this ends the search
+REST = 1e-10  # rad or m: after a correction smaller than this nothing is left to correct
 DAMPING = 1e-9  # of squared singular values of J: directions below are left alone
 ENOUGH = 1e-8  # m and rad: what remains counts as nothing
 BLOCK = 1024  # points solved together
@@ -83,6 +84,7 @@ def compensate(
     point: ArrayLike | None = None,
     orientation: bool = False,
     movable: NDArray[np.bool_] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Compensation:
     """Correct joint commands for the deflection under load.
 
@@ -102,6 +104,8 @@ def compensate(
         Restore the tool's orientation too.
     movable
         (n,) joints that may be corrected; all by default.
+    progress
+        Called with (points done, points in all).
 
     Raises
     ------
@@ -114,10 +118,12 @@ def compensate(
     load = np.broadcast_to(np.asarray(wrench, dtype=float), (len(given), 6))
     if not np.isfinite(load).all():
         raise InputError("a load is not a finite number", remedy="Check forces and moments.")
-    parts = [
-        _compensated(physical, given[k : k + BLOCK], load[k : k + BLOCK], at, orientation, movable)
-        for k in range(0, len(given), BLOCK)
-    ]
+    parts = []
+    for k in range(0, len(given), BLOCK):
+        end = min(k + BLOCK, len(given))
+        parts.append(_compensated(physical, given[k:end], load[k:end], at, orientation, movable))
+        if progress:
+            progress(end, len(given))
     return Compensation(
         np.concatenate([given[:0], *(part.a for part in parts)]),
         _joined([part.before for part in parts]),
@@ -259,26 +265,24 @@ def _reasons(
     left = now.distance > ENOUGH
     if orientation:
         left |= np.linalg.norm(now.turned, axis=1) > ENOUGH
-    reasons = []
+    reasons = [""] * len(a)
     wanted = 6 if orientation else 3
-    for k in range(len(a)):
+    for k in np.flatnonzero(left | lost | ~held):
         at_limit = [
             robot.actuated[j]
             for j in range(robot.n)
             if moves[j] and (a[k, j] <= robot.lower[j] or a[k, j] >= robot.upper[j])
         ]
         if not held[k]:
-            reasons.append("the springs cannot hold this load")
+            reasons[k] = "the springs cannot hold this load"
         elif lost[k]:
-            reasons.append("the corrected arm cannot hold this load")
-        elif not left[k]:
-            reasons.append("")
+            reasons[k] = "the corrected arm cannot hold this load"
         elif at_limit:
-            reasons.append(f"at the limit of {', '.join(at_limit)}")
+            reasons[k] = f"at the limit of {', '.join(at_limit)}"
         elif moves.sum() < wanted:
-            reasons.append(f"{moves.sum()} joints cannot correct {wanted} directions")
+            reasons[k] = f"{moves.sum()} joints cannot correct {wanted} directions"
         else:
-            reasons.append("near a singular pose, some direction cannot be corrected")
+            reasons[k] = "near a singular pose, some direction cannot be corrected"
     return tuple(reasons)
 
 

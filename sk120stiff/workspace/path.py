@@ -13,11 +13,12 @@ Further columns are kept as they are.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.files import write_atomically
@@ -31,6 +32,9 @@ from sk120stiff.workspace.inverse import Task, rotation_of, solve_inverse, start
 FORCES, MOMENTS = ("fx", "fy", "fz"), ("mx", "my", "mz")
 POSITIONS, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 STARTS = 32  # poses from which the first point of a path is sought
+SAME_BRANCH = 0.05  # rad or m between solutions that count as one
+NEIGHBOURS = 0.1  # rad or m: neighbours of one block that are farther apart are sought one by one
+LONGEST_BLOCK = 1024  # points sought together
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,11 +109,32 @@ def read_path(path: str | os.PathLike[str], robot: Robot) -> LoadedPath:
     return LoadedPath(wrench, None, _columns(table, POSITIONS, "length"), rotation, table)
 
 
-def joints_along(path: LoadedPath, arm: ElasticArm, start: Array | None = None) -> Array:
+def joints_along(
+    path: LoadedPath,
+    arm: ElasticArm,
+    start: Array | None = None,
+    *,
+    stays_above: Callable[[Array], NDArray[np.bool_]] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Array:
     """(N, n) joint coordinates of a path, found by inverse kinematics where it gives positions.
 
-    The first point is sought from `start` and then from poses all over the joints' ranges; every
-    further one from the point before it, so the arm stays in one branch.
+    The first point is sought from `start` and from poses all over the joints' ranges; every further
+    one from one before it, so the arm stays in one branch. Of the branches that reach the first
+    point the one nearest to `start` is taken if that was given; else those come first that stay
+    above the floor, and of these the one nearest to the pose with all joints at zero. A branch that
+    does not reach the whole path gives way to the next one.
+
+    Parameters
+    ----------
+    path, arm
+        Where to go, and with what.
+    start
+        (n,) coordinates whose branch is wanted [rad or m].
+    stays_above
+        Tells of poses (M, n) which stay above the floor.
+    progress
+        Called with (points done, points in all).
 
     Raises
     ------
@@ -121,27 +146,78 @@ def joints_along(path: LoadedPath, arm: ElasticArm, start: Array | None = None) 
     if path.position is None:
         raise ValueError("a path has joints or positions")
     task = Task(path.position, rotation=path.rotation)
-    rest = np.zeros(arm.n) if start is None else start
-    first = starting_poses(arm, STARTS, np.clip(rest, arm.lower, arm.upper))
-    found: Array | None = None
-    joints = np.empty((path.count, arm.n))
-    for point in range(path.count):
-        here = task.rows(np.array([point]))
-        tries = first if found is None else found[None]
-        for each in tries:
-            reached = solve_inverse(arm, here, each[None])
-            if reached.found[0]:
-                found = reached.a[0]
-                break
-        else:
-            raise Refusal(
-                "the arm cannot reach this point" + (" from the one before it" if point else ""),
-                where=f"{path.table.path}, line {path.table.lines[point]}",
-                remedy="Look at what can be reached with 'sk120stiff map', or give the path by "
-                "joints.",
-            )
-        joints[point] = found
-    return joints
+    lost = 0
+    for first in _branches(arm, task.rows(np.array([0])), start, stays_above):
+        joints, end = _followed(arm, task, first, progress)
+        if end == path.count:
+            return joints
+        lost = max(lost, end)
+        if start is not None:
+            break
+    raise Refusal(
+        "the arm cannot reach this point" + (" from the one before it" if lost else ""),
+        where=f"{path.table.path}, line {path.table.lines[lost]}",
+        remedy="Look at what can be reached with 'sk120stiff map', or give the path by joints."
+        if start is None
+        else "Try another start pose, or none: then all branches are tried.",
+    )
+
+
+def _branches(
+    arm: ElasticArm,
+    first: Task,
+    start: Array | None,
+    stays_above: Callable[[Array], NDArray[np.bool_]] | None,
+) -> Array:
+    """(M, n) different coordinates that reach the first point, the wanted one first."""
+    rest = np.clip(np.zeros(arm.n) if start is None else start, arm.lower, arm.upper)
+    starts = starting_poses(arm, STARTS, rest)
+    many = Task(
+        np.repeat(first.position, STARTS, axis=0),
+        rotation=None if first.rotation is None else np.repeat(first.rotation, STARTS, axis=0),
+    )
+    reached = solve_inverse(arm, many, starts)
+    found = reached.a[reached.found]
+    different: list[Array] = []
+    for a in found:
+        if all(np.abs(a - other).max() > SAME_BRANCH for other in different):
+            different.append(a)
+    found = np.array(different).reshape(-1, arm.n)
+    distance = np.linalg.norm(found - rest, axis=1)
+    sinks = np.zeros(len(found), dtype=bool)
+    if start is None and stays_above is not None and len(found):
+        sinks = ~stays_above(found)
+    return np.asarray(found[np.lexsort((distance, sinks))])
+
+
+def _followed(
+    arm: ElasticArm,
+    task: Task,
+    first: Array,
+    progress: Callable[[int, int], None] | None,
+) -> tuple[Array, int]:
+    """Coordinates (N, n) from the first point on, and how many points were reached.
+
+    Points are solved in blocks that start from the last one found, and kept as long as neighbours
+    stay neighbours; a block shrinks to a single point where they do not.
+    """
+    joints = np.empty((task.count, arm.n))
+    joints[0] = first
+    done, block = 1, 1
+    while done < task.count:
+        rows = np.arange(done, min(done + block, task.count))
+        reached = solve_inverse(arm, task.rows(rows), np.tile(joints[done - 1], (len(rows), 1)))
+        moves = np.abs(np.diff(reached.a, axis=0, prepend=joints[None, done - 1])).max(axis=1)
+        good = reached.found & ((moves <= NEIGHBOURS) | (len(rows) == 1))
+        kept = len(rows) if good.all() else int(np.argmin(good))
+        if not kept and len(rows) == 1:
+            break
+        joints[done : done + kept] = reached.a[:kept]
+        done += kept
+        block = min(2 * block, LONGEST_BLOCK) if kept == len(rows) else max(1, kept)
+        if progress:
+            progress(done, task.count)
+    return joints, done
 
 
 def write_joints(

@@ -4,9 +4,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sk120stiff.model import joint_spring_model, write_model
 from sk120stiff.robot import load_robot
 from tests.cli.conftest import Run
 from tests.oracles.mujoco_sk120 import deflect_sk120
+from tests.workspace.test_branch import SPRINGS, milling_path, other_elbow, ur10
 
 MODEL = str(Path(__file__).resolve().parents[2] / "robots/motoman_sk120/model.yaml")
 JOINTS = [f"joint_{k}" for k in ("1_s", "2_l", "3_u", "4_r", "5_b", "6_t")]
@@ -131,3 +133,30 @@ def test_no_load_that_holds_is_an_explained_failure(run: Run, tmp_path: Path) ->
     found = run("compensate", MODEL, str(path), "--out", str(tmp_path / "c.csv"), "--json")
     assert found.code == 1
     assert "cannot hold" in found.document["remaining"][0]["reason"]
+
+
+def test_the_branch_is_printed_and_what_goes_below_is_warned_of(run: Run, tmp_path: Path) -> None:
+    robot = ur10()
+    model, path = tmp_path / "model.yaml", milling_path(tmp_path, robot)
+    write_model(joint_spring_model(robot, SPRINGS), model)
+    out = ("--out", str(tmp_path / "new.csv"))
+    said = run("compensate", str(model), str(path), *out)
+    assert said.code == 0, said.stderr
+    assert "elbow up (elbow_joint" in said.stdout
+    assert "below the floor" not in said.stderr
+    under = ",".join(f"{x:.4f}" for x in np.degrees(other_elbow(robot)))
+    sunk = run("compensate", str(model), str(path), *out, "--start", f"{under} deg", "--json")
+    assert sunk.code == 0, sunk.stderr
+    branch = sunk.document["branch"]
+    assert branch["elbow_up"] is False
+    assert branch["points_below_floor"] == 40
+    assert branch["lowest_m"] < -0.05
+    assert "below the floor" in sunk.stderr
+    assert f"line {branch['lowest_line']}" in sunk.stderr
+    told = run(
+        "compensate", str(model), str(path), *out, "--start", f"{under} deg", "--floor", "-2 m"
+    )
+    assert "below the floor" not in told.stderr
+    refused = run("compensate", str(model), str(path), *out, "--start", "1,2 deg")
+    assert refused.code == 2
+    assert "--start" in refused.stderr
