@@ -20,6 +20,7 @@ from sk120stiff.cli.options import (
     ToolOption,
 )
 from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_fill, will_write
 from sk120stiff.model import Model
@@ -107,8 +108,17 @@ def command(
         typer.Option(
             "--page",
             metavar="HTML",
-            help="Write a page too: the least stiffness as coloured points around the robot.",
+            help="Write a page too: the map as coloured points around the robot.",
             show_default="none",
+        ),
+    ] = None,
+    colour: Annotated[
+        str | None,
+        typer.Option(
+            metavar="VARIABLE",
+            help="What colours the points of --page: minimum_stiffness, deflection_length, "
+            "deflection_std_parameters or another variable of the map.",
+            show_default="minimum_stiffness",
         ),
     ] = None,
     figures: Annotated[
@@ -116,8 +126,8 @@ def command(
         typer.Option(
             "--figures",
             metavar="DIR",
-            help="Draw slices too, as SVG and PNG: least stiffness and definiteness over every "
-            "pair of axes, through the softest point.",
+            help="Draw slices too, as SVG and PNG: least stiffness, definiteness, and under a load "
+            "the deflection and its ±, over every pair of axes, through the softest point.",
             show_default="none",
         ),
     ] = None,
@@ -128,11 +138,12 @@ def command(
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
-    """Stiffness over the workspace: extremes, directions, stability.
+    """Stiffness over the workspace: extremes, directions, stability, and deflection under the load.
 
-    The map is a Zarr store with units and labels. A run that was stopped in whatever way goes on
-    where it was when the same command is given again. A finished map is checked, every file,
-    against the checksums of when it was written; what is damaged is made again.
+    With a model that 'identify' or 'explain' wrote the deflection has a ±. The map is a Zarr store
+    with units and labels. A run that was stopped in whatever way goes on where it was when the same
+    command is given again. A finished map is checked, every file, against the checksums of when it
+    was written; what is damaged is made again.
 
     Example: sk120stiff map motoman_sk120 --grid 'joint_2_l=::2; joint_3_u=::2 deg'
     --wrench '0,0,-490 N' --out sk120.zarr --figures sk120_slices
@@ -152,6 +163,7 @@ def command(
             remedy="Map over two axes or more.",
         )
     job = MapJob(arm, points, loads, with_directions=directions)
+    shown = _shown(colour, page, job)
     with progress_bar("Mapping") as report:
         written = write_map(job, out, scheduler=scheduler, overwrite=overwrite, progress=report)
     check = verify_map(out)
@@ -159,7 +171,7 @@ def command(
         raise damaged_map(out, check)
     loads_found, status = summarise_map(out)
     if page is not None:
-        _write_page(page, out, believed, pose)
+        _write_page(page, out, believed, pose, shown)
     drawn = [] if figures is None else _draw(figures, out, loads_found)
     document = {
         "robot": arm.name,
@@ -181,21 +193,46 @@ def command(
             "critical": "1",
             "softest_at": "rad or m",
             "stiffest_at": "rad or m",
+            "deflection": "m; null: no load",
+            "deflection_at": "rad or m",
+            "deflection_std_parameters": "m; null: unknown, or not stored",
+            "deflection_std_remainder": "m; null: not known",
         },
+        "uncertainty": uncertainty_keys(believed),
     }
     parts = _parts(arm, written, check.files, status, loads, loads_found)
+    if job.bends:
+        parts += _bent(arm, believed, loads, loads_found)
     if drawn:
         parts.append(f"Figures: {len(drawn)} files in {figures}")
     return Answer(document, parts)
 
 
-def _write_page(page: Path, store: Path, model: Model, pose: str | None) -> None:
+def _shown(colour: str | None, page: Path | None, job: MapJob) -> str:
+    """The variable that colours the page, before anything is computed."""
+    from sk120stiff.show.cloud import SHOWN
+
+    there = [variable.name for variable in job.variables if variable.name in SHOWN]
+    if colour is not None and page is None:
+        raise InputError("there is no page to colour", where="--colour", remedy="Give --page HTML.")
+    if colour is not None and colour not in there:
+        raise InputError(
+            f"this map holds no {colour!r} to colour points by",
+            where="--colour",
+            remedy=f"Choose from {', '.join(there)}. Deflections need a load, and their ± a model "
+            "that 'identify' or 'explain' wrote.",
+        )
+    return colour or "minimum_stiffness"
+
+
+def _write_page(page: Path, store: Path, model: Model, pose: str | None, colour: str) -> None:
     from sk120stiff.show import cloud_of_map, cloud_page, scene_of_model
 
     robot = model.robot
-    title = f"{robot.name}: stiffness over the workspace"
+    what = "deflection" if colour.startswith("deflection") else "stiffness"
+    title = f"{robot.name}: {what} over the workspace"
     scene = scene_of_model(model, title=title, a=pose_of(robot, pose))
-    cloud_page(page, scene, cloud_of_map(open_map(store), robot))
+    cloud_page(page, scene, cloud_of_map(open_map(store), robot, variable=colour))
 
 
 def _draw(folder: Path, store: Path, loads: tuple[LoadSummary, ...]) -> list[Path]:
@@ -287,7 +324,7 @@ def _parts(
         parts.append("Points: " + "; ".join(counts) + ".")
     rows = [
         (
-            ", ".join(f"{component:g}" for component in (load if load[3:].any() else load[:3])),
+            _load(load),
             summary.softest * 1e-6,
             _place(arm, summary.softest_at),
             summary.stiffest * 1e-6,
@@ -300,6 +337,31 @@ def _parts(
     head = ("load", "softest", "at", "stiffest", "at", "critical factor", "unstable points")
     parts.append(table("Minimum principal stiffness [N/µm] over the map", head, rows))
     return parts
+
+
+def _bent(
+    arm: ElasticArm, model: Model, loads: Array, found: tuple[LoadSummary, ...]
+) -> list[object]:
+    """The largest deflections ± for people."""
+    rows = []
+    for load, summary in zip(loads, found, strict=True):
+        if summary.deflection is None or summary.deflection_at is None:
+            continue
+        size: object = summary.deflection * 1e6
+        own, left = summary.deflection_std_parameters, summary.deflection_std_remainder
+        if own is not None:
+            size = plus_minus(summary.deflection * 1e6, float(np.hypot(own, left or 0.0)) * 1e6)
+        rows.append((_load(load), size, _place(arm, summary.deflection_at)))
+    parts: list[object] = [
+        table("Largest deflection [µm] over the map", ("load", "length", "at"), rows)
+    ]
+    if model.uncertainty is None:
+        parts += sentences(model, None, None)
+    return parts
+
+
+def _load(load: Array) -> str:
+    return ", ".join(f"{component:g}" for component in (load if load[3:].any() else load[:3]))
 
 
 def _place(arm: ElasticArm, coordinates: dict[str, float]) -> str:

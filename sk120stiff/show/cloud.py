@@ -44,6 +44,9 @@ SHOWN = {
     "mean_stiffness": ("mean stiffness", "N/µm", 1e-6),
     "critical_load_factor": ("load factor at loss of stability", "", 1.0),
     "conditioning": ("singular-value ratio", "", 1.0),
+    "deflection_length": ("deflection", "µm", 1e6),
+    "deflection_std_parameters": ("± of the deflection, from the parameters", "µm", 1e6),
+    "deflection_std_remainder": ("± of the deflection, from what is unexplained", "µm", 1e6),
 }
 
 
@@ -105,6 +108,13 @@ def cloud_of_map(
     if variable not in SHOWN:
         raise InputError(
             f"{variable!r} is not shown as points", remedy=f"Choose from {', '.join(SHOWN)}."
+        )
+    if variable not in dataset:
+        there = [name for name in SHOWN if name in dataset]
+        raise InputError(
+            f"this map holds no {variable!r}",
+            remedy=f"It holds {', '.join(there)}. Deflections need a load, and their ± a model "
+            "that 'identify' or 'explain' wrote.",
         )
     if not 0 <= load < dataset.sizes["load"]:
         raise InputError(f"the map has no load {load}", remedy=f"It has {dataset.sizes['load']}.")

@@ -9,6 +9,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError
 from sk120stiff.show.figures import definiteness_map, stiffness_slice
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
+Array = NDArray[np.float64]
 _UNITS = {"rad": "deg", "m": "mm"}  # of a map → of a figure
 
 
@@ -38,7 +40,7 @@ def axes_of_slices(dataset: xarray.Dataset) -> tuple[str, ...]:
 def figures_of_map(
     dataset: xarray.Dataset, *, load: int = 0, at: Mapping[str, float] | None = None
 ) -> list[MapFigure]:
-    """The least stiffness and the definiteness over every pair of axes.
+    """Least stiffness, definiteness, and deflection ± over every pair of axes.
 
     Parameters
     ----------
@@ -73,8 +75,53 @@ def figures_of_map(
         where = ", ".join(
             [wrench, *(f"{axis} = {_shown(dataset, axis, value)}" for axis, value in held.items())]
         )
-        figures += _slices(plane, first, second, where, place, f"load{load + 1}_{first}_{second}")
+        name = f"load{load + 1}_{first}_{second}"
+        figures += _slices(plane, first, second, where, place, name)
+        figures += _bent(plane, first, second, where, name)
     return figures
+
+
+def _bent(plane: xarray.Dataset, first: str, second: str, where: str, name: str) -> list[MapFigure]:
+    """The length of the deflection and its ±, where the map has them."""
+    if "deflection_length" not in plane:
+        return []
+    x, y = (np.asarray(plane[axis].values, dtype=float) for axis in (first, second))
+    units = (_unit(plane, first), _unit(plane, second))
+    std = deflection_std(plane)
+    quantities = [("deflection", "Deflection", np.asarray(plane["deflection_length"], float))]
+    if std is not None:
+        known = np.where(np.isfinite(std), std, np.nan)
+        quantities.append(
+            ("deflection_uncertainty", "Standard uncertainty of the deflection", known)
+        )
+    return [
+        MapFigure(
+            f"{name}_{ending}",
+            stiffness_slice(
+                x, y, values, x_label=first, y_label=second, units=units,
+                value_label=f"{ending.removeprefix('deflection_')} [µm]", scale=1e6,
+                title=f"{title}\n{fill(where + _white(values), 52)}",
+            ),
+        )
+        for ending, title, values in quantities
+    ]  # fmt: skip
+
+
+def _white(values: Array) -> str:
+    return "; white: unstable, unknown or not reached" if np.isnan(values).any() else ""
+
+
+def deflection_std(dataset: xarray.Dataset) -> Array | None:
+    """Standard uncertainty of a map's deflections, parameters and remainder together [m].
+
+    None where the map has none.
+    """
+    if "deflection_std_parameters" not in dataset:
+        return None
+    std = np.asarray(dataset["deflection_std_parameters"].values, dtype=float)
+    if "deflection_std_remainder" in dataset:
+        std = np.hypot(std, np.asarray(dataset["deflection_std_remainder"].values, dtype=float))
+    return std
 
 
 def _slices(

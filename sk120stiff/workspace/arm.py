@@ -14,9 +14,10 @@ from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.robot import LinearCoupling, Mechanism
 from sk120stiff.robot.coupling import Array
-from sk120stiff.stiffness import Weight, symmetric_part
+from sk120stiff.stiffness import CLASSES, Definiteness, Weight, symmetric_part
 from sk120stiff.stiffness.batch import StiffnessBatch, run_folded
 from sk120stiff.stiffness.lanes.folding import Fold, fold
+from sk120stiff.workspace.bending import Bending, Doubt, at_poses, bending, doubt_of
 from sk120stiff.workspace.slow import slow_batch
 
 PROBES = 16  # random poses at which the compliance is compared
@@ -67,6 +68,8 @@ class ElasticArm:
     slow
         The model, where the compiled kernel does not follow it: its compliance changes with the
         pose, is not positive in all directions, or a closed loop couples joints.
+    doubt
+        How well the springs are known; None where nothing says so.
     """
 
     name: str
@@ -81,6 +84,7 @@ class ElasticArm:
     point: Array
     weight: Weight | None = None
     slow: Model | None = None
+    doubt: Doubt | None = None
 
     @property
     def n(self) -> int:
@@ -112,6 +116,27 @@ class ElasticArm:
         if self.slow is not None:
             return slow_batch(self.slow, poses, wrench, want, self.point)
         return run_folded(self._folded, poses + self.shift[: self.n], wrench, want, threads=threads)
+
+    def bending(self, a: Array, found: StiffnessBatch, loads: Array) -> tuple[Bending, ...]:
+        """Deflections at (N, n) under loads (Q, 6).
+
+        Parameters
+        ----------
+        found
+            `batch` of the same with ``jacobian``, ``K_C`` and ``stiffness_class``.
+        """
+        soft, doubt = found.soft, self.doubt
+        if self.slow is None:
+            C = np.asarray(np.linalg.inv(self.springs[np.ix_(soft, soft)]))
+        else:
+            rest = self.slow.solve(situation_of_load(self.slow.robot, a, np.zeros(6))).rest
+            C = np.asarray(rest.compliance)[..., soft[:, None], soft]
+            doubt = None if doubt is None else at_poses(doubt, self.slow, a)
+        stable = found.of("stiffness_class") == CLASSES.index(Definiteness.POSITIVE_DEFINITE)
+        return tuple(
+            bending(found.of("jacobian"), C, K_C, soft, held, load, doubt)
+            for K_C, held, load in zip(found.of("K_C"), stable, loads, strict=True)
+        )
 
     def kinematics(self, a: Array) -> Kinematics:
         """Where the point is before it sags, and how the actuated joints move it, at (N, n)."""
@@ -191,6 +216,7 @@ def elastic_arm(
         point=at,
         weight=Weight(robot.gravity_in_base, sag[0]) if weighs else None,
         slow=None if followed else physical,
+        doubt=doubt_of(physical, probes),
     )
 
 

@@ -12,6 +12,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import CLASSES
 from sk120stiff.workspace.arm import ElasticArm
+from sk120stiff.workspace.bending import Bending
 from sk120stiff.workspace.grid import Grid
 from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 
@@ -71,6 +72,21 @@ CONDITIONING = Variable(
 DIRECTIONS = (
     Variable("softest_direction", "1", "unit vector, base axes", extra=_AXES),
     Variable("stiffest_direction", "1", "unit vector, base axes", extra=_AXES),
+)
+DEFLECTION = (
+    Variable(
+        "deflection", "m", "under the load, base axes: one step with the enhanced stiffness",
+        extra=_AXES,
+    ),
+    Variable("deflection_length", "m", "length of the deflection"),
+)  # fmt: skip
+STD_PARAMETERS = Variable(
+    "deflection_std_parameters",
+    "m",
+    "standard uncertainty of the length from that of the parameters; infinite: unknown",
+)
+STD_REMAINDER = Variable(
+    "deflection_std_remainder", "m", "standard size of what the model leaves unexplained, along it"
 )
 POSITION = Variable("position", "m", "of the point, base axes", False, extra=_AXES)
 STATUS_VARIABLE = Variable("status", "", "was the point reached", False, "u1", labels=STATUS)
@@ -225,10 +241,20 @@ class MapJob:
     with_position: bool = False
 
     @property
+    def bends(self) -> bool:
+        """Is there a load to bend the arm?"""
+        return bool(np.any(self.loads))
+
+    @property
     def variables(self) -> tuple[Variable, ...]:
         """What is stored."""
         chosen = [*STIFFNESS, CONDITIONING]
         chosen += DIRECTIONS if self.with_directions else ()
+        if self.bends:
+            doubt = self.arm.doubt
+            chosen += DEFLECTION
+            chosen += [] if doubt is None else [STD_PARAMETERS]
+            chosen += [] if doubt is None or doubt.remainder is None else [STD_REMAINDER]
         if self.points.cartesian:
             joints = Variable(
                 "joints", "rad", "coordinates (m where the joint slides)", False, "f8",
@@ -256,6 +282,7 @@ class MapJob:
         want = ["values", "critical", "stiffness_class", "complementary_class", "condition"]
         want += ["directions"] if self.with_directions else []
         want += ["position"] if self.with_position else []
+        want += ["jacobian", "K_C"] if self.bends else []
         found = self.arm.batch(a, self.loads[:, None, :], want, threads=threads)
         values = found.of("values")
         with np.errstate(divide="ignore"):
@@ -272,6 +299,8 @@ class MapJob:
         if self.with_directions:
             answers["softest_direction"] = _along(values.argmin(axis=-1), found.of("directions"))
             answers["stiffest_direction"] = _along(values.argmax(axis=-1), found.of("directions"))
+        if self.bends:
+            answers |= _deflections(self.arm.bending(a, found, self.loads))
         answers |= {"status": status, "joints": a}
         if self.with_position:
             answers["position"] = found.of("position")
@@ -285,6 +314,20 @@ class MapJob:
                 )
             answers[variable.name] = array
         return answers
+
+
+def _deflections(found: tuple[Bending, ...]) -> dict[str, Numbers]:
+    """(Q, N, …) deflections under Q loads, their lengths and ±."""
+    every = np.stack([one.deflection for one in found])
+    answers: dict[str, Numbers] = {
+        "deflection": every,
+        "deflection_length": np.linalg.norm(every, axis=-1),
+    }
+    for name in ("std_parameters", "std_remainder"):
+        parts = [getattr(one, name) for one in found]
+        if parts[0] is not None:
+            answers[f"deflection_{name}"] = np.stack(parts)
+    return answers
 
 
 def _along(which: Numbers, directions: Array) -> Array:

@@ -7,7 +7,7 @@ import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -125,6 +125,10 @@ class LoadSummary:
         Smallest critical load factor.
     unstable
         Number of points at which K_θ − K_C is not positive definite.
+    deflection, deflection_at
+        Largest length of a deflection [m] and where; None where there is no load.
+    deflection_std_parameters, deflection_std_remainder
+        Its ± there [m], infinite where unknown; None where the map has none.
     """
 
     softest: float
@@ -133,6 +137,10 @@ class LoadSummary:
     stiffest_at: dict[str, float]
     critical: float
     unstable: int
+    deflection: float | None = None
+    deflection_at: dict[str, float] | None = None
+    deflection_std_parameters: float | None = None
+    deflection_std_remainder: float | None = None
 
 
 def summarise_map(path: str | os.PathLike[str]) -> tuple[tuple[LoadSummary, ...], dict[str, int]]:
@@ -166,6 +174,7 @@ class _Extremes:
         self.high: tuple[float, dict[str, float]] = (-math.inf, {})
         self.critical = math.inf
         self.unstable = 0
+        self.bent: dict[str, Any] = {}
 
     def take(self, chunk: xarray.Dataset, axes: list[str]) -> None:
         values = chunk["minimum_stiffness"].values
@@ -182,11 +191,26 @@ class _Extremes:
                     self.low = (value, at)
                 else:
                     self.high = (value, at)
+        self._bend(chunk, axes)
         self.critical = min(self.critical, float(np.nanmin(chunk["critical_load_factor"].values)))
         stability = chunk["stability"].values
         self.unstable += int(((stability != 0) & (stability != UNKNOWN_CLASS)).sum())
 
+    def _bend(self, chunk: xarray.Dataset, axes: list[str]) -> None:
+        if "deflection_length" not in chunk:
+            return
+        lengths = chunk["deflection_length"].values
+        if not np.isfinite(lengths).any():
+            return
+        where = np.unravel_index(int(np.nanargmax(lengths)), lengths.shape)
+        if float(lengths[where]) <= self.bent.get("deflection", 0.0):
+            return
+        at = {axis: float(chunk[axis].values[k]) for axis, k in zip(axes, where, strict=True)}
+        self.bent = {"deflection": float(lengths[where]), "deflection_at": at}
+        for name in ("deflection_std_parameters", "deflection_std_remainder"):
+            if name in chunk:
+                self.bent[name] = float(chunk[name].values[where])
+
     def summary(self) -> LoadSummary:
-        return LoadSummary(
-            self.low[0], self.low[1], self.high[0], self.high[1], self.critical, self.unstable
-        )
+        extremes = (*self.low, *self.high)
+        return LoadSummary(*extremes, self.critical, self.unstable, **self.bent)

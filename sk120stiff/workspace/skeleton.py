@@ -19,7 +19,7 @@ from sk120stiff.workspace.grid import Chunks
 
 IDENTITY = "identity.json"
 OURS = "sk120stiff map"
-VERSION = 2  # of the layout and of what the numbers mean
+VERSION = 3  # of the layout and of what the numbers mean
 
 
 def write_skeleton(folder: Path, job: MapJob, chunks: Chunks) -> tuple[str, ...]:
@@ -77,6 +77,7 @@ def identity_of(job: MapJob, chunks: Chunks) -> str:
         job.loads, [variable.name for variable in job.variables],
         chunks.chunk_shape,
         arm.slow.values if arm.slow else None,
+        arm.doubt.identity if arm.doubt else None,
         (arm.weight.gravity, arm.weight.compliance, chain.masses, chain.centres)
         if arm.weight
         else None,

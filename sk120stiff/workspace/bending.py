@@ -1,0 +1,158 @@
+"""How far the points of a map bend under its loads, ± what the model knows of its own uncertainty.
+
+One step from the unloaded pose with the enhanced stiffness, as `deflection_enhanced` of
+`loaded_stiffness`: with the compliance C of the coordinates, N = I − C K_C and τ = JᵀW,
+
+    d = J N⁻¹ C τ,        ∂d/∂p = J N⁻¹ (∂C/∂p) (τ + K_C N⁻¹ C τ).
+
+It lacks the curvature of the path, ½ δᵀ H δ: parts in a thousand at usual loads. Coordinates that
+the model holds rigid may yield within their uncertainty; K_C is left out in those alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.effects import situation_of_load
+from sk120stiff.model import Model, Remainder
+from sk120stiff.model.uncertainty import spread
+from sk120stiff.robot.coupling import Array
+
+STEP = 1e-3  # of a usual size; compliances are linear in their parameters
+
+
+@dataclass(frozen=True, eq=False)
+class Doubt:
+    """The uncertainty of an arm, as arrays that can be sent anywhere.
+
+    Attributes
+    ----------
+    seen, unseen
+        (P, r) and (P, b) factors of `Uncertainty.factors`.
+    changes
+        (P, n_z, n_z) derivative of the compliance of the coordinates by the parameters, or
+        (P, N, n_z, n_z) where it changes with the pose.
+    noise
+        Of one reading [m].
+    remainder
+        What the model leaves unexplained; None: not known.
+    """
+
+    seen: Array
+    unseen: Array
+    changes: Array
+    noise: float
+    remainder: Remainder | None
+
+    @property
+    def identity(self) -> tuple[object, ...]:
+        """What makes it another; the derivatives follow from the arm, but for rounding."""
+        left = self.remainder
+        sizes = None if left is None else (left.upper, left.load, left.grows, left.significant)
+        return self.seen, self.unseen, self.noise, sizes
+
+
+@dataclass(frozen=True, eq=False)
+class Bending:
+    """Deflection of N points under one load.
+
+    Attributes
+    ----------
+    deflection
+        (N, 3) base axes [m]; NaN where the arm is not stable under the load.
+    std_parameters, std_remainder
+        (N,) standard uncertainty of its length [m]; infinite: unknown, NaN: no deflection. None
+        where nothing is known.
+    """
+
+    deflection: Array
+    std_parameters: Array | None
+    std_remainder: Array | None
+
+
+def doubt_of(model: Model, poses: Array) -> Doubt | None:
+    """The uncertainty of a physical model whose compliance is that at the first of poses (M, n).
+
+    None if the model has none. See `at_poses` for a compliance that changes with the pose.
+    """
+    known = model.uncertainty
+    if known is None:
+        return None
+    return Doubt(
+        *known.factors(model.names), _changes(model, poses[:1]), known.noise, known.remainder
+    )
+
+
+def at_poses(doubt: Doubt, model: Model, poses: Array) -> Doubt:
+    """The same with the derivatives at poses (N, n), for compliances that change with the pose."""
+    return Doubt(doubt.seen, doubt.unseen, _changes(model, poses), doubt.noise, doubt.remainder)
+
+
+def _changes(model: Model, poses: Array) -> Array:
+    situation = situation_of_load(model.robot, poses, np.zeros(6))
+    changes = []
+    for k, parameter in enumerate(model.parameters):
+        step = STEP * max(abs(parameter.value), parameter.spec.typical)
+        ends = []
+        for side in (step, -step):
+            values = model.values.copy()
+            values[k] += side
+            ends.append(np.asarray(model.solve(situation, values).rest.compliance))
+        changes.append((ends[0] - ends[1]) / (2.0 * step))
+    n = model.assembly.mechanism.n
+    stacked = np.array(changes).reshape(len(changes), -1, n, n)
+    return np.asarray(stacked[:, 0] if stacked.shape[1] == 1 else stacked)
+
+
+def bending(
+    jacobian: Array,
+    C: Array,
+    K_C: Array,
+    soft: NDArray[np.int64],
+    stable: NDArray[np.bool_],
+    wrench: Array,
+    doubt: Doubt | None,
+) -> Bending:
+    """Deflections at N poses under one wrench (6,), ± their uncertainty.
+
+    Parameters
+    ----------
+    jacobian
+        (N, 6, n_z) of the point by all coordinates, base axes.
+    C
+        (s, s) or (N, s, s) compliance of the soft coordinates.
+    K_C
+        (N, s, s) complementary stiffness of the load.
+    soft
+        (s,) indices of the soft coordinates.
+    stable
+        (N,) is K_θ − K_C positive definite?
+    wrench
+        Force [N] and moment [N·m] at the point.
+    doubt
+        What is uncertain; None: not known.
+    """
+    torque = np.einsum("nij,i->nj", jacobian, wrench)
+    J = jacobian[:, :3]
+    newton = np.eye(len(soft)) - C @ K_C
+    newton = np.where(stable[:, None, None], newton, np.eye(len(soft)))  # not looked at
+    z = np.linalg.solve(newton, (C @ torque[:, soft, None]))[..., 0]
+    d = np.einsum("nij,nj->ni", J[..., soft], z)
+    d[~stable] = np.nan
+    if doubt is None:
+        return Bending(d, None, None)
+    length = np.linalg.norm(d, axis=1)
+    along = d / np.where(length > 0.0, length, 1.0)[:, None]
+    pull = np.einsum("ni,nij->nj", along, J)  # what the load of one along d does
+    pull[:, soft] = np.linalg.solve(np.swapaxes(newton, -1, -2), pull[:, soft, None])[..., 0]
+    torque[:, soft] += np.einsum("nij,nj->ni", K_C, z)
+    changes = doubt.changes if doubt.changes.ndim == 4 else doubt.changes[:, None]
+    by_parameter = ((pull[:, None] @ changes)[..., 0, :] * torque).sum(axis=-1).T  # (N, P)
+    std = spread(by_parameter @ doubt.seen, by_parameter @ doubt.unseen, doubt.noise)
+    left = None
+    if doubt.remainder is not None:
+        left = np.sqrt(np.einsum("ni,i->n", along**2, doubt.remainder.std(wrench) ** 2))
+    return Bending(d, np.where(stable, std, np.nan), left)
