@@ -292,7 +292,7 @@ def findings(answer: Explanation) -> list[str]:
             own = [largest]
         for p in own:
             value = with_error(p.public_value, p.public_std, p.spec.unit)
-            lines.append(f"  {p.spec.name} {value}")
+            lines.append(f"  {p.spec.name} {value} ({p.spec.meaning})")
         evidence = finding.evidence
         if evidence.runner_up is not None:
             worse = f"worse by {evidence.runner_up_gap:.0f} (BIC; {STRONG} is strong)"

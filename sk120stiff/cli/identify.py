@@ -170,6 +170,7 @@ def parameter_rows(
             "value": p.public_value if shown else None,
             "std": p.public_std if shown else None,
             "unit": p.spec.unit,
+            "meaning": p.spec.meaning,
             "interval_95": ends[k],
             "start": p.spec.public(float(starts[k])),
             "at_bound": bool(found.at_bound[k]),

@@ -28,6 +28,7 @@ COMMANDS = {
     "identify": "Spring values and their uncertainty from measured deflections.",
     "predict": "Predicted displacement of every reading ± its uncertainty, and the gap to it.",
     "explain": "What is missing when simulation and measurement disagree.",
+    "effects": "What every effect and its numbers mean: law, axes, sign, unit.",
     "plan": "The poses and loads to measure next.",
     "simulate": "Synthetic measurements from a model: loads, noise, zeros.",
     "import": "A calibration file of marker positions as measurements.",

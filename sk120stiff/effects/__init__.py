@@ -10,14 +10,15 @@ from sk120stiff.effects.base import (
     LinearElastic,
     LoadError,
     Options,
-    ParameterSpec,
     ReadingError,
     Switching,
 )
 from sk120stiff.effects.catalogue import BY_NAME, CATALOGUE, all_effects, effect
 from sk120stiff.effects.declared import declared_aliases
+from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.effects.situation import Situation, situation_of, situation_of_load
+from sk120stiff.effects.words import EffectWords, catalogue_words, comment_lines, words_of
 
 __all__ = [
     "BY_NAME",
@@ -25,6 +26,7 @@ __all__ = [
     "Alias",
     "AliasClasses",
     "Effect",
+    "EffectWords",
     "Elastic",
     "Elongation",
     "FirstOrder",
@@ -38,9 +40,12 @@ __all__ = [
     "Switching",
     "alias_classes",
     "all_effects",
+    "catalogue_words",
+    "comment_lines",
     "declared_aliases",
     "effect",
     "generic_readings",
     "situation_of",
     "situation_of_load",
+    "words_of",
 ]

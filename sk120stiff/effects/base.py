@@ -18,116 +18,18 @@ So a misread force can never pose as a spring. Adding an effect is one new file 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Self
 
 import numpy as np
 
+from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.coupling import Array
-
-REFERENCE_LENGTH = 2.87  # m; arms of this size are what usual sizes are stated for
-
-
-@dataclass(frozen=True)
-class ParameterSpec:
-    """One parameter of an effect.
-
-    The law works with an internal value that is zero when the effect is absent (a compliance). What
-    people write and read may be its reciprocal (a stiffness): `public` and `internal` convert.
-
-    Attributes
-    ----------
-    name
-        Short name, unique within the effect.
-    unit
-        SI unit of the public value, e.g. ``N*m/rad``.
-    internal_unit
-        SI unit of the internal value.
-    reciprocal
-        The public value is one over the internal one.
-    lower, upper
-        Physical bounds of the internal value.
-    plausible
-        Internal magnitude above which the value is no explanation, however well it fits.
-    typical
-        Internal magnitude worth telling from zero; scales numerics and detectable sizes.
-    """
-
-    name: str
-    unit: str
-    internal_unit: str
-    plausible: float
-    typical: float
-    reciprocal: bool = False
-    lower: float = -np.inf
-    upper: float = np.inf
-
-    def public(self, internal: float) -> float:
-        """The value as people write it; infinite stiffness where nothing yields."""
-        if not self.reciprocal:
-            return internal
-        return float(np.inf) if internal == 0.0 else 1.0 / internal
-
-    def internal(self, public: float) -> float:
-        """The value as the law uses it."""
-        if not self.reciprocal:
-            return public
-        return 0.0 if np.isinf(public) else 1.0 / public
-
-    def public_std(self, internal: float, std: float) -> float:
-        """Standard error of the public value, to first order."""
-        if not self.reciprocal:
-            return std
-        return float(np.inf) if internal == 0.0 else std / internal**2
-
-
-#: public unit → internal unit, and the power of an arm's length with which a stiffness grows when
-#: the whole arm is drawn larger in the same material
-_STIFFNESS = {
-    "N*m/rad": ("rad/(N*m)", 3),
-    "N/m": ("m/N", 1),
-    "N*m**2": ("1/(N*m**2)", 4),
-}
-
-
-def compliance(
-    name: str,
-    *,
-    softest: float,
-    typical: float,
-    scale: float,
-    unit: str = "N*m/rad",
-    signed: bool = False,
-) -> ParameterSpec:
-    """A compliance that people give as a stiffness.
-
-    Parameters
-    ----------
-    softest, typical
-        Stiffness [unit] below which the value is implausible, and one that is often met, on an arm
-        of `REFERENCE_LENGTH`.
-    scale
-        Length of the arm over `REFERENCE_LENGTH`.
-    unit
-        ``N*m/rad``, ``N/m`` or ``N*m**2`` (beams).
-    signed
-        May be negative (a cross term).
-    """
-    inverse, power = _STIFFNESS[unit]
-    return ParameterSpec(
-        name=name,
-        unit=unit,
-        internal_unit=inverse,
-        plausible=1.0 / (softest * scale**power),
-        typical=1.0 / (typical * scale**power),
-        reciprocal=True,
-        lower=-np.inf if signed else 0.0,
-    )
 
 
 @dataclass(frozen=True)
@@ -182,6 +84,15 @@ class Effect(ABC):
     ----------
     name
         Public identifier (class attribute).
+    place
+        What `where` names, in words (class attribute).
+    equation
+        The law, in symbols that `axes` and the parameters' meanings explain (class attribute).
+    axes
+        The frame in which its parameters are stated (class attribute).
+    former
+        Names under which files of earlier versions hold a parameter with the other sign, and its
+        name now (class attribute).
     exchangeable
         The parameters are draws of one size (class attribute).
     bends_a_spring
@@ -198,6 +109,10 @@ class Effect(ABC):
     scale: float = 1.0
 
     name: ClassVar[str]
+    place: ClassVar[str]
+    equation: ClassVar[str]
+    axes: ClassVar[str]
+    former: ClassVar[Mapping[str, str]] = {}
     exchangeable: ClassVar[bool] = False
     bends_a_spring: ClassVar[bool] = False
     inexact: ClassVar[float] = 0.0
@@ -206,6 +121,11 @@ class Effect(ABC):
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The effect at one place of a robot."""
         return cls(where, scale_of(robot))
+
+    @classmethod
+    def sample(cls) -> Self:
+        """The effect at no place in particular, to be described."""
+        return cls(cls.place)
 
     @property
     def id(self) -> str:

@@ -82,11 +82,7 @@ def effect(
         No such effect, or it cannot act there; what exists is listed.
     """
     if name not in BY_NAME:
-        close = get_close_matches(name, BY_NAME, n=1)
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
-        raise InputError(
-            f"there is no effect {name!r}{hint}", remedy=f"Effects are: {', '.join(BY_NAME)}."
-        )
+        raise unknown_effect(name)
     kind = BY_NAME[name]
     places = kind.places(robot)
     if where is None and len(places) == 1:
@@ -97,6 +93,15 @@ def effect(
             remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
         )
     return kind.at(robot, where, Options(tuple(poses), timed, tuple(breaks)))
+
+
+def unknown_effect(name: str) -> InputError:
+    """What to say of a name that is no effect's."""
+    close = get_close_matches(name, BY_NAME, n=1)
+    hint = f" (did you mean {close[0]!r}?)" if close else ""
+    return InputError(
+        f"there is no effect {name!r}{hint}", remedy=f"Effects are: {', '.join(BY_NAME)}."
+    )
 
 
 def all_effects(

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.base import LinearElastic
+from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
@@ -21,12 +22,22 @@ class ClosureCoupling(LinearElastic):
     """Torque on one motor moves the other: a cross term c₂₃ between two joint compliances."""
 
     name: ClassVar[str] = "closure_coupling"
+    place: ClassVar[str] = "one motor,another"
+    equation: ClassVar[str] = "q_1 += c * torque_2, q_2 += c * torque_1"
+    axes: ClassVar[str] = "axes of the two joints"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """The cross compliance, given as its reciprocal; it may have either sign."""
         return (
-            compliance("cross_stiffness", softest=2e5, typical=1e7, scale=self.scale, signed=True),
+            compliance(
+                "cross_stiffness",
+                softest=2e5,
+                typical=1e7,
+                scale=self.scale,
+                signed=True,
+                meaning="1 / c; positive where a torque on one moves the other the positive way",
+            ),
         )
 
     def sentence(self) -> str:
@@ -57,11 +68,25 @@ class ClosureRod(LinearElastic):
     """
 
     name: ClassVar[str] = "closure_rod"
+    place: ClassVar[str] = "rod"
+    equation: ClassVar[str] = (
+        "crank angle = torque / (K * (r sin g)^2), r the crank, g its angle to the rod"
+    )
+    axes: ClassVar[str] = "along the rod"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Axial stiffness of the rod, EA/L for a plain one, with its pins."""
-        return (compliance("stiffness", softest=3e6, typical=7e7, scale=self.scale, unit="N/m"),)
+        return (
+            compliance(
+                "stiffness",
+                softest=3e6,
+                typical=7e7,
+                scale=self.scale,
+                unit="N/m",
+                meaning="force per length by which the rod stretches, its pins included",
+            ),
+        )
 
     def sentence(self) -> str:
         """What happens."""

@@ -1,7 +1,11 @@
-"""The force sensor misreads. Everything is stated in the sensor's axes, those of the tool frame."""
+"""The force sensor misreads. Everything is stated in the sensor's axes, those of the tool frame.
+
+An error of the sensor is what it adds to the truth: reported minus true.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import permutations
@@ -9,7 +13,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError, ParameterSpec
+from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError
+from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
@@ -31,16 +36,25 @@ class ForceSensorEffect(LoadError):
 
 @dataclass(frozen=True)
 class ForceScale(ForceSensorEffect):
-    """Each force axis has a gain of its own."""
+    """Each force axis reads too much or too little by a share of its own."""
 
     name: ClassVar[str] = "force_scale"
+    former: ClassVar[Mapping[str, str]] = {f"gain_{axis}": f"scale_{axis}" for axis in AXES}
+    place: ClassVar[str] = "sensor"
+    equation: ClassVar[str] = "F_reported - F_true = s * F_reported, axis by axis"
+    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Relative gain errors of the three force axes."""
+        """Relative errors of the three force axes."""
         return tuple(
-            ParameterSpec(f"gain_{axis}", "1", "1", plausible=0.12, typical=0.01) for axis in AXES
-        )
+            ParameterSpec(
+                f"scale_{axis}", "1", "1", plausible=0.12, typical=0.01,
+                meaning=f"(reported - true) / reported force along {axis} of the tool frame; "
+                "positive: the sensor reads too much",
+            )
+            for axis in AXES
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -66,9 +80,9 @@ class ForceScale(ForceSensorEffect):
 
     @cached_property
     def generators(self) -> Array:
-        """One diagonal element of the force each."""
+        """One diagonal element of the force each: what the sensor adds is taken away."""
         out = np.zeros((3, 6, 6))
-        out[range(3), range(3), range(3)] = 1.0
+        out[range(3), range(3), range(3)] = -1.0
         return out
 
 
@@ -77,15 +91,23 @@ class ForceBias(ForceSensorEffect):
     """The sensor adds a constant force that the unloaded reading did not have."""
 
     name: ClassVar[str] = "force_bias"
+    former: ClassVar[Mapping[str, str]] = {f"force_{axis}": f"offset_{axis}" for axis in AXES}
+    place: ClassVar[str] = "sensor"
+    equation: ClassVar[str] = "F_reported - F_true = b, under load alone"
+    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """True force where the sensor reads zero."""
+        """What the sensor adds to the true force."""
         size = self.scale**2
         return tuple(
-            ParameterSpec(f"force_{axis}", "N", "N", plausible=50.0 * size, typical=5.0 * size)
+            ParameterSpec(
+                f"offset_{axis}", "N", "N", plausible=50.0 * size, typical=5.0 * size,
+                meaning=f"reported minus true force along {axis} of the tool frame; positive: the "
+                "sensor reads too much",
+            )
             for axis in AXES
-        )
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -97,8 +119,8 @@ class ForceBias(ForceSensorEffect):
         return np.zeros((3, 6, 6))
 
     def offsets(self, situation: Situation) -> Array:
-        """A unit force along each sensor axis."""
-        return np.broadcast_to(np.eye(6)[:, :3], (situation.count, 6, 3))
+        """A unit force along each sensor axis, taken away."""
+        return np.broadcast_to(-np.eye(6)[:, :3], (situation.count, 6, 3))
 
 
 @dataclass(frozen=True)
@@ -106,14 +128,21 @@ class ForceRotation(ForceSensorEffect):
     """The sensor is mounted turned by a small angle: W_true = W + φ × W."""
 
     name: ClassVar[str] = "force_rotation"
+    place: ClassVar[str] = "sensor"
+    equation: ClassVar[str] = "F_true = F_reported + a x F_reported, and moments alike"
+    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Mounting angles about the sensor axes."""
         return tuple(
-            ParameterSpec(f"angle_{axis}", "rad", "rad", plausible=0.15, typical=0.0175)
+            ParameterSpec(
+                f"angle_{axis}", "rad", "rad", plausible=0.15, typical=0.0175,
+                meaning=f"angle about {axis} of the tool frame by which the sensor is mounted "
+                "turned, right-handed",
+            )
             for axis in AXES
-        )
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -133,14 +162,24 @@ class ForceCrosstalk(ForceSensorEffect):
     """A force along one sensor axis shows on another."""
 
     name: ClassVar[str] = "force_crosstalk"
+    former: ClassVar[Mapping[str, str]] = {
+        f"{source}_to_{target}": f"{source}_on_{target}" for source, target in permutations(AXES, 2)
+    }
+    place: ClassVar[str] = "sensor"
+    equation: ClassVar[str] = "F_reported - F_true on one axis = c * F_reported along another"
+    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Share of each axis's reading that is added to another's."""
+        """Share of each axis's force that the sensor adds to another's."""
         return tuple(
-            ParameterSpec(f"{source}_to_{target}", "1", "1", plausible=0.12, typical=0.01)
+            ParameterSpec(
+                f"{source}_on_{target}", "1", "1", plausible=0.12, typical=0.01,
+                meaning=f"share of the reported force along {source} that the sensor adds along "
+                f"{target} (tool frame)",
+            )
             for source, target in permutations(AXES, 2)
-        )
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -148,8 +187,8 @@ class ForceCrosstalk(ForceSensorEffect):
 
     @cached_property
     def generators(self) -> Array:
-        """One element off the diagonal each."""
+        """One element off the diagonal each: what the sensor adds is taken away."""
         out = np.zeros((6, 6, 6))
         for k, (source, target) in enumerate(permutations(range(3), 2)):
-            out[k, target, source] = 1.0
+            out[k, target, source] = -1.0
         return out

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import ONE_WAY, Alias, LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.base import ONE_WAY, Alias, LinearElastic
+from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.coupling import Array
@@ -23,14 +24,31 @@ class BaseRocking(LinearElastic):
     """
 
     name: ClassVar[str] = "base_rocking"
+    place: ClassVar[str] = "the base frame"
+    equation: ClassVar[str] = "turn = moment / K, about x and about y"
+    axes: ClassVar[str] = (
+        "axes of the base frame through the foundation point; z is the normal of the floor"
+    )
     one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Rocking stiffness about x and about y."""
         return (
-            compliance("stiffness_x", softest=3e5, typical=1e7, scale=self.scale),
-            compliance("stiffness_y", softest=3e5, typical=1e7, scale=self.scale),
+            compliance(
+                "stiffness_x",
+                softest=3e5,
+                typical=1e7,
+                scale=self.scale,
+                meaning="against rocking about x of the base frame",
+            ),
+            compliance(
+                "stiffness_y",
+                softest=3e5,
+                typical=1e7,
+                scale=self.scale,
+                meaning="against rocking about y of the base frame",
+            ),
         )
 
     @property
@@ -66,13 +84,23 @@ class BaseSliding(LinearElastic):
     """The base shifts along the axes of the base frame."""
 
     name: ClassVar[str] = "base_sliding"
+    place: ClassVar[str] = "the base frame"
+    equation: ClassVar[str] = "shift = force / K, along x, y and z"
+    axes: ClassVar[str] = "axes of the base frame"
     one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Stiffness against shifting along x, y and z."""
         return tuple(
-            compliance(f"stiffness_{label}", softest=2e6, typical=7e7, scale=self.scale, unit="N/m")
+            compliance(
+                f"stiffness_{label}",
+                softest=2e6,
+                typical=7e7,
+                scale=self.scale,
+                unit="N/m",
+                meaning=f"against shifting along {label} of the base frame",
+            )
             for label in "xyz"
         )
 

@@ -14,10 +14,10 @@ from sk120stiff.effects.base import (
     Elastic,
     Elongation,
     Options,
-    ParameterSpec,
     Switching,
     scale_of,
 )
+from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
@@ -68,6 +68,9 @@ class GearHardening(GearEffect):
 
     breaks: tuple[float, ...] = ()
     name: ClassVar[str] = "gear_hardening"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3"
+    axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
     bends_a_spring: ClassVar[bool] = True
 
     @classmethod
@@ -84,7 +87,7 @@ class GearHardening(GearEffect):
             return tuple(
                 ParameterSpec(
                     f"{BELOW}{torque:g}", unit, unit, plausible=1e-4 * size, typical=5e-7 * size,
-                    lower=0.0,
+                    lower=0.0, meaning=f"extra compliance while the torque is below {torque:g} N*m",
                 )
                 for torque in self.breaks
             )  # fmt: skip
@@ -92,10 +95,11 @@ class GearHardening(GearEffect):
         return (
             ParameterSpec(
                 "quadratic", square, square, plausible=1e-8 * size**2, typical=3e-10 * size**2,
-                lower=0.0,
+                lower=0.0, meaning="k2; positive: stiffer as the torque grows",
             ),
             ParameterSpec(
-                "cubic", cube, cube, plausible=1e-11 * size**3, typical=3e-13 * size**3
+                "cubic", cube, cube, plausible=1e-11 * size**3, typical=3e-13 * size**3,
+                meaning="k3; positive: stiffer as the torque grows",
             ),
         )  # fmt: skip
 
@@ -143,11 +147,26 @@ class LostMotion(GearEffect, Switching):
     """e = b [sign(τ + τ_g) − sign(τ_g)]: the play is crossed when the total torque turns round."""
 
     name: ClassVar[str] = "lost_motion"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = (
+        "q - q_0 = torque / K + b * (sign(torque) - sign(torque of the weight))"
+    )
+    axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Half width b of the play."""
-        return (ParameterSpec("half_width", "rad", "rad", plausible=1e-3, typical=1e-4, lower=0.0),)
+        return (
+            ParameterSpec(
+                "half_width",
+                "rad",
+                "rad",
+                plausible=1e-3,
+                typical=1e-4,
+                lower=0.0,
+                meaning="b, half the play: the joint jumps by 2 b when its torque turns round",
+            ),
+        )
 
     def sentence(self) -> str:
         """What happens."""
@@ -164,11 +183,26 @@ class FrictionHysteresis(GearEffect, Switching):
     """e = ∓h sign(τ): friction holds the joint back while the load grows, and up while it falls."""
 
     name: ClassVar[str] = "friction_hysteresis"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = (
+        "q - q_0 = torque / K - h * sign(torque) while loading, + h * sign(torque) while unloading"
+    )
+    axes: ClassVar[str] = "the axis of the joint itself"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Half width h of the loop."""
-        return (ParameterSpec("half_width", "rad", "rad", plausible=5e-4, typical=5e-5, lower=0.0),)
+        return (
+            ParameterSpec(
+                "half_width",
+                "rad",
+                "rad",
+                plausible=5e-4,
+                typical=5e-5,
+                lower=0.0,
+                meaning="h, half the width of the loop",
+            ),
+        )
 
     def sentence(self) -> str:
         """What happens."""

@@ -7,14 +7,19 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import Geometric, Options, ParameterSpec, scale_of
+from sk120stiff.effects.base import Geometric, Options, scale_of
+from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, arm_links
 
+STANDS = "true minus reported coordinate; positive: the joint stands further than it reads"
 
-def length_error(name: str, *, typical: float, scale: float) -> ParameterSpec:
+
+def length_error(name: str, *, typical: float, scale: float, meaning: str) -> ParameterSpec:
     """An error of a length [m]; `typical` on an arm of the reference length."""
-    return ParameterSpec(name, "m", "m", plausible=0.02 * scale, typical=typical * scale)
+    return ParameterSpec(
+        name, "m", "m", plausible=0.02 * scale, typical=typical * scale, meaning=meaning
+    )
 
 
 @dataclass(frozen=True)
@@ -23,13 +28,18 @@ class JointOffset(Geometric):
 
     slides: bool = False
     name: ClassVar[str] = "joint_offset"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = "q_true = q_reported + o"
+    axes: ClassVar[str] = "the axis of the joint itself"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True coordinate minus reading."""
         if self.slides:
-            return (length_error("offset", typical=1e-3, scale=self.scale),)
-        return (ParameterSpec("offset", "rad", "rad", plausible=0.02, typical=1e-3),)
+            return (length_error("offset", typical=1e-3, scale=self.scale, meaning=STANDS),)
+        return (
+            ParameterSpec("offset", "rad", "rad", plausible=0.02, typical=1e-3, meaning=STANDS),
+        )
 
     def sentence(self) -> str:
         """What happens."""
@@ -56,12 +66,21 @@ class ToolOffset(Geometric):
     """The measured point (and the force with it) sits elsewhere in the tool frame."""
 
     name: ClassVar[str] = "tool_offset"
+    place: ClassVar[str] = "the tool frame"
+    equation: ClassVar[str] = "p_true = p_stated + o"
+    axes: ClassVar[str] = "axes of the tool frame"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True position minus stated position of the point, tool axes."""
         return tuple(
-            length_error(f"offset_{axis}", typical=2e-3, scale=self.scale) for axis in "xyz"
+            length_error(
+                f"offset_{axis}",
+                typical=2e-3,
+                scale=self.scale,
+                meaning=f"true minus stated place along {axis} of the tool frame",
+            )
+            for axis in "xyz"
         )
 
     def sentence(self) -> str:
@@ -89,11 +108,18 @@ class LinkLength(Geometric):
     """A link is longer or shorter than stated."""
 
     name: ClassVar[str] = "link_length"
+    place: ClassVar[str] = "a link"
+    equation: ClassVar[str] = "length_true = length_stated + o"
+    axes: ClassVar[str] = "the line from the link's joint to the next"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True length minus stated length."""
-        return (length_error("offset", typical=2e-3, scale=self.scale),)
+        return (
+            length_error(
+                "offset", typical=2e-3, scale=self.scale, meaning="true minus stated length"
+            ),
+        )
 
     def sentence(self) -> str:
         """What happens."""

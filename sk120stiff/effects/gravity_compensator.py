@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, ParameterSpec
+from sk120stiff.effects.base import LinearElastic
+from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joint, arm_joints, sample_poses
@@ -23,6 +24,11 @@ class GravityCompensator(LinearElastic):
     """
 
     name: ClassVar[str] = "gravity_compensator"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = (
+        "q - q_0 = torque * (1 / K - g * cos(angle of the link from the vertical))"
+    )
+    axes: ClassVar[str] = "the axis of the joint itself"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -31,7 +37,12 @@ class GravityCompensator(LinearElastic):
         size = self.scale**-3
         return (
             ParameterSpec(
-                "compliance_drop", unit, unit, plausible=5e-7 * size, typical=1e-7 * size
+                "compliance_drop",
+                unit,
+                unit,
+                plausible=5e-7 * size,
+                typical=1e-7 * size,
+                meaning="g; positive where the joint is stiffer with its link upright",
             ),
         )
 

@@ -7,10 +7,13 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, Options, ParameterSpec, compliance, scale_of
+from sk120stiff.effects.base import LinearElastic, Options, scale_of
+from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
+
+MEANING = "torque per angle (force per way) by which the drive yields; larger is stiffer"
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,9 @@ class JointSprings(LinearElastic):
 
     slides: bool = False
     name: ClassVar[str] = "joint_springs"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = "q - q_0 = torque / K"
+    axes: ClassVar[str] = "the axis of the joint itself"
     one_axis_each: ClassVar[bool] = True
 
     @property
@@ -29,9 +35,18 @@ class JointSprings(LinearElastic):
         """The spring's stiffness."""
         if self.slides:
             return (
-                compliance("stiffness", softest=1e4, typical=1e7, scale=self.scale, unit="N/m"),
+                compliance(
+                    "stiffness",
+                    softest=1e4,
+                    typical=1e7,
+                    scale=self.scale,
+                    unit="N/m",
+                    meaning=MEANING,
+                ),
             )
-        return (compliance("stiffness", softest=1e3, typical=1e6, scale=self.scale),)
+        return (
+            compliance("stiffness", softest=1e3, typical=1e6, scale=self.scale, meaning=MEANING),
+        )
 
     def sentence(self) -> str:
         """What happens."""

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance, unit_vectors
+from sk120stiff.effects.base import LinearElastic, unit_vectors
+from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, arm_joints
@@ -22,14 +23,31 @@ class JointTilt(LinearElastic):
     """
 
     name: ClassVar[str] = "joint_tilt"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = "tilt = moment / K, about each of two axes"
+    axes: ClassVar[str] = (
+        "axes through the joint, normal to its own: along the link that it carries, and across it"
+    )
     one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Tilt stiffness about the link's direction and across it."""
         return (
-            compliance("stiffness_along", softest=3e5, typical=1e7, scale=self.scale),
-            compliance("stiffness_across", softest=3e5, typical=1e7, scale=self.scale),
+            compliance(
+                "stiffness_along",
+                softest=3e5,
+                typical=1e7,
+                scale=self.scale,
+                meaning="against tilting about the direction of the link",
+            ),
+            compliance(
+                "stiffness_across",
+                softest=3e5,
+                typical=1e7,
+                scale=self.scale,
+                meaning="against tilting about the axis across link and joint axis",
+            ),
         )
 
     @property

@@ -12,7 +12,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic
+from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, sample_poses
@@ -51,12 +52,24 @@ class LinkBending(LinearElastic):
     """
 
     name: ClassVar[str] = "link_bending"
+    place: ClassVar[str] = "a link"
+    equation: ClassVar[str] = "curvature(s) = M(s) / EI(s), slimmer at the far end"
+    axes: ClassVar[str] = "the line from the link's joint to the next; both planes that hold it"
     inexact: ClassVar[float] = 0.14  # links taper more or less
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Bending stiffness EI."""
-        return (compliance("EI", softest=3e5, typical=7e6, scale=self.scale, unit="N*m**2"),)
+        return (
+            compliance(
+                "EI",
+                softest=3e5,
+                typical=7e6,
+                scale=self.scale,
+                unit="N*m**2",
+                meaning="bending stiffness of the uniform beam whose end a moment turns as far",
+            ),
+        )
 
     def sentence(self) -> str:
         """What happens."""
@@ -120,12 +133,26 @@ class LinkTorsion(LinearElastic):
     """A shaft of torsional stiffness GJ along the link."""
 
     name: ClassVar[str] = "link_torsion"
+    place: ClassVar[str] = "a link"
+    equation: ClassVar[str] = "twist = moment * length / GJ"
+    axes: ClassVar[str] = (
+        "the line of the link, or the next joint's axis where the link is its shaft"
+    )
     one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Torsional stiffness GJ."""
-        return (compliance("GJ", softest=5e4, typical=4e6, scale=self.scale, unit="N*m**2"),)
+        return (
+            compliance(
+                "GJ",
+                softest=5e4,
+                typical=4e6,
+                scale=self.scale,
+                unit="N*m**2",
+                meaning="torsional stiffness over the whole length",
+            ),
+        )
 
     def sentence(self) -> str:
         """What happens."""

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.base import LinearElastic, ParameterSpec, compliance
+from sk120stiff.effects.base import LinearElastic
+from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.coupling import Array
@@ -21,18 +22,32 @@ class ToolCompliance(LinearElastic):
     """
 
     name: ClassVar[str] = "tool_compliance"
+    place: ClassVar[str] = "the tool frame"
+    equation: ClassVar[str] = "turn = moment / K and shift = force / K, axis by axis"
+    axes: ClassVar[str] = "axes of the tool frame, at its origin"
     one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Stiffness against turning about x, y, z and against shifting along them."""
         turning = (
-            compliance(f"stiffness_turn_{label}", softest=3e3, typical=2e5, scale=self.scale)
+            compliance(
+                f"stiffness_turn_{label}",
+                softest=3e3,
+                typical=2e5,
+                scale=self.scale,
+                meaning=f"against turning about {label} of the tool frame",
+            )
             for label in "xyz"
         )
         shifting = (
             compliance(
-                f"stiffness_shift_{label}", softest=2e6, typical=5e7, scale=self.scale, unit="N/m"
+                f"stiffness_shift_{label}",
+                softest=2e6,
+                typical=5e7,
+                scale=self.scale,
+                unit="N/m",
+                meaning=f"against shifting along {label} of the tool frame",
             )
             for label in "xyz"
         )

@@ -8,7 +8,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import SPRINGS, Alias, Options, ParameterSpec, ReadingError, scale_of
+from sk120stiff.effects.base import SPRINGS, Alias, Options, ReadingError, scale_of
+from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.chain import skew
@@ -32,14 +33,21 @@ class ReadingRotation(TrackerEffect):
     """The tracker's frame was aligned to the base with a small error: d_read = d + ω × d."""
 
     name: ClassVar[str] = "reading_rotation"
+    place: ClassVar[str] = "tracker"
+    equation: ClassVar[str] = "d_read = d + a x d"
+    axes: ClassVar[str] = "axes of the base frame"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Misalignment about the base axes."""
         return tuple(
-            ParameterSpec(f"angle_{axis}", "rad", "rad", plausible=0.06, typical=0.003)
+            ParameterSpec(
+                f"angle_{axis}", "rad", "rad", plausible=0.06, typical=0.003,
+                meaning=f"angle about {axis} of the base by which displacements are read turned, "
+                "right-handed",
+            )
             for axis in AXES
-        )
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -56,11 +64,19 @@ class ReadingScale(TrackerEffect):
     """Every displacement is read too large or too small by the same share."""
 
     name: ClassVar[str] = "reading_scale"
+    place: ClassVar[str] = "tracker"
+    equation: ClassVar[str] = "d_read = (1 + s) d"
+    axes: ClassVar[str] = "none: the same along every axis"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Relative scale error."""
-        return (ParameterSpec("scale", "1", "1", plausible=0.01, typical=1e-5),)
+        return (
+            ParameterSpec(
+                "scale", "1", "1", plausible=0.01, typical=1e-5,
+                meaning="(read - true) / true displacement; positive: the tracker reads too much",
+            ),
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -82,6 +98,9 @@ class ReadingDrift(TrackerEffect):
 
     per_second: bool = False
     name: ClassVar[str] = "reading_drift"
+    place: ClassVar[str] = "tracker"
+    equation: ClassVar[str] = "d_read = d + r * (time or number of the reading since its zero)"
+    axes: ClassVar[str] = "axes of the base frame"
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
@@ -92,10 +111,14 @@ class ReadingDrift(TrackerEffect):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Drift rates along the base axes."""
         unit, typical = ("m/s", 1e-8) if self.per_second else ("m", 1e-6)
+        step = "for each second" if self.per_second else "for each reading"
         return tuple(
-            ParameterSpec(f"rate_{axis}", unit, unit, plausible=100 * typical, typical=typical)
+            ParameterSpec(
+                f"rate_{axis}", unit, unit, plausible=100 * typical, typical=typical,
+                meaning=f"read minus true along {axis} of the base, {step} since the zero reading",
+            )
             for axis in AXES
-        )
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""
@@ -126,6 +149,9 @@ class ZeroOffset(TrackerEffect):
 
     poses: tuple[str, ...] = ()
     name: ClassVar[str] = "zero_offset"
+    place: ClassVar[str] = "tracker"
+    equation: ClassVar[str] = "d_read = d + c of the pose"
+    axes: ClassVar[str] = "axes of the base frame"
     exchangeable: ClassVar[bool] = True
 
     @classmethod
@@ -133,14 +159,23 @@ class ZeroOffset(TrackerEffect):
         """Offsets of the poses of an experiment."""
         return cls(where, scale_of(robot), poses=options.poses)
 
+    @classmethod
+    def sample(cls) -> Self:
+        """The offset of one pose."""
+        return cls(cls.place, poses=("POSE",))
+
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Offset of each pose along the base axes."""
         return tuple(
-            ParameterSpec(f"{pose}.{axis}", "m", "m", plausible=5e-4, typical=1e-5)
+            ParameterSpec(
+                f"{pose}.{axis}", "m", "m", plausible=5e-4, typical=1e-5,
+                meaning=f"read minus true along {axis} of the base, for all displacements of pose "
+                f"{pose}",
+            )
             for pose in self.poses
             for axis in AXES
-        )
+        )  # fmt: skip
 
     def sentence(self) -> str:
         """What happens."""

@@ -106,6 +106,8 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "exact_aliases": list(finding.exact),
         "parameters": [_parameter(p, unseen.get(p.name)) for p in found],
         "sentence": finding.effect.sentence(),
+        "equation": finding.effect.equation,
+        "axes": finding.effect.axes,
         "evidence": {
             "delta_bic": evidence.score_gain,
             "delta_chi_square": evidence.misfit_gain,
@@ -130,8 +132,9 @@ def _parameter(p: Parameter, unseen: str | None = None) -> dict[str, Any]:
         "value": p.public_value if shown else None,
         "std": p.public_std if shown else None,
         "unit": p.spec.unit,
+        "meaning": p.spec.meaning,
         "internal_value": p.value if shown else None,
         "internal_std": p.std if shown else None,
         "internal_unit": p.spec.internal_unit,
-        "reason": unseen or (RIGID if np.isinf(p.public_value) else None),
+        "reason": unseen or p.note or (RIGID if np.isinf(p.public_value) else None),
     }

@@ -6,6 +6,7 @@ import numpy as np
 
 from sk120stiff.effects import Situation
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.polish import FAINTEST
 from sk120stiff.model import Parameter
 from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.coupling import Array
@@ -13,14 +14,16 @@ from sk120stiff.robot.coupling import Array
 ON_AXIS = 1e-6  # share of the arm's length below which a lever is rounding of the URDF's numbers
 
 NOT_SHOWN = "it does not show in these readings"
+SHARED = "these readings tell it together with others only"
 
 
 def unseen_reasons(fit: Fit) -> dict[str, str]:
     """Full name → reason, for every estimated parameter that the readings do not determine."""
     situation = fit.problem.situation
+    alone = np.linalg.norm(fit.jacobian, axis=0) * fit.problem.span > FAINTEST
     return {
-        p.name: why_unseen(situation, p) or NOT_SHOWN
-        for p, shown in zip(fit.parameters, fit.identifiable, strict=True)
+        p.name: why_unseen(situation, p) or (SHARED if shows else NOT_SHOWN)
+        for p, shown, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
         if not shown
     }
 

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -25,10 +26,11 @@ from typing import Any
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sk120stiff.effects import effect
+from sk120stiff.effects import comment_lines, effect
 from sk120stiff.effects.gear import breaks_of
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import parse_yaml, read_text, write_atomically
+from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model, Parameter
 from sk120stiff.model.uncertainty_file import (
     ModelDumper,
@@ -92,7 +94,23 @@ def model_text(model: Model, *, folder: Path | None = None) -> str:
     if known is not None:
         document["uncertainty"] = known
     text = yaml.dump(document, Dumper=ModelDumper, sort_keys=False, allow_unicode=True, width=100)
-    return str(text)
+    return _commented(str(text), model)
+
+
+def _commented(text: str, model: Model) -> str:
+    """The text with the law, the axes and the meaning of the values above every effect."""
+    parts = re.split(r"^(?=- name: )", text, flags=re.MULTILINE)
+    if len(parts) != len(model.effects) + 1:
+        raise ValueError("the effects of a model file do not begin where they should")
+    said: set[tuple[str, ...]] = set()
+    out = [parts[0]]
+    for item, part in zip(model.effects, parts[1:], strict=True):
+        lines = tuple(comment_lines(item))
+        if lines not in said:  # six joint springs read alike
+            out += [f"# {line}\n" for line in lines]
+        said.add(lines)
+        out.append(part)
+    return "".join(out)
 
 
 def write_model(model: Model, path: str | os.PathLike[str]) -> Path:
@@ -133,6 +151,7 @@ def model_from_text(
     model = Model(arm, provenance=content.provenance)
     for entry in content.effects:
         place = f"{where}, effect {entry.name}:{entry.where}"
+        entry.parameters = translated(entry.name, entry.parameters, place)
         try:
             found = effect(
                 arm,

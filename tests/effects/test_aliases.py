@@ -120,7 +120,7 @@ def test_the_sk120s_list(arms):
     assert ("link_length:link_6_t", "tool_offset:tool0") in found.within
     every = tuple(f"joint_springs:{joint}.stiffness" for joint in BASE)
     assert found.absorbed["reading_scale:tracker.scale"] == every
-    assert found.absorbed["force_scale:sensor[gain_x+gain_y+gain_z]"] == every
+    assert found.absorbed["force_scale:sensor[scale_x+scale_y+scale_z]"] == every
     # a base that is as soft about either axis is a first bearing that is
     shared = {(o.first, o.second): o.shared for o in found.overlaps}
     assert shared["joint_tilt:joint_1_s", "base_rocking:base_link"] == 1

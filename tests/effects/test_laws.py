@@ -255,17 +255,18 @@ def with_instrument(name, load, pose=NOTHING, **values):
 SIDE = [0, 100.0, 0, 0, 0, 0]
 
 
-def test_the_force_sensor_reads_too_little():
-    got, plain = with_instrument("force_scale", SIDE, gain_y=0.02, gain_x=0.5)
-    close(got, 1.02 * plain)
+def test_the_force_sensor_reads_too_much():
+    """Of 100 N reported, 2 were never there."""
+    got, plain = with_instrument("force_scale", SIDE, scale_y=0.02, scale_x=0.5)
+    close(got, 0.98 * plain)
     # the tool turned by a quarter about z: the load lies along the sensor's x
-    got, plain = with_instrument("force_scale", SIDE, [np.pi / 2, 0], gain_x=0.02)
-    close(got, 1.02 * plain)
+    got, plain = with_instrument("force_scale", SIDE, [np.pi / 2, 0], scale_x=0.02)
+    close(got, 0.98 * plain)
 
 
 def test_the_force_sensor_is_off_by_a_constant():
-    got, plain = with_instrument("force_bias", SIDE, force_z=10.0)
-    # 10 N up: 10 N·m on the nod and 1 m, in rad and m
+    got, plain = with_instrument("force_bias", SIDE, offset_z=-10.0)
+    # 10 N up that the sensor hides: 10 N·m on the nod and 1 m, in rad and m
     close(got - plain, [0, 0, 10 * 1.0 / 1e6])
 
 
@@ -275,9 +276,9 @@ def test_the_force_sensor_is_turned():
 
 
 def test_the_force_sensor_has_crosstalk():
-    got, plain = with_instrument("force_crosstalk", SIDE, y_to_z=0.01)
-    close(got - plain, [0, 0, 1e-6])
-    got, plain = with_instrument("force_crosstalk", SIDE, z_to_y=0.01)
+    got, plain = with_instrument("force_crosstalk", SIDE, y_on_z=0.01)
+    close(got - plain, [0, 0, -1e-6])
+    got, plain = with_instrument("force_crosstalk", SIDE, z_on_y=0.01)
     close(got, plain)
 
 

@@ -106,7 +106,7 @@ def test_blocks_are_seamless(robot, model):
 def test_instruments_have_no_say_in_what_really_moves(robot, model):
     whole = model + effect(robot, "reading_scale") + effect(robot, "force_bias")
     whole = whole.with_public(
-        **{"reading_scale:tracker.scale": 0.5, "force_bias:sensor.force_x": 100.0}
+        **{"reading_scale:tracker.scale": 0.5, "force_bias:sensor.offset_x": 100.0}
     )
     assert np.allclose(whole.deflect(POSE, WRENCH), model.deflect(POSE, WRENCH), rtol=0, atol=1e-16)
     read = whole.predict(situation_of_load(robot, POSE, WRENCH))

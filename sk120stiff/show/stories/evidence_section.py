@@ -7,10 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sk120stiff.effects import comment_lines
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
-from sk120stiff.show.report import Block, Note, Section, Table
+from sk120stiff.show.report import Block, Items, Note, Section, Table
 from sk120stiff.show.stories.verdicts import near, sentence_of
 from sk120stiff.show.wording import counted, listed, number, percent, unit_of, with_error
 
@@ -34,7 +35,7 @@ def evidence_section(answer: Explanation) -> Section:
 
 def _finding(answer: Explanation, finding: Finding) -> list[Block]:
     blocks: list[Block] = [f"**{finding.effect.sentence()}** (`{finding.effect.id}`)"]
-    blocks.append(_sizes(answer, finding))
+    blocks += [_sizes(answer, finding), Items(list(comment_lines(finding.effect)))]
     if finding.exact:
         blocks.append(
             Note(

@@ -1,0 +1,44 @@
+"""`sk120stiff effects [NAME]`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.tables import table
+from sk120stiff.effects import EffectWords, catalogue_words
+
+
+def command(
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="One effect; all without a name.")
+    ] = None,
+) -> Answer:
+    """What every effect and its numbers mean: law, axes, sign, unit.
+
+    The same words stand beside every number in reports, verdicts and model files.
+
+    Example: sk120stiff effects force_bias
+    """
+    found = catalogue_words(name)
+    parts: list[object] = []
+    for each in found:
+        parts += _parts(each)
+    return Answer({"effects": [asdict(each) for each in found]}, parts)
+
+
+def _parts(each: EffectWords) -> list[object]:
+    rows = [(item.name, item.unit, item.meaning) for item in each.parameters]
+    meanings = table("", ["parameter", "unit", "what it means"], rows)
+    meanings.title = None
+    for column in meanings.columns:
+        column.justify = "left"
+    return [
+        f"{each.name}, at {each.where}. {each.sentence}",
+        f"    law:  {each.equation}",
+        f"    axes: {each.axes}",
+        meanings,
+    ]

@@ -1,0 +1,70 @@
+"""Every number says what it means: law, axes, sign, unit; and its sign is the one it says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff.effects import CATALOGUE, all_effects, catalogue_words, effect, words_of
+from sk120stiff.identify import fit
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import joint_spring_model
+from sk120stiff.plan import random_poses
+from sk120stiff.robot import load_robot
+
+STIFF = [1.4e6, 4e5, 9e5, 1e6, 3e5, 2e5]
+
+
+def test_every_parameter_of_every_effect_has_a_meaning() -> None:
+    robot = load_robot("motoman_sk120")
+    effects = [*all_effects(robot, poses=("A",)), *(kind.sample() for kind in CATALOGUE)]
+    effects.append(effect(robot, "gear_hardening", "joint_2_l", breaks=(150.0, 300.0)))
+    for each in effects:
+        words = words_of(each)
+        assert words.equation and words.axes and words.where
+        meanings = [item.meaning for item in words.parameters]
+        assert all(meanings), each.id
+        assert len(set(meanings)) == len(meanings), f"{each.id}: two values that mean the same"
+
+
+def test_the_words_list_the_catalogue() -> None:
+    assert [words.name for words in catalogue_words()] == [kind.name for kind in CATALOGUE]
+
+
+@pytest.mark.parametrize(
+    ("name", "reported", "expected"),
+    [
+        ("force_bias", lambda f: f + [-29.0, 0.0, 12.0], {"offset_x": -29.0, "offset_z": 12.0}),
+        # 4 % too much: (reported - true) / reported
+        ("force_scale", lambda f: f * [1.04, 1.0, 1.0], {"scale_x": 0.04 / 1.04, "scale_y": 0.0}),
+        # the sensor shows 3 % of the force along x on z as well
+        ("force_crosstalk", lambda f: f + 0.03 * f[:, [0]] * [0, 0, 1], {"x_on_z": 0.03}),
+        # mounted turned by 0.02 about z of the tool: it reads true components in turned axes
+        ("force_rotation", lambda f: f - 0.02 * np.cross([0, 0, 1.0], f), {"angle_z": 0.02}),
+    ],
+)
+def test_what_a_sensor_adds_comes_out_with_the_sign_that_is_told(name, reported, expected) -> None:
+    """The readings are made by hand: true loads bend the arm, a wrong sensor reports them."""
+    robot = load_robot("motoman_sk120")
+    rng = np.random.default_rng(5)
+    joints = random_poses(robot, 30, rng)
+    force = rng.normal(size=(30, 3)) * 250.0
+    springs = joint_spring_model(robot, STIFF)
+    turn = robot.screws(joints).rotation
+    seen = np.einsum("nji,nj->ni", turn, force)  # tool axes
+    told = np.einsum("nij,nj->ni", turn, np.asarray(reported(seen)))
+    point = np.array([-0.06, 0.04, 0.15])
+    readings = Measurements(
+        pose=tuple(f"p{k}" for k in range(30)),
+        joint_names=robot.actuated,
+        joints=joints,
+        wrench=np.hstack([told, np.zeros((30, 3))]),
+        displacement=springs.deflect(joints, np.hstack([force, np.zeros((30, 3))]), point=point),
+        robot=robot.source,
+        point=point,
+    )
+    fixed = replace(springs, parameters=tuple(replace(p, free=False) for p in springs.parameters))
+    found = fit(fixed + effect(robot, name), readings, noise=NoiseModel(1e-6))
+    for key, value in expected.items():
+        got = found.model.parameter(f"{name}:sensor.{key}").public_value
+        assert got == pytest.approx(value, rel=5e-3, abs=1e-3)
