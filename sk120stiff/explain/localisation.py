@@ -9,7 +9,10 @@ import numpy as np
 
 from sk120stiff.robot.coupling import Array
 
+Whole = Literal["excess", "gap"]
+
 LEVEL = 0.01  # family-wise probability below which something counts as seen
+MOSTLY_NOISE = 0.25  # share of the gap's square beyond the noise below which shares are of the gap
 
 
 @dataclass(frozen=True)
@@ -21,34 +24,39 @@ class PoseShare:
     label
         The pose.
     rms, noise
-        Rms gap per axis, and what the noise would leave [m].
+        Rms gap per axis, and what the noise would leave [m]; None where nothing tells the noise.
     share
-        Its part of all that exceeds the noise; below zero where the gap is less than the noise.
+        Its part of the whole, see `Localisation.whole`; below zero where the gap is less than the
+        noise.
     probability
-        That chance makes such a gap at any of the poses.
+        That chance makes such a gap at any of the poses. Where nothing tells the noise: such a gap
+        beside those of the other poses.
     """
 
     label: str
     rms: float
-    noise: float
+    noise: float | None
     share: float
     probability: float
 
 
 @dataclass(frozen=True)
 class LoadLevel:
-    """The gap over loads from `low` to `high` [N]: rms per axis and what noise would leave [m]."""
+    """The gap over loads from `low` to `high` [N]: rms per axis and what noise would leave [m].
+
+    `noise` is None where nothing tells it.
+    """
 
     low: float
     high: float
     count: int
     rms: float
-    noise: float
+    noise: float | None
 
 
 @dataclass(frozen=True)
 class DirectionShare:
-    """Share of what exceeds the noise that points along one axis."""
+    """Share of the whole that points along one axis."""
 
     axes: str
     word: str
@@ -131,7 +139,7 @@ class Suspicion:
     probability
         That chance makes a T as large in any of the looks.
     explained
-        Share of what exceeds the noise that it takes away.
+        Share of the whole that it takes away, beyond what its freedom takes of mere noise.
     evidence
         Decides the order: what is left of T when every degree of freedom has been paid for.
     abscissa, partial
@@ -163,10 +171,15 @@ class Localisation:
     Attributes
     ----------
     rms, noise
-        Rms gap per axis, and what the noise alone would leave [m].
+        Rms gap per axis, and what the noise alone would leave [m]; None where nothing tells it.
     noise_from
         Where the size of the noise comes from: it was ``stated``, or it is the ``scatter`` within
-        poses; with ``gap`` nothing tells it, and it was taken from the gap itself.
+        poses; with ``gap`` nothing but the gap itself could tell it.
+    whole
+        What shares are shares of: the ``excess`` of the gap's square over the noise, or the square
+        of the ``gap`` itself, where the noise is unknown or makes most of it.
+    beyond
+        Share of the whole that noise does not make; 1 where nothing tells.
     probability
         That noise alone makes such a gap; None where nothing tells.
     poses, levels, directions, orders, postures
@@ -184,8 +197,10 @@ class Localisation:
     """
 
     rms: float
-    noise: float
+    noise: float | None
     noise_from: Literal["stated", "scatter", "gap"]
+    whole: Whole
+    beyond: float
     probability: float | None
     poses: tuple[PoseShare, ...]
     levels: tuple[LoadLevel, ...]

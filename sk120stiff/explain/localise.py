@@ -5,31 +5,40 @@ statistic of a suspect is T = ‖orth(M_B V^(-1/2) S)ᵀ r‖², with B the colu
 parameters, S those of the suspect, r the whitened gap and M_B projecting out B. If the gap is noise
 alone, T is χ² with rank(S) degrees of freedom (F where the size of the noise was found from the
 scatter within poses). Probabilities are corrected for the number of looks by Holm's rule.
+
+Shares are of what exceeds the noise. Where nothing tells the noise, or the noise makes most of the
+gap, that is nothing to divide by: shares are of the gap itself then, and it is said.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import stats
 
 from sk120stiff.explain.drawn import Drawn
 from sk120stiff.explain.localisation import (
+    MOSTLY_NOISE,
     DirectionShare,
     LoadLevel,
     Localisation,
     PoseShare,
     PostureTrend,
     Suspicion,
+    Whole,
 )
 from sk120stiff.explain.suspects import Suspect, axes_of, reach_of, suspects_of
 from sk120stiff.explain.within_poses import WithinPoses, within_poses
 from sk120stiff.identify import Fit
 from sk120stiff.identify.left_over import orthonormal
 from sk120stiff.robot.coupling import Array
+
+Index = NDArray[np.intp]
 
 SHOWN = 8  # suspects that are worked out for figures
 FEWEST_POSES = 8  # for a trend over poses
@@ -51,8 +60,10 @@ def localise(fit: Fit) -> Localisation:
     suspects, beside = _suspicions(look)
     return Localisation(
         rms=fit.rms,
-        noise=float(np.sqrt(look.variance.mean())),
+        noise=_noise(look, slice(None)),
         noise_from=look.within.noise_from,
+        whole=look.whole,
+        beyond=look.beyond if look.whole == "gap" and look.known else 1.0,
         probability=look.within.misfit,
         poses=poses,
         levels=_levels(look),
@@ -80,6 +91,35 @@ class _Look:
     white: Array  # (3N,) whitened gap, `inside` projected out
     variance: Array  # (N,) noise variance of a displacement per axis [m²]
     within: WithinPoses
+
+    @property
+    def known(self) -> bool:
+        """Something beside the gap tells the size of the noise."""
+        return self.within.freedom > 0.0
+
+    @cached_property
+    def beyond(self) -> float:
+        """Share of the gap's square that exceeds the noise, of the raw or of the white gap."""
+        white = float(self.white @ self.white) / self.within.scale
+        expected = len(self.white) - self.inside.shape[1]
+        raw, noise = float((self.gap**2).sum()), 3.0 * float(self.variance.sum())
+        shares = (1.0 - expected / max(white, 1e-300), 1.0 - noise / max(raw, 1e-300))
+        return float(np.clip(min(shares), 0.0, 1.0)) if self.known else 0.0
+
+    @cached_property
+    def whole(self) -> Whole:
+        """What shares are shares of."""
+        return "excess" if self.beyond >= MOSTLY_NOISE else "gap"
+
+    @cached_property
+    def floor(self) -> Array:
+        """(N,) variance per axis that is no part of the whole [m²]."""
+        return self.variance if self.whole == "excess" else np.zeros_like(self.variance)
+
+    @cached_property
+    def raw_whole(self) -> float:
+        """The whole as a sum of squares of the gap [m²]."""
+        return max(float((self.gap**2).sum() - 3.0 * self.floor.sum()), 1e-300)
 
 
 def _look(fit: Fit) -> _Look:
@@ -112,19 +152,34 @@ def _look(fit: Fit) -> _Look:
 def _poses(look: _Look) -> tuple[PoseShare, ...]:
     situation = look.fit.problem.situation
     square = (look.gap**2).sum(1)
-    total = max(float(square.sum() - 3.0 * look.variance.sum()), 0.0)
     rows = [np.flatnonzero(situation.pose == k) for k in range(len(situation.poses))]
     white = (look.white.reshape(-1, 3) ** 2).sum(1)
-    chance = [look.within.tail(float(white[r].sum()), 3 * len(r)) for r in rows]
+    chance = [_chance_of_pose(look, white, r) for r in rows]
     found = []
     for label, r, p in zip(situation.poses, rows, holm(chance), strict=True):
         if not len(r):
             continue
-        excess = float(square[r].sum() - 3.0 * look.variance[r].sum())
-        rms, noise = np.sqrt(square[r].mean() / 3.0), np.sqrt(look.variance[r].mean())
-        share = excess / total if total else 0.0
-        found.append(PoseShare(label, float(rms), float(noise), share, p))
+        share = float(square[r].sum() - 3.0 * look.floor[r].sum()) / look.raw_whole
+        rms = float(np.sqrt(square[r].mean() / 3.0))
+        found.append(PoseShare(label, rms, _noise(look, r), share, p))
     return tuple(found)
+
+
+def _chance_of_pose(look: _Look, white: Array, rows: Index) -> float:
+    """Probability of such a gap at one pose: beside the noise, or beside the gaps of the others."""
+    own, count = float(white[rows].sum()), 3 * len(rows)
+    if look.known:
+        return look.within.tail(own, count)
+    rest = float(white.sum()) - own
+    freedom = len(look.white) - look.inside.shape[1] - count
+    if freedom < 1 or not count or rest <= 0.0:
+        return 1.0
+    return float(stats.f.sf(own / count / (rest / freedom), count, freedom))
+
+
+def _noise(look: _Look, rows: Index | slice) -> float | None:
+    """Rms per axis that noise alone leaves [m]; None where nothing tells."""
+    return float(np.sqrt(look.variance[rows].mean())) if look.known else None
 
 
 def _levels(look: _Look) -> tuple[LoadLevel, ...]:
@@ -139,7 +194,7 @@ def _levels(look: _Look) -> tuple[LoadLevel, ...]:
             high=float(size[part].max()),
             count=int(part.sum()),
             rms=float(np.sqrt(square[part].mean())),
-            noise=float(np.sqrt(look.variance[part].mean())),
+            noise=_noise(look, np.flatnonzero(part)),
         )
         for part in (third == k for k in range(3))
         if part.any()
@@ -150,10 +205,9 @@ def _directions(look: _Look) -> tuple[DirectionShare, ...]:
     out = []
     for axes in axes_of(look.fit.problem.situation):
         along = np.einsum("nij,ni->nj", axes.directions, look.gap)
-        excess = np.maximum((along**2).sum(0) - look.variance.sum(), 0.0)
-        total = float(excess.sum())
-        for word, part in zip(axes.words, excess, strict=True):
-            out.append(DirectionShare(axes.name, word, float(part) / total if total else 0.0))
+        parts = (along**2).sum(0) - look.floor.sum()
+        for word, part in zip(axes.words, parts, strict=True):
+            out.append(DirectionShare(axes.name, word, float(part) / look.raw_whole))
     return tuple(out)
 
 
@@ -209,8 +263,8 @@ def _lineup(look: _Look) -> _Lineup:
 def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion, int]]:
     """Suspects with their places in the line-up, the strongest first.
 
-    `known` (3N, k) is an orthonormal basis of what is in the model already. Shares are of what
-    exceeds the noise when nothing is known but the model's own parameters.
+    `known` (3N, k) is an orthonormal basis of what is in the model already. Shares are of the whole
+    when nothing is known but the model's own parameters.
     """
     beyond = lineup.white - known @ (known.T @ lineup.white)
     length, left = np.linalg.norm(lineup.white, axis=0), np.linalg.norm(beyond, axis=0)
@@ -253,13 +307,15 @@ def _suspicion(
 ) -> Suspicion:
     """The statistic with its probability, not yet corrected for the number of looks."""
     within = look.within
-    if within.freedom:
+    unit = 1.0
+    if look.known:
         p = within.tail(T * within.scale, rank)
     else:  # nothing tells the noise but what the suspect itself leaves
-        rest = max(total - T, 1e-300) / (freedom - rank)
-        p = float(stats.f.sf(T / rank / rest, rank, freedom - rank))
-    first = float(look.white @ look.white) / within.scale
-    excess = max(first - (len(look.white) - look.inside.shape[1]), T - rank, 1e-300)
+        unit = max(total - T, 1e-300) / (freedom - rank)
+        p = float(stats.f.sf(T / rank / unit, rank, freedom - rank))
+    whole = float(look.white @ look.white) / within.scale
+    if look.whole == "excess":
+        whole -= len(look.white) - look.inside.shape[1]
     return Suspicion(
         family=suspect.family,
         name=suspect.name,
@@ -267,7 +323,7 @@ def _suspicion(
         statistic=T,
         freedom=rank,
         probability=p,
-        explained=float(np.clip((T - rank) / excess, 0.0, 1.0)),
+        explained=float(np.clip((T - rank * unit) / max(whole, 1e-300), 0.0, 1.0)),
         evidence=T - rank * float(np.log(max(freedom, 2))),
     )
 

@@ -38,9 +38,12 @@ def chance(probability: float) -> str:
 
 def _size(found: Localisation) -> str:
     gap = f"The base model misses the readings by {_um(found.rms)} rms per axis"
+    if found.noise is None or found.probability is None:
+        return (
+            f"{gap}. Nothing tells how large the noise is, so its size alone proves nothing, and "
+            "shares are of the gap itself, noise included."
+        )
     noise = _um(found.noise)
-    if found.probability is None:
-        return f"{gap}. Nothing tells how large the noise is, so its size alone proves nothing."
     origin = "" if found.noise_from == "stated" else ", as found from the scatter within poses"
     if found.probability >= LEVEL:
         also = ", yet part of it goes with something" if found.strongest else ""
@@ -72,17 +75,18 @@ def _strongest(found: Localisation) -> Iterator[str]:
             "axes, instruments, order."
         )
         return
-    if best.explained < LITTLE:
+    of = _whole(found)
+    if best.explained < LITTLE * found.beyond:
         yield (
             f"It goes closely with none of {len(found.suspects)} suspects: the strongest, "
-            f"{best.name}, takes away {_percent(best.explained)} of what exceeds the noise "
+            f"{best.name}, takes away {_percent(best.explained)} of {of} "
             f"({chance(best.probability)})."
         )
         return
     degrees = "degree" if best.freedom == 1 else "degrees"
     yield (
         f"It goes most closely with {best.name}: that takes away {_percent(best.explained)} of "
-        f"what exceeds the noise (T = {best.statistic:.0f} on {best.freedom} {degrees} of freedom, "
+        f"{of} (T = {best.statistic:.0f} on {best.freedom} {degrees} of freedom, "
         f"{chance(best.probability)} after {len(found.suspects)} looks)."
     )
     rest = [s for s in found.suspects[1:] if s.seen]
@@ -99,8 +103,15 @@ def _strongest(found: Localisation) -> Iterator[str]:
             f"That is not all: what remains goes with {second.name}, which takes away another "
             f"{_percent(second.explained)}."
         )
-    elif best.explained > WHOLE:
+    elif best.explained > WHOLE * found.beyond:
         yield "Of the rest nothing goes with a single suspect as closely."
+
+
+def _whole(found: Localisation) -> str:
+    """What shares are shares of, in words."""
+    if found.whole == "excess":
+        return "what exceeds the noise"
+    return "the gap" if found.noise is None else "the gap, which is mostly noise"
 
 
 def _as_place(found: Localisation, named: Sequence[Suspicion]) -> Iterator[str]:
@@ -117,6 +128,9 @@ def _as_place(found: Localisation, named: Sequence[Suspicion]) -> Iterator[str]:
 
 
 def _poses(found: Localisation) -> Iterator[str]:
+    if found.whole == "gap":
+        yield from _poses_of_the_gap(found)
+        return
     seen = [pose for pose in found.poses if pose.probability < LEVEL]
     ranked = sorted(seen, key=lambda pose: -pose.share)
     if not ranked:
@@ -142,6 +156,25 @@ def _poses(found: Localisation) -> Iterator[str]:
         )
 
 
+def _poses_of_the_gap(found: Localisation) -> Iterator[str]:
+    """The same where shares are of the gap itself: poses that stand out from the others."""
+    if len(found.poses) < 2:
+        return
+    ranked = sorted(found.poses, key=lambda pose: -pose.share)
+    out = [pose for pose in ranked if pose.probability < LEVEL]
+    worst = out[0] if out else ranked[0]
+    carries = (
+        f"carries {_percent(worst.share)} of the gap's square with {_um(worst.rms)} rms; "
+        f"an even share of {len(ranked)} poses is {_percent(1.0 / len(ranked))}"
+    )
+    if not out:
+        yield f"No pose stands out from the others: the worst, {worst.label}, {carries}."
+    elif len(out) == 1:
+        yield f"Pose {worst.label} stands out from the others: it {carries}."
+    else:
+        yield f"{len(out)} poses stand out from the others; the worst, {worst.label}, {carries}."
+
+
 def _loads(found: Localisation) -> Iterator[str]:
     if len(found.levels) == 3:
         low, _, high = found.levels
@@ -151,6 +184,9 @@ def _loads(found: Localisation) -> Iterator[str]:
             f"{how}: {_um(low.rms)} rms at loads up to {low.high:.0f} N, {_um(high.rms)} from "
             f"{high.low:.0f} N on."
         )
+    if found.whole == "gap":
+        yield "What of it is in proportion to the load and what is not, these readings do not tell."
+        return
     tested = {o.name: o for o in found.orders if o.probability is not None}
     seen = {name: o for name, o in tested.items() if (o.probability or 0.0) < LEVEL}
     if "linear" in seen and set(tested) == {"linear"}:

@@ -24,9 +24,8 @@ from sk120stiff.effects.base import (
     ONE_WAY,
     PURE_FORCES,
     SPRINGS,
-    ParameterSpec,
-    compliance,
 )
+from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import Robot, VirtualJoint, load_robot
 from tests.effects.arms import FOLDER, arm
@@ -148,7 +147,9 @@ class BaseYaw(LinearElastic):
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        return (compliance("stiffness", softest=3e5, typical=1e7, scale=self.scale),)
+        return (
+            compliance("stiffness", softest=3e5, typical=1e7, scale=self.scale, meaning="test"),
+        )
 
     def sentence(self) -> str:
         return "The base yaws."

@@ -8,6 +8,7 @@ from sk120stiff.show.stories.pictures import suspect_panels
 from sk120stiff.show.wording import chance, percent
 
 LISTED = 8
+_WHOLE = {"excess": "what exceeds the noise", "gap": "the gap itself, noise included"}
 _WORDS = {
     "world": ("x", "y", "z"),
     "arm plane": ("outwards", "sideways", "along the first axis"),
@@ -35,7 +36,7 @@ def _evidence(found: Localisation) -> list[Block]:
                 lambda: suspect_panels(found),
                 alt=f"The gap against {len([s for s in found.suspects if s.partial.size])} "
                 f"suspects; the strongest is {best.name}, which takes away "
-                f"{percent(best.explained)} of what exceeds the noise.",
+                f"{percent(best.explained)} of {_WHOLE[found.whole]}.",
                 caption="The gap along the direction in which each suspect would push, against "
                 "its variable; what the joint springs had covered up is put back. Grey: no more "
                 "than chance.",
@@ -77,13 +78,15 @@ def _directions(found: Localisation) -> Table:
         for axes, parts in shares.items()
     ]
     return Table(
-        ["axes of", "first", "second", "third"], rows, "Where the gap points, noise taken off."
+        ["axes of", "first", "second", "third"],
+        rows,
+        f"Where the gap points; shares of {_WHOLE[found.whole]}.",
     )
 
 
 def _levels(found: Localisation) -> Table:
     rows = [
-        (f"{level.low:.0f} to {level.high:.0f} N", level.count, 1e6 * level.rms, 1e6 * level.noise)
+        (f"{level.low:.0f} to {level.high:.0f} N", level.count, 1e6 * level.rms, _um(level.noise))
         for level in found.levels
     ]
     return Table(
@@ -101,7 +104,7 @@ def _poses(found: Localisation) -> Table:
         (
             pose.label,
             1e6 * pose.rms,
-            1e6 * pose.noise,
+            _um(pose.noise),
             percent(pose.share),
             chance(pose.probability),
         )
@@ -110,7 +113,11 @@ def _poses(found: Localisation) -> Table:
     return Table(
         ["pose", "gap rms", "noise alone", "share", "p"],
         rows,
-        "The poses that carry most of it.",
+        f"The poses that carry most of it; shares of {_WHOLE[found.whole]}.",
         units=["", "µm", "µm", "", ""],
         digits=3,
     )
+
+
+def _um(metres: float | None) -> float | None:
+    return None if metres is None else 1e6 * metres
