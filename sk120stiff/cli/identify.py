@@ -29,6 +29,7 @@ from sk120stiff.identify import (
     known_model,
     lack_of_fit,
     profile_intervals,
+    refitted,
     unseen_reasons,
     weak_directions,
 )
@@ -114,13 +115,15 @@ def command(
     error: HeldOut | None = None
     if leave_out:
         with progress_bar("held out") as report:
-            error = held_out(found, progress=report)
+            (error,) = held_out(
+                readings, refitted(start, method=method.value, robust=robust), progress=report
+            )
     lines: tuple[Compared, ...] = ()
     if others:
         models = {"model": start}
         models.update({name: _other(plain, name, readings) for name in others})
         with progress_bar("compare") as report:
-            lines = compare(models, readings, noise=found.problem.noise, progress=report)
+            lines = compare(models, readings, progress=report)
     if out is not None:
         write_model(replace(known_model(found), provenance=provenance(data, readings)), out)
     document = {

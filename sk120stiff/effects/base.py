@@ -109,9 +109,9 @@ class Effect(ABC):
     scale: float = 1.0
 
     name: ClassVar[str]
-    place: ClassVar[str]
-    equation: ClassVar[str]
-    axes: ClassVar[str]
+    place: ClassVar[str] = "a place of the arm"
+    equation: ClassVar[str] = ""
+    axes: ClassVar[str] = ""
     former: ClassVar[Mapping[str, str]] = {}
     exchangeable: ClassVar[bool] = False
     bends_a_spring: ClassVar[bool] = False

@@ -80,7 +80,9 @@ def comment_lines(effect: Effect, *, most: int = 6) -> Iterator[str]:
 
     Of more than `most` parameters the first alone is explained; the others read like it.
     """
-    yield f"{effect.equation}; in {effect.axes}"
+    if effect.equation:
+        yield f"{effect.equation}; in {effect.axes}"
     shown = effect.parameters if len(effect.parameters) <= most else effect.parameters[:1]
     for spec in shown:
-        yield f"{spec.name} [{spec.unit}]: {spec.meaning}"
+        if spec.meaning:
+            yield f"{spec.name} [{spec.unit}]: {spec.meaning}"

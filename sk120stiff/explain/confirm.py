@@ -7,11 +7,11 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff.explain.regression import Regression, Sums
 from sk120stiff.explain.score import score_set
 from sk120stiff.explain.search import gains
+from sk120stiff.identify import drawn_parts
 from sk120stiff.robot.coupling import Array
 
 FOLDS = 5
@@ -111,18 +111,12 @@ def confirm(
     )
 
 
-def pose_folds(poses: int, rng: np.random.Generator, folds: int = FOLDS) -> NDArray[np.intp]:
-    """(g,) fold of each pose; folds are as equal as can be."""
-    count = min(folds, poses)
-    return rng.permutation(np.arange(poses) % max(count, 1))
-
-
 def _held_out_gain(
     regression: Regression, model: tuple[int, ...], effect: int, rng: np.random.Generator
 ) -> tuple[Array, Array, float]:
     """Fall of the held-out misfit by fold and by pose, and the number of reading axes."""
     gram, moment, square, count = regression.by_pose
-    fold = pose_folds(regression.poses, rng)
+    fold = drawn_parts(regression.poses, FOLDS, rng)
     smaller = tuple(e for e in model if e != effect)
     pose_gain = np.zeros(regression.poses)
     for k in range(int(fold.max(initial=0)) + 1):

@@ -7,16 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.effects import Effect
-from sk120stiff.errors import Refusal
-from sk120stiff.explain.confirm import pose_folds
+from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.explanation import Step
-from sk120stiff.explain.settling import refit
-from sk120stiff.identify import Fit, Problem, solve_near
+from sk120stiff.explain.regression import regression_at
+from sk120stiff.explain.search import beam_search
+from sk120stiff.explain.settling import Attempt, laws_of, refit
+from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
 from sk120stiff.measurements import Measurements
+
+NARROW = 4  # models kept at each size of a search in one part: it is there to choose, not to rank
 
 
 def gap_steps(
-    base: Fit, effects: Sequence[Effect], holdout: Measurements | None, *, seed: int
+    found: Attempt, effects: Sequence[Effect], holdout: Measurements | None, *, seed: int
 ) -> tuple[Step, ...]:
     """The base model, then one effect more at each step.
 
@@ -25,31 +28,71 @@ def gap_steps(
 
     Parameters
     ----------
-    base
-        Fit of the base model.
+    found
+        The base model, its readings, and the effects that were considered.
     effects
         In the order in which they were added.
     holdout
         Readings of other poses; without them poses are left out of the fit in turn.
     seed
-        Of the folds.
+        Of the parts in which poses are left out.
     """
-    steps = []
+    fits: list[Fit] = []
+    counts: list[int] = []
+    labels: list[str] = []
     joined: list[str] = []
     for count in range(len(effects) + 1):
         if count:
             joined.append(f"+ {effects[count - 1].id}")
         try:
-            found = refit(base, effects[:count])
+            fits.append(refit(found.base, effects[:count]))
         except Refusal:
             if count == len(effects):
                 raise
             continue
-        label = " ".join(joined) if count else _base_name(base)
+        counts.append(count)
+        labels.append(" ".join(joined) if count else _base_name(found.base))
         joined.clear()
-        held = _on_poses_left_out(found, seed) if holdout is None else _on_file(found, holdout)
-        steps.append(Step(label, found.rms, held))
-    return tuple(steps)
+    if holdout is None:
+        held = _on_poses_left_out(found, counts, seed)
+    else:
+        held = [_on_file(each, holdout) for each in fits]
+    return tuple(
+        Step(label, each.rms, error) for label, each, error in zip(labels, fits, held, strict=True)
+    )
+
+
+def nested(found: Attempt, counts: Sequence[int]) -> Learn:
+    """Learning as `explain` learns: noise, effects and values from the readings at hand alone.
+
+    It gives the base model, and for every count the best model with so many effects at most; the
+    names need not be those that all readings bring.
+    """
+    start, alpha = found.base.problem.model, found.regression.alpha
+    ids = [effect.id for effect in start.effects]
+
+    def learn(readings: Measurements) -> list[Fit]:
+        base = fit(start, readings)
+        if not any(counts):
+            return [base for _ in counts]
+        regression = regression_at(base, found.candidates, ids, alpha=alpha)
+        ranked = beam_search(regression, width=NARROW, max_effects=max(counts))
+        return [
+            _first_fit(base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count])
+            for count in counts
+        ]
+
+    return learn
+
+
+def _first_fit(base: Fit, choices: Sequence[Sequence[Effect]]) -> Fit:
+    """The first of some sets of effects that can be fitted at exact equilibrium."""
+    for effects in choices:
+        try:
+            return refit(base, effects)
+        except Refusal:
+            continue
+    return base
 
 
 def _base_name(base: Fit) -> str:
@@ -64,19 +107,10 @@ def _on_file(found: Fit, holdout: Measurements) -> float:
     return float(np.sqrt(np.mean(gap**2)))
 
 
-def _on_poses_left_out(found: Fit, seed: int) -> float:
-    """Gap on poses left out of the fit in turn, per axis [m]."""
-    measurements, noise = found.problem.measurements, found.problem.noise
-    folds = pose_folds(len(measurements.poses), np.random.default_rng(seed))
-    fold = folds[measurements.pose_index]
-    squares, axes = 0.0, 0
-    for k in np.unique(fold):
-        train = Problem(found.model, measurements.select(fold != k), noise)
-        try:
-            part = solve_near(train, found.x)
-        except Refusal:
-            continue  # the poses that are left do not hold the model; the other folds speak
-        test = Problem(part.model, measurements.select(fold == k), noise)
-        squares += float(((test.measured - part.model.predict(test.situation)) ** 2).sum())
-        axes += test.measured.size
-    return float(np.sqrt(squares / axes)) if axes else float("nan")
+def _on_poses_left_out(found: Attempt, counts: Sequence[int], seed: int) -> list[float]:
+    """Gap on poses left out in turn, per axis [m]; NaN where the others do not hold the model."""
+    try:
+        errors = held_out(found.base.problem.measurements, nested(found, counts), seed=seed)
+    except (InputError, Refusal):
+        return [float("nan")] * len(counts)
+    return [error.rms for error in errors]

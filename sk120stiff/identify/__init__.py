@@ -3,7 +3,7 @@
 from sk120stiff.identify.comparison import Compared, compare
 from sk120stiff.identify.estimate import fit, refuse_unusable
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.held_out import HeldOut, held_out
+from sk120stiff.identify.held_out import HeldOut, Learn, drawn_parts, held_out, pose_parts, refitted
 from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
 from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.profile import profile_intervals
@@ -19,15 +19,19 @@ __all__ = [
     "Fit",
     "HeldOut",
     "LackOfFit",
+    "Learn",
     "Problem",
     "choose_noise",
     "compare",
+    "drawn_parts",
     "fit",
     "fit_report",
     "held_out",
     "known_model",
     "lack_of_fit",
+    "pose_parts",
     "profile_intervals",
+    "refitted",
     "refuse_unusable",
     "solve",
     "solve_near",

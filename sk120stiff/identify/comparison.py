@@ -11,7 +11,7 @@ from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify.estimate import fit
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.held_out import HeldOut, held_out
+from sk120stiff.identify.held_out import HeldOut, held_out, refitted
 from sk120stiff.identify.saturated import choose_noise
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
@@ -66,7 +66,8 @@ def compare(
     measurements
         Readings with displacements.
     noise
-        Covariance for all; default: what the data say of themselves.
+        Covariance for all; default: what the data say of themselves, those of the other poses
+        where poses are left out.
     seed
         Of the parts in which poses are left out.
     progress
@@ -87,6 +88,7 @@ def compare(
     if len(models) < 2:
         raise InputError("a comparison takes two models or more")
     used = measurements.masked()
+    given = noise
     if noise is None and used.displacement is not None:
         first = next(iter(models.values()))
         noise = choose_noise(used, situation_of(first.robot, used))[0]
@@ -94,7 +96,11 @@ def compare(
     errors: dict[str, HeldOut | None] = {}
     for k, (name, model) in enumerate(models.items()):
         fits[name] = fit(model, used, noise=noise)
-        errors[name] = held_out(fits[name], seed=seed) if len(used.poses) > 1 else None
+        errors[name] = (
+            held_out(used, refitted(model, noise=given), seed=seed)[0]
+            if len(used.poses) > 1
+            else None
+        )
         if progress is not None:
             progress(k + 1, len(models))
 

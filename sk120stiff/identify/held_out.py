@@ -1,20 +1,31 @@
-"""Held-out error: what a model predicts at poses that it was not fitted to."""
+"""Held-out error: what a model predicts at poses that had no part in it.
+
+Whatever is decided from readings (values, noise, which effects are in the model) is decided anew
+from the readings of the other poses: `Learn` is the whole way from readings to a fit.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
+from sk120stiff.identify.estimate import fit
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.problem import Problem
-from sk120stiff.identify.solving import solve
+from sk120stiff.identify.solvers import Method
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model
 from sk120stiff.robot.coupling import Array
 
 FOLDS = 10
+SAME = 9  # decimals to which joint values of one and the same posture agree [rad or m]
+
+#: From readings to fits: of one model, or of several that were learned together.
+Learn = Callable[[Measurements], Sequence[Fit]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +49,10 @@ class HeldOut:
     counts: NDArray[np.int64]
     folds: int
 
+    def __post_init__(self) -> None:
+        if not np.isfinite(self.squares).all():
+            raise ValueError("a pose was left out and not predicted")
+
     @property
     def rms(self) -> float:
         """Root mean square of the held-out gap over all readings and axes [m]."""
@@ -55,60 +70,100 @@ class HeldOut:
         return self.rms - other.rms, _std_of_mean(change, self.counts) / (2.0 * mean)
 
 
+def refitted(
+    model: Model, *, noise: NoiseModel | None = None, method: Method = "trf", robust: bool = False
+) -> Learn:
+    """Learning by `fit`: values, and the noise unless it is given, from the readings at hand."""
+    return lambda readings: [fit(model, readings, noise=noise, method=method, robust=robust)]
+
+
 def held_out(
-    fit: Fit,
+    measurements: Measurements,
+    learn: Learn,
     *,
-    folds: int | None = None,
+    folds: int = FOLDS,
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
-) -> HeldOut:
-    """Cross-validate a fit, grouped by pose: no pose is ever in both parts.
-
-    Every part is fitted from the model's starting values, so that what only the left-out poses show
-    is not known to it.
+) -> tuple[HeldOut, ...]:
+    """Leave poses out, learn from the others, predict those left out; for all poses in turn.
 
     Parameters
     ----------
-    fit
-        Gives model, readings and noise.
+    measurements
+        Readings with displacements; masked ones take no part.
+    learn
+        The way from readings to fits, see `refitted`.
     folds
-        Number of parts; by default every pose is left out by itself, ten parts for more than ten.
+        Number of parts, at most; with fewer poses every pose is left out by itself.
     seed
         Of the draw of the parts.
     progress
         Called as ``progress(done, total)``.
 
+    Returns
+    -------
+    tuple of HeldOut
+        One for every fit that `learn` gives.
+
     Raises
     ------
     InputError
-        There is only one pose, or fewer poses than folds.
+        There are no displacements, or only one pose.
     Refusal
-        A part could not be fitted.
+        A part could not be fitted, so that nothing can be said of its poses.
     """
-    problem = fit.problem
-    index = problem.situation.pose
-    labels = problem.measurements.poses
-    count = min(FOLDS, len(labels)) if folds is None else folds
-    if not 2 <= count <= len(labels):
+    used = measurements.masked()
+    measured = used.displacement
+    part = pose_parts(used, folds=folds, seed=seed)[used.pose_index]
+    count = int(part.max(initial=0)) + 1
+    if measured is None or count < 2:
         raise InputError(
-            f"{len(labels)} poses cannot be left out in {count} parts",
-            where=str(problem.measurements.path or "measurements"),
+            "poses cannot be left out: there is only one"
+            if measured is not None
+            else "there are no measured displacements",
+            where=str(used.path or "measurements"),
             remedy="Measure at two poses or more.",
         )
-    part = np.random.default_rng(seed).permutation(np.arange(len(labels)) % count)[index]
-    squares = np.zeros(len(part))
+    squares: list[Array] = []
     for k in range(count):
-        train = problem.measurements.select(part != k)
-        weights = None if problem.weights is None else problem.weights[part != k]
-        found = solve(Problem(problem.model, train, problem.noise, weights))
         rows = part == k
-        gap = problem.measured[rows] - found.model.predict(problem.situation.rows(rows))
-        squares[rows] = (gap**2).mean(axis=1)
+        test = used.select(rows)
+        for place, found in enumerate(learn(used.select(~rows))):
+            if place == len(squares):
+                squares.append(np.full(len(part), np.nan))
+            gap = measured[rows] - found.model.predict(situation_of(found.model.robot, test))
+            squares[place][rows] = (gap**2).mean(axis=1)
         if progress is not None:
             progress(k + 1, count)
-    counts = np.bincount(index, minlength=len(labels))
-    per_pose = np.bincount(index, squares, minlength=len(labels)) / counts
-    return HeldOut(labels, per_pose, counts, count)
+    counts = np.bincount(used.pose_index, minlength=len(used.poses))
+    return tuple(
+        HeldOut(
+            poses=used.poses,
+            squares=np.bincount(used.pose_index, square, minlength=len(used.poses)) / counts,
+            counts=counts,
+            folds=count,
+        )
+        for square in squares
+    )
+
+
+def pose_parts(measurements: Measurements, *, folds: int, seed: int) -> NDArray[np.intp]:
+    """(g,) part of each pose, as equal as can be; poses of one posture are in one part.
+
+    A posture may have been measured under two labels. What is left out must not be known from the
+    other one.
+    """
+    first = [measurements.rows_of(label)[0] for label in measurements.poses]
+    postures = np.round(measurements.joints[first], SAME) + 0.0
+    _, posture = np.unique(postures, axis=0, return_inverse=True)
+    posture = posture.reshape(-1)
+    number = int(posture.max(initial=-1)) + 1
+    return drawn_parts(number, folds, np.random.default_rng(seed))[posture]
+
+
+def drawn_parts(number: int, folds: int, rng: np.random.Generator) -> NDArray[np.intp]:
+    """(number,) part of each of some things, drawn; parts are as equal as can be."""
+    return np.asarray(rng.permutation(np.arange(number) % max(min(folds, number), 1)), np.intp)
 
 
 def _std_of_mean(values: Array, counts: NDArray[np.int64]) -> float:

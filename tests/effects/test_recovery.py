@@ -252,7 +252,7 @@ def test_gains_of_the_force_axes_are_recovered_but_for_their_common_part():
     model = start(arm, robot) + effect(robot, "force_scale")
     model, left = fitted(model, as_situation(robot, rows), measured)
     assert left < 1e-9
-    gains = 1.0 + model.values[-3:]
+    gains = 1.0 - model.values[-3:]  # true over reported
     truth = np.array([1.02, 0.99, 1.005])
     assert np.allclose(gains / gains[0], truth / truth[0], rtol=1e-6)
     factor = gains[0] / truth[0]

@@ -7,7 +7,7 @@ import pytest
 
 from sk120stiff.effects import effect, situation_of
 from sk120stiff.errors import InputError
-from sk120stiff.identify import Problem, compare, fit, held_out, solve
+from sk120stiff.identify import Problem, compare, held_out, refitted, solve
 from sk120stiff.measurements import NoiseModel
 from tests.identify.conftest import readings_of
 
@@ -15,8 +15,7 @@ NOISE = NoiseModel(10e-6)
 
 
 def test_leaving_out_by_hand(springs, table2, robot) -> None:
-    found = solve(Problem(springs, table2, NOISE))
-    error = held_out(found)
+    (error,) = held_out(table2, refitted(springs, noise=NOISE))
     assert error.folds == 3
     assert error.poses == table2.poses
     squares = []
@@ -38,7 +37,7 @@ def test_leaving_out_by_hand(springs, table2, robot) -> None:
 def test_held_out_error_is_what_new_poses_show(springs) -> None:
     """About the noise of a displacement and a little for the springs' own error."""
     readings = readings_of(springs, poses=30, seed=6)
-    error = held_out(fit(springs, readings, noise=NOISE))
+    (error,) = held_out(readings, refitted(springs, noise=NOISE))
     assert error.folds == 10
     assert abs(error.rms - np.sqrt(2.0) * 10e-6) < 4 * error.std + 0.5e-6
 
@@ -46,17 +45,18 @@ def test_held_out_error_is_what_new_poses_show(springs) -> None:
 def test_differences_are_paired(springs, robot) -> None:
     """Poses scatter much more than the models' difference at each pose does."""
     readings = readings_of(springs, poses=20, seed=7)
-    small = held_out(fit(springs, readings, noise=NOISE))
-    large = held_out(fit(springs + effect(robot, "reading_rotation"), readings, noise=NOISE))
+    turned = springs + effect(robot, "reading_rotation")
+    (small,) = held_out(readings, refitted(springs, noise=NOISE))
+    (large,) = held_out(readings, refitted(turned, noise=NOISE))
     loss, doubt = large.difference(small)
     assert loss == pytest.approx(large.rms - small.rms, abs=1e-15)
     assert doubt < 0.5 * np.hypot(small.std, large.std)
 
 
 def test_one_pose_cannot_be_left_out(springs, table2) -> None:
-    found = solve(Problem(springs, table2.select(table2.rows_of("1")), NOISE))
-    with pytest.raises(InputError, match="1 poses cannot be left out"):
-        held_out(found)
+    alone = table2.select(table2.rows_of("1"))
+    with pytest.raises(InputError, match="there is only one"):
+        held_out(alone, refitted(springs, noise=NOISE))
 
 
 def test_the_true_model_wins_the_table(springs, robot) -> None:
