@@ -66,7 +66,7 @@ class ReadingScale(TrackerEffect):
     name: ClassVar[str] = "reading_scale"
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "d_read = (1 + s) d"
-    axes: ClassVar[str] = "none: the same along every axis"
+    axes: ClassVar[str] = "all axes alike"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
