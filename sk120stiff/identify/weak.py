@@ -123,6 +123,7 @@ def words_for(parameter: Parameter) -> str:
     """A parameter in plain words, e.g. ``base rocking z (base_link)``."""
     what = parameter.effect.name.replace("_", " ")
     detail = parameter.spec.name.removeprefix("stiffness").strip("_").replace("_", " ")
+    detail = detail.removeprefix(what.rpartition(" ")[2]).strip()  # force scale y, said once
     return f"{what} {detail} ({parameter.effect.where})".replace("  ", " ")
 
 

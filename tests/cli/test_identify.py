@@ -156,7 +156,7 @@ def test_what_the_paper_cannot_tell(run, tmp_path: Path) -> None:
 def test_aliases_are_named_in_words(run) -> None:
     said = run("identify", DATA, "--with", "force_scale", "--json").document["weak_directions"]
     assert any(
-        "joint springs (joint_1_s) and force scale scale y (sensor) move together" in s for s in said
+        "joint springs (joint_1_s) and force scale y (sensor) move together" in s for s in said
     )
 
 
