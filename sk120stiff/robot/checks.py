@@ -14,6 +14,7 @@ from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import (
     Finding,
     default_frames,
+    fingers_on_way,
     locked_on_way,
     read_urdf,
     suspicions,
@@ -92,6 +93,8 @@ def check_robot(
     if tool or found.description.tool_frame:
         reasons[1:] = [f"tool frame {tool_frame!r}: as told"]
     findings.extend(locked_on_way(document, base_frame, tool_frame))
+    if not found.description.actuated:
+        findings.extend(fingers_on_way(document, guessed, base_frame, tool_frame))
     robot: Robot | None = None
     if document.moving_joints:
         with warnings.catch_warnings(), np.errstate(all="ignore"):

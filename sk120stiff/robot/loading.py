@@ -21,8 +21,10 @@ from sk120stiff.robot.tree import Tree
 from sk120stiff.robot.urdf import (
     BALLS,
     HARMLESS,
+    Finding,
     UrdfDocument,
     default_frames,
+    fingers_on_way,
     locked_on_way,
     read_urdf,
     refuse_orphans,
@@ -159,7 +161,8 @@ def assemble(
     description = found.description
     rest = {**description.lock, **(lock or {})}
     closures = closures_of(description)
-    wanted = [*(actuated or description.actuated or ()), *told_joints(document, description)]
+    given = tuple(actuated or description.actuated or ())
+    wanted = [*given, *told_joints(document, description)]
     guessed = default_frames(document, wanted)
     base_frame = base or description.base_frame or guessed.base
     tool_frame = tool or description.tool_frame or guessed.tool
@@ -167,17 +170,18 @@ def assemble(
     tree = Tree(document.xml)
     followers = _followers(document, description)
     drivers = _drivers(tree, base_frame, tool_frame, followers)
-    if closures and not (actuated or description.actuated):
+    if closures and not given:
         drivers = loop_drivers(tree, closures, drivers, followers, rest)
-    chosen = tuple(actuated or description.actuated or drivers)
+    chosen = given or drivers
     _refuse_balls(document, base_frame, tool_frame, rest)
-    settled = {*rest, *followers, *(actuated or description.actuated or ())}
+    settled = {*rest, *followers, *given}
     refuse_orphans(document, base_frame, tool_frame, settled)
     _check_actuated(chosen, tree, followers, document)
     for name in rest:
         if name not in document.locked:
             tree.joint_index(name)
-    _tell(document, base_frame, tool_frame)
+    odd = [] if given else fingers_on_way(document, guessed, base_frame, tool_frame)
+    _tell(document, [*odd, *locked_on_way(document, base_frame, tool_frame)])
     coupling: Coupling = linear_coupling(tree.joint_names, chosen, followers, rest)
     dependent: tuple[str, ...] = ()
     if closures:
@@ -270,10 +274,9 @@ def _refuse_balls(document: UrdfDocument, base: str, tool: str, rest: Mapping[st
             )
 
 
-def _tell(document: UrdfDocument, base: str, tool: str) -> None:
+def _tell(document: UrdfDocument, on_way: Sequence[Finding]) -> None:
     """Warn of every repair that touches kinematics or masses; `check` tells the rest."""
-    told = [*document.warnings, *locked_on_way(document, base, tool)]
-    told = [finding for finding in told if finding.code not in HARMLESS]
+    told = [finding for finding in (*document.warnings, *on_way) if finding.code not in HARMLESS]
     for finding in told[:_MOST_WARNINGS]:
         warnings.warn(f"{document.place}: {finding}", ToolkitWarning, stacklevel=4)
     if len(told) > _MOST_WARNINGS:

@@ -103,6 +103,19 @@ def test_the_arm_ends_where_the_hand_begins(
     assert robot.choice.fingers[0] in told
 
 
+def test_a_tool_on_a_finger_makes_the_finger_part_of_the_arm_and_says_so() -> None:
+    text = str(xarm_with_gripper())
+    with pytest.warns(UserWarning, match="finger joints lie between 'base' and 'left_finger'"):
+        robot = load_robot(text, tool="left_finger")
+    assert robot.actuated[-1] == "drive_joint"
+    (finding,) = [
+        f for f in check_robot(text, tool="left_finger").warnings if f.code == "fingers_on_way"
+    ]
+    assert "choose the tool frame 'link_tcp'" in finding.message
+    codes = {f.code for f in check_robot(text).warnings}
+    assert "fingers_on_way" not in codes
+
+
 def test_a_linkage_at_the_wrist_is_no_hand() -> None:
     """The rod of a palletiser follows the arm, and the short branch beside it carries the flange"""
     linkage = arm(4).joint("rod_joint", "link4", "rod", "0 0 0.02", mimic="joint2")

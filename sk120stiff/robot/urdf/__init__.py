@@ -13,7 +13,7 @@ from sk120stiff.robot.urdf.document import (
     UrdfDocument,
     VisualSpec,
 )
-from sk120stiff.robot.urdf.frames import FrameChoice, default_frames
+from sk120stiff.robot.urdf.frames import FrameChoice, default_frames, fingers_on_way
 from sk120stiff.robot.urdf.mimics import refuse_orphans
 from sk120stiff.robot.urdf.native import CapturedText, captured_stderr
 from sk120stiff.robot.urdf.packages import resolve
@@ -35,6 +35,7 @@ __all__ = [
     "VisualSpec",
     "captured_stderr",
     "default_frames",
+    "fingers_on_way",
     "locked_on_way",
     "read_urdf",
     "refuse_orphans",

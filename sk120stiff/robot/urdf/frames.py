@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.robot.urdf.document import Array, JointSpec, UrdfDocument
+from sk120stiff.robot.urdf.document import Array, Finding, JointSpec, UrdfDocument
+from sk120stiff.robot.urdf.findings import at
 from sk120stiff.robot.urdf.hands import FINGER, Children, children_of, finger_joints
 
 # Frames that only help: sensors, shapes for collision checks, pictures.
@@ -86,6 +87,25 @@ class FrameChoice:
         if self.fingers:
             told.append(f"held still as fingers: {_few(self.fingers)}")
         return tuple(told)
+
+
+def fingers_on_way(
+    document: UrdfDocument, choice: FrameChoice, base: str, tool: str
+) -> tuple[Finding, ...]:
+    """What to say where a tool frame beyond the hand's beginning puts fingers into the arm."""
+    on_way = [joint for joint in document.way(base, tool) if joint.name in choice.fingers]
+    if not on_way:
+        return ()
+    names = _few([joint.name for joint in on_way])
+    return (
+        Finding(
+            "fingers_on_way",
+            at(on_way[0].line, "joint", on_way[0].name),
+            f"finger joints lie between {base!r} and {tool!r} and count as joints of the arm: "
+            f"{names}; to hold them still, name the others under actuated in robot.yaml, or choose "
+            f"the tool frame {choice.tool!r}",
+        ),
+    )
 
 
 @dataclass(frozen=True, eq=False)
