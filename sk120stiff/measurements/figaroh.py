@@ -154,6 +154,44 @@ def joint_columns(
     return columns
 
 
+_JOINT_LIKE = re.compile(
+    r"(?:q|j|jnt|a|th|theta|axis|joint)[ _.-]?\d+(?:[ _.-]\w+)?|\w*joint[ _.-]?\w*", re.IGNORECASE
+)
+_NOT_A_VALUE = re.compile(
+    r"tau|torque|effort|current|vel|speed|acc|temp|finger|gripper|hand", re.IGNORECASE
+)
+
+
+def refuse_other_joints(table: Table, left: Sequence[str], actuated: Sequence[str]) -> None:
+    """Refuse a file with columns that look like joints which the robot does not have.
+
+    Parameters
+    ----------
+    table
+        The file.
+    left
+        Names of the columns that nobody took.
+    actuated
+        The robot's joints.
+
+    Raises
+    ------
+    InputError
+        Such a column is there.
+    """
+    others = [
+        name for name in left if _JOINT_LIKE.fullmatch(name) and not _NOT_A_VALUE.search(name)
+    ]
+    if others:
+        raise InputError(
+            f"{', '.join(others)}: joints by their names, which the robot does not have",
+            where=f"{table.path}, line {table.header_line}",
+            remedy=f"The actuated joints are {', '.join(actuated)}. Give the robot that was "
+            "measured, name the columns of its joints with --joints, or rename columns that are "
+            "no joint values.",
+        )
+
+
 def loads(
     table: Table, told: Told, wrench: Floats | None
 ) -> tuple[Floats, tuple[str, ...], list[str]]:

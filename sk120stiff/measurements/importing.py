@@ -18,6 +18,7 @@ from sk120stiff.measurements.figaroh import (
     loads,
     marker_columns,
     quantity,
+    refuse_other_joints,
     unit_of,
 )
 from sk120stiff.measurements.poses import SAME_JOINT
@@ -139,6 +140,7 @@ def read_figaroh(
         )
     taken = {*marked, *columns, *load_columns, "pose", "use"}
     left = [header for name, header in table.headers.items() if name not in taken]
+    refuse_other_joints(table, [name for name in table.headers if name not in taken], actuated)
     if left:
         assumed.append(f"Not taken over: {', '.join(left)}.")
     measurements = Measurements(

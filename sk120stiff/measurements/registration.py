@@ -1,6 +1,8 @@
-"""Are marker positions given in the robot's base axes, and in the unit that was told?"""
+"""Are marker positions those of this robot, in its base axes, and in the unit that was told?"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,98 @@ Floats = NDArray[np.float64]
 _TURNED = np.radians(15.0)
 _STRETCHED = 20.0
 _WIDE = 0.1  # the second extent of a cloud that shows a rotation, against the first
+
+
+MARKER_POSES = 5  # from here on the marker's place is fitted too
+_STEPS = 100  # of Gauss and Newton
+
+
+@dataclass(frozen=True, eq=False)
+class Registration:
+    """How far measured positions are off a robot's, moved and turned as a whole to fit best.
+
+    Attributes
+    ----------
+    rms, largest
+        Distance that remains, root mean square per pose and at the worst pose [m].
+    worst
+        Which pose that is.
+    poses
+        Number of poses.
+    marker
+        (3,) the marker in the tool frame, fitted from `MARKER_POSES` poses on [m].
+    marker_fitted
+        Was it?
+    """
+
+    rms: float
+    largest: float
+    worst: int
+    poses: int
+    marker: Floats
+    marker_fitted: bool
+
+
+def register(
+    measured: Floats, flange: Floats, rotation: Floats, point: Floats
+) -> Registration | None:
+    """Fit x = R (p + Q m) + t to positions: the tracker's frame R, t and the marker m.
+
+    The turn is that of least squares (Kabsch, Acta Cryst. A32, 1976, p. 922) to begin with; then
+    all nine unknowns are fitted together by Gauss and Newton.
+
+    Parameters
+    ----------
+    measured
+        (P, 3) marker position at each pose [m], in any axes.
+    flange, rotation
+        (P, 3) and (P, 3, 3) of the tool frame by the rigid robot, base axes [m].
+    point
+        (3,) where the marker is said to be in the tool frame [m]; the start of the fit.
+
+    Returns
+    -------
+    None with fewer than three poses: two positions fit any robot nearly.
+    """
+    count = len(measured)
+    if count < 3:
+        return None
+    marker = point.copy()
+    fit_marker = count >= MARKER_POSES
+    turn, shift = _kabsch(flange + rotation @ marker, measured)
+    for _ in range(_STEPS if fit_marker else 0):
+        arm = flange + rotation @ marker
+        left = measured - arm @ turn.T - shift
+        columns = np.concatenate(
+            [_crossed(arm @ turn.T), np.tile(np.eye(3), (count, 1, 1)), turn @ rotation], axis=2
+        )
+        step = np.linalg.lstsq(columns.reshape(-1, 9), left.ravel(), rcond=1e-9)[0]
+        marker = marker + step[6:]
+        # The best turn and shift for that marker: no step of theirs can then lead astray.
+        turn, shift = _kabsch(flange + rotation @ marker, measured)
+        if np.abs(step[6:]).max() < 1e-10:
+            break
+    left = measured - (flange + rotation @ marker) @ turn.T - shift
+    distance = np.linalg.norm(left, axis=1)
+    spare = 3 * count - (9 if fit_marker else 6)
+    rms = float(np.sqrt((distance**2).sum() * 3.0 / spare))
+    worst = int(np.argmax(distance))
+    return Registration(rms, float(distance[worst]), worst, count, marker, fit_marker)
+
+
+def _kabsch(reached: Floats, measured: Floats) -> tuple[Floats, Floats]:
+    """Turn (3, 3) and shift (3,) that bring one cloud (P, 3) nearest to the other."""
+    middle, goal = reached.mean(axis=0), measured.mean(axis=0)
+    u, _, vt = np.linalg.svd((measured - goal).T @ (reached - middle))
+    turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt)) or 1.0]) @ vt
+    return turn, goal - turn @ middle
+
+
+def _crossed(x: Floats) -> Floats:
+    """(P, 3, 3) derivative of ω × x by ω."""
+    zero = np.zeros(len(x))
+    rows = [[zero, x[:, 2], -x[:, 1]], [-x[:, 2], zero, x[:, 0]], [x[:, 1], -x[:, 0], zero]]
+    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def registration_doubts(measured: Floats, reached: Floats) -> list[str]:

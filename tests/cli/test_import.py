@@ -4,10 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import base_model
-from sk120stiff.robot import load_robot
+from sk120stiff.robot import Robot, load_robot
+from tests.corpus.robots import example
 
 TOLD = ("--robot", "motoman_sk120", "--length", "m", "--angle", "rad")
 POSES = ([0.2, 0.4, -0.5, 0, -1, 0], [-0.7, 0.6, -0.8, 0, -0.8, 0], [0.9, -0.2, 0.1, 0, 0.5, 0])
@@ -95,6 +97,89 @@ def test_a_turned_tracker_and_a_wrong_unit_are_doubted(run, tmp_path: Path) -> N
     (doubt,) = run("import", str(source), *TOLD, "--out", out, "--json").document["doubts"]
     assert "about 90 deg" in doubt
     told = (*TOLD[:2], "--length", "mm", "--angle", "rad")
+    Path(out).unlink()
     outcome = run("import", marks(tmp_path), *told, "--wrench", "0,0,-9 N", "--out", out)
-    assert outcome.code == 0
+    assert outcome.code == 1
     assert "Check the units" in outcome.stderr
+    assert not Path(out).exists()
+
+
+def cloud(folder: Path, robot: Robot, poses: np.ndarray, marker: list[float]) -> str:
+    """What a tracker anywhere in the room sees of a marker on a robot, joints as q1, q2, ..."""
+    turn = Rotation.from_rotvec([0.3, -0.5, 1.9]).as_matrix()
+    T = robot.placement(poses)
+    at = T[:, :3, 3] + T[:, :3, :3] @ marker
+    seen = at @ turn.T + [3.0, -1.0, 0.5]
+    head = "x1,y1,z1," + ",".join(f"q{k + 1}" for k in range(robot.n))
+    lines = [
+        ",".join(map(repr, [*map(float, x), *map(float, q)]))
+        for x, q in zip(seen, poses, strict=True)
+    ]
+    path = folder / "cloud.csv"
+    path.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
+    return str(path)
+
+
+def test_the_residual_of_registration_is_told(run, tmp_path: Path) -> None:
+    """Nothing is left for the right robot, whatever the tracker's frame and the marker's place."""
+    robot = load_robot("motoman_sk120")
+    poses = np.random.default_rng(0).uniform(-0.8, 0.8, (12, 6))
+    source, out = cloud(tmp_path, robot, poses, [0.1, -0.05, 0.2]), str(tmp_path / "own.csv")
+    found = run("import", source, *TOLD, "--out", out, "--json").document["registration"]
+    assert found["rms_mm"] < 1e-6
+    assert found["marker_m"] == pytest.approx([0.1, -0.05, 0.2], abs=1e-8)
+    said = run("import", source, *TOLD, "--out", out).stdout
+    assert "12 poses, the tracker's frame and the marker's place fitted" in said
+
+
+@pytest.mark.parametrize("harm", ["another robot", "joints exchanged", "a sign", "degrees for rad"])
+def test_positions_of_another_robot_are_refused(run, tmp_path: Path, harm: str) -> None:
+    poses = np.random.default_rng(1).uniform(-0.8, 0.8, (15, 6))
+    name = "ur10_robot.urdf" if harm == "another robot" else "motoman_sk120"
+    robot = load_robot(example(name) if name.endswith("urdf") else name)
+    source = cloud(tmp_path, robot, poses, [0.0, 0.0, 0.1])
+    lines = Path(source).read_text(encoding="utf-8").splitlines()
+    cells = [line.split(",") for line in lines[1:]]
+    for row in cells:
+        if harm == "joints exchanged":
+            row[4], row[5] = row[5], row[4]
+        if harm == "a sign":
+            row[5] = str(-float(row[5]))
+    Path(source).write_text("\n".join([lines[0], *map(",".join, cells)]), encoding="utf-8")
+    told = (*TOLD[:-1], "deg") if harm == "degrees for rad" else TOLD
+    out = tmp_path / "own.csv"
+    refused = run("import", source, *told, "--out", str(out))
+    assert refused.code == 1
+    assert "not this robot's positions" in refused.stderr
+    assert "mm off" in refused.stderr
+    assert not out.exists()
+
+
+def test_a_poorly_calibrated_robot_is_taken(run, tmp_path: Path) -> None:
+    """Zeros some tenths of a degree off, as robots have: told in mm, and imported."""
+    robot = load_robot("motoman_sk120")
+    poses = np.random.default_rng(0).uniform(-0.8, 0.8, (12, 6))
+    off = np.radians([0.0, 0.2, -0.3, 0.3, -0.2, 0.0])
+    source, out = cloud(tmp_path, robot, poses + off, [0.1, 0.0, 0.2]), str(tmp_path / "own.csv")
+    lines = Path(source).read_text(encoding="utf-8").splitlines()
+    rows = [",".join([*line.split(",")[:3], *map(repr, map(float, q))])
+            for line, q in zip(lines[1:], poses, strict=True)]  # fmt: skip
+    Path(source).write_text("\n".join([lines[0], *rows]), encoding="utf-8")
+    outcome = run("import", source, *TOLD, "--out", out, "--json")
+    assert outcome.code == 0
+    assert 0.5 < outcome.document["registration"]["rms_mm"] < 15.0
+
+
+def test_joints_that_the_robot_does_not_have_are_no_remark(run, tmp_path: Path) -> None:
+    source, out = Path(marks(tmp_path, payload=False)), tmp_path / "own.csv"
+    lines = source.read_text(encoding="utf-8").splitlines()
+    for extra in ("q7", "joint_7", "A7", "panda_joint7", "axis 7"):
+        text = [f"{lines[0]},{extra}", *(f"{line},0.1" for line in lines[1:])]
+        source.write_text("\n".join(text) + "\n", encoding="utf-8")
+        refused = run("import", str(source), *TOLD, "--out", str(out))
+        assert (refused.code, out.exists()) == (2, False)
+        assert extra in refused.stderr and "--joints" in refused.stderr
+    for harmless in ("phix1", "joint_7_torque", "temperature", "quality", "finger_joint1"):
+        text = [f"{lines[0]},{harmless}", *(f"{line},0.1" for line in lines[1:])]
+        source.write_text("\n".join(text) + "\n", encoding="utf-8")
+        assert run("import", str(source), *TOLD, "--out", str(out)).code == 0, harmless
