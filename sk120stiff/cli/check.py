@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.options import BaseOption, RobotArgument, ToolOption
+from sk120stiff.cli.opening import model_file
+from sk120stiff.cli.options import BaseOption, RobotOrModelArgument, ToolOption
 from sk120stiff.cli.tables import table
+from sk120stiff.model import robot_of_model
 from sk120stiff.robot.checks import CheckReport, check_robot
 
 
-def command(robot: RobotArgument, base: BaseOption = None, tool: ToolOption = None) -> Answer:
+def command(
+    robot: RobotOrModelArgument, base: BaseOption = None, tool: ToolOption = None
+) -> Answer:
     """Does a robot load, what moves, what is suspicious.
 
     Example: sk120stiff check motoman_sk120
     """
-    report = check_robot(robot, base=base, tool=tool)
+    file = model_file(robot)
+    report = check_robot(robot if file is None else robot_of_model(file), base=base, tool=tool)
     document = {
         "name": report.name,
         "base_frame": report.base_frame,

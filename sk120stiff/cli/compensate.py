@@ -10,12 +10,12 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import pose_of
+from sk120stiff.cli.opening import model_for, open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_write
-from sk120stiff.model import Model, joint_spring_model, read_model
+from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
@@ -100,7 +100,7 @@ def command(
     Example: sk120stiff compensate model.yaml path.csv --start '0,20,-30,0,-60,0 deg' --out new.csv
     """
     will_write(out)
-    believed = read_model(model)
+    believed = open_model(model)
     robot = believed.robot
     movable = None if only is None else _movable(believed, only)
     given = read_path(path, robot)
@@ -128,7 +128,7 @@ def command(
         )
     after = found.after
     if against is not None:
-        truth = read_model(against, robot)
+        truth = model_for(robot, against)
         after = standing(truth, found.a, nominal, given.wrench, frame=at)
         before = standing(truth, nominal, nominal, given.wrench, frame=at)
         found = Compensation(found.a, before, after, found.reasons)

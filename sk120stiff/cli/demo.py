@@ -23,7 +23,6 @@ from sk120stiff.cli.identify import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import all_effects, situation_of
-from sk120stiff.errors import InputError
 from sk120stiff.explain import explain, verdict_document
 from sk120stiff.explain.swallowed import swallowed
 from sk120stiff.files import write_atomically
@@ -63,18 +62,10 @@ def command(
 
 
 def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
-    """Everything the demo computes.
-
-    Raises
-    ------
-    InputError
-        The robot has no model of its own.
-    """
+    """Everything the demo computes."""
     from sk120stiff.show.stories.demo_report import Demo
 
     paper = base_model(robot)
-    if paper is None:
-        raise InputError("the robot has no model.yaml", where=robot.name)
     found = fit(paper, readings, method="trf")
     other = fit(paper, readings, method="lm")
     tell(10, 100)

@@ -9,12 +9,11 @@ from typing import Annotated
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import pose_of
+from sk120stiff.cli.opening import open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument, PoseOption
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write, write_atomically
-from sk120stiff.model import read_model
 from sk120stiff.workspace import FORMATS, spring_arm
 
 _BY_ENDING = {".xml": "mjcf", ".mjcf": "mjcf", ".sdf": "sdf"}
@@ -48,7 +47,7 @@ def command(
     Example: sk120stiff export model.yaml --pose '0,20,-30,0,-60,0 deg' --out sk120.xml
     """
     will_write(out)
-    believed = read_model(model)
+    believed = open_model(model)
     robot = believed.robot
     chosen = to.value if to is not None else _BY_ENDING.get(out.suffix.lower())
     if chosen is None:

@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_data, provenance, start_model
+from sk120stiff.cli.opening import model_for, open_data, provenance, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import effect
@@ -35,7 +35,7 @@ from sk120stiff.identify import (
 )
 from sk120stiff.identify.report import noise_sentence, place_of
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model, read_model, write_model
+from sk120stiff.model import Model, write_model
 from sk120stiff.slips import look, refuse_unbelievable, without_copies
 
 Interval = tuple[float, float]
@@ -232,7 +232,7 @@ def with_freedom(model: Model, fix: Sequence[str], free: Sequence[str] | None) -
 
 def _other(base: Model, text: str, readings: Measurements) -> Model:
     if Path(text).suffix in (".yaml", ".yml") or Path(text).is_file():
-        return read_model(text, base.robot)
+        return model_for(base.robot, text)
     for name in text.strip("+ ").split("+"):
         base = with_effect(base, name.strip(), readings)
     return base

@@ -24,6 +24,7 @@ _UsageError = cast(type[Exception], typer.BadParameter.__mro__[1])
 # opens with the same line; the file is imported when the command is called, not before.
 COMMANDS = {
     "check": "Does a robot load, what moves, what is suspicious.",
+    "new": "A folder to start from: robot, model, empty measurements.",
     "stiffness": "How stiff the arm is: here, this way, under this load.",
     "identify": "Spring values and their uncertainty from measured deflections.",
     "predict": "Predicted displacement of every reading ± its uncertainty, and the gap to it.",

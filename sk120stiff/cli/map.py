@@ -10,13 +10,13 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import direction_of, open_model, open_robot, pose_of, wrench_of
+from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
     AtOption,
     BaseOption,
     ModelOption,
     PoseOption,
-    RobotArgument,
+    RobotOrModelArgument,
     ToolOption,
 )
 from sk120stiff.cli.tables import progress_bar, table
@@ -47,7 +47,7 @@ from sk120stiff.workspace.inverse import rotation_of
 
 
 def command(
-    robot: RobotArgument,
+    robot: RobotOrModelArgument,
     out: Annotated[
         Path, typer.Option("--out", metavar="STORE.zarr", help="Folder to write the map to.")
     ],
@@ -150,8 +150,8 @@ def command(
     """
     will_fill(out)
     will_write(page, "--page")
-    arm_robot = open_robot(robot, base, tool)
-    believed = open_model(arm_robot, model)
+    believed = open_model(robot, model, base=base, tool=tool)
+    arm_robot = believed.robot
     arm = elastic_arm(believed, frame=at)
     rest = pose_of(arm_robot, pose)
     loads = np.array([wrench_of(text) for text in wrench] if wrench else [np.zeros(6)])

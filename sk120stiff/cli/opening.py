@@ -46,7 +46,12 @@ def declare_readings(out: Path | None) -> None:
 
 
 def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
-    """Load a robot; frames that nobody named are told on stderr."""
+    """Load a robot, or that of a model; frames that nobody named are told on stderr."""
+    from sk120stiff.model import read_model
+
+    file = model_file(source)
+    if file is not None:
+        return read_model(file, base=base, tool=tool).robot
     robot = load_robot(source, base=base, tool=tool)
     described = find_robot(source).description
     if base is None and described.base_frame is None:
@@ -58,27 +63,94 @@ def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
     return robot
 
 
-def open_model(robot: Robot, path: Path | None) -> Model:
-    """The model of that file, or the one that lies beside the robot's `robot.yaml`.
+def open_model(
+    named: str,
+    path: Path | None = None,
+    *,
+    base: str | None = None,
+    tool: str | None = None,
+) -> Model:
+    """The model that the words of a command line mean: those of a robot or of a model.
 
-    Raises
-    ------
-    InputError
-        There is neither.
+    Parameters
+    ----------
+    named
+        ROBOT or MODEL. A model file knows its robot; a robot has the model beside its
+        `robot.yaml`, or else springs typical of its size, which is told.
+    path
+        What --model names, if anything: it is put on the robot of `named`.
+    base, tool
+        Frames in the place of the robot's own.
     """
     from sk120stiff.model import base_model, read_model
 
-    model = base_model(robot) if path is None else read_model(path, robot)
-    if model is None:
-        first = robot.actuated[0]
-        unit = "N/m" if robot.prismatic[0] else "N*m/rad"
+    file = model_file(named)
+    if path is None:
+        model = (
+            base_model(open_robot(named, base, tool))
+            if file is None
+            else read_model(file, base=base, tool=tool)
+        )
+        return tell_doubts(model)
+    return model_for(open_robot(named, base, tool), path)
+
+
+def model_for(robot: Robot, path: str | Path) -> Model:
+    """The model that --model or MODEL names, on a robot that is known already."""
+    from sk120stiff.model import base_model, read_model
+
+    file = model_file(path)
+    if file is not None:
+        return tell_doubts(read_model(file, robot))
+    named = find_robot(str(path))
+    if not _same_joints(str(path), robot):
         raise InputError(
-            "no spring values are known for this robot",
-            where=robot.name,
-            remedy="Identify them ('sk120stiff identify DATA --out model.yaml') or write a model "
-            f"and give it with --model, e.g. {{robot: {robot.source}, effects: [{{name: "
-            f"joint_springs, where: {first}, parameters: {{stiffness: {{value: 1e6, "
-            f"unit: {unit}}}}}}}, ...]}}.",
+            f"this is another robot than {robot.name}",
+            where=str(path),
+            remedy="Give a model of that robot, or the robot itself.",
+        )
+    beside = named.model_file
+    return tell_doubts(base_model(robot) if beside is None else read_model(beside, robot))
+
+
+def _same_joints(named: str, robot: Robot) -> bool:
+    try:
+        other = load_robot(named, base=robot.base_frame, tool=robot.tool_frame)
+    except InputError:  # it has no such frames
+        return False
+    return other.actuated == robot.actuated
+
+
+def model_file(named: str | Path) -> Path | None:
+    """The model file that a word of the command line means; None where it means a robot.
+
+    That is a YAML file other than `robot.yaml`, or a folder that holds a `model.yaml` and no robot.
+    """
+    path = Path(named)
+    if path.suffix.lower() in (".csv", ".html", ".json", ".zarr"):
+        raise InputError(
+            "this is no robot and no model file",
+            where=str(named),
+            remedy="Give a .urdf, a .xacro, a folder with robot.yaml, a bundled name, or a model "
+            "file (.yaml).",
+        )
+    if path.suffix.lower() in (".yaml", ".yml") and path.name != "robot.yaml":
+        return path
+    held = path / "model.yaml"
+    return held if held.is_file() and not (path / "robot.yaml").exists() else None
+
+
+def tell_doubts(model: Model) -> Model:
+    """The model, after a warning where its values are none that anybody measured."""
+    from sk120stiff.model import typical_parameters
+
+    if assumed := typical_parameters(model):
+        places = ", ".join(dict.fromkeys(p.effect.where for p in assumed))
+        warnings.warn(
+            f"The springs of {places} are typical of an arm of this size, not measured: results "
+            "are orders of magnitude. Identify them (sk120stiff identify), or give --model.",
+            ToolkitWarning,
+            stacklevel=2,
         )
     return model
 
@@ -138,16 +210,19 @@ def open_data(path: Path, base: str | None = None, tool: str | None = None) -> O
 
 
 def start_model(robot: Robot, path: Path | None) -> Model:
-    """The model of that file, else the robot's own, else a spring in every actuated joint."""
-    from sk120stiff.model import base_model, joint_spring_model, read_model
+    """The model to start an identification with: that of --model, else the robot's own."""
+    from sk120stiff.model import base_model, read_model, typical_parameters
 
     if path is not None:
-        return read_model(path, robot)
+        file = model_file(path)
+        return base_model(robot) if file is None else read_model(file, robot)
     known = base_model(robot)
-    if known is not None:
-        return known
-    note("No model was given: a spring in every actuated joint is assumed (give one with --model).")
-    return joint_spring_model(robot)
+    if typical_parameters(known):
+        note(
+            "No model was given: a spring in every actuated joint is assumed (give one with "
+            "--model)."
+        )
+    return known
 
 
 def provenance(path: Path, data: Measurements) -> dict[str, str]:

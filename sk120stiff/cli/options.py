@@ -23,6 +23,16 @@ RobotArgument = Annotated[
         show_default=False,
     ),
 ]
+RobotOrModelArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="ROBOT|MODEL",
+        help="A robot (a .urdf, a .xacro, a folder with robot.yaml, a bundled name), or a model "
+        "file (YAML), which knows its robot.",
+        autocompletion=_robots,
+        show_default=False,
+    ),
+]
 DataArgument = Annotated[
     Path,
     typer.Argument(
@@ -32,7 +42,14 @@ DataArgument = Annotated[
     ),
 ]
 ModelArgument = Annotated[
-    Path, typer.Argument(metavar="MODEL", help="A model file (YAML).", show_default=False)
+    str,
+    typer.Argument(
+        metavar="MODEL|ROBOT",
+        help="A model file (YAML), or a robot: then the model beside its robot.yaml, else springs "
+        "typical of its size.",
+        autocompletion=_robots,
+        show_default=False,
+    ),
 ]
 PoseOption = Annotated[
     str | None,
@@ -77,7 +94,7 @@ ModelOption = Annotated[
     typer.Option(
         "--model",
         metavar="MODEL",
-        help="Model file (YAML) with the effects and their values.",
+        help="Model file (YAML) with the effects and their values; or a robot that has one.",
         show_default="the one beside robot.yaml",
     ),
 ]

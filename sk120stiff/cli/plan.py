@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import declare_readings, open_data, start_model
+from sk120stiff.cli.opening import declare_readings, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.plan_wishes import named_parameters, two_effects
 from sk120stiff.cli.tables import progress_bar, table
@@ -18,7 +18,7 @@ from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, write_measurements
-from sk120stiff.model import Model, read_model
+from sk120stiff.model import Model
 from sk120stiff.plan import (
     Pool,
     Region,
@@ -267,9 +267,9 @@ def _held_against(
 
 def _opened(model: Path, data: Path | None) -> tuple[Measurements | None, Model]:
     if data is None:
-        return None, read_model(model)
+        return None, open_model(str(model))
     known, robot = open_data(data)
-    return known, start_model(robot, model)
+    return known, model_for(robot, model)
 
 
 def _points(known: Measurements | None, text: str | None) -> tuple[Array, Array]:

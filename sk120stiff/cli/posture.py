@@ -11,12 +11,12 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import direction_of
+from sk120stiff.cli.opening import direction_of, open_model
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
-from sk120stiff.model import Model, read_model
+from sk120stiff.model import Model
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
@@ -133,7 +133,7 @@ def command(
     will_write(out)
     will_write(picture, "--picture")
     will_write(page, "--page")
-    believed = read_model(model)
+    believed = open_model(model)
     robot = believed.robot
     given = read_path(path, robot)
     if given.position is None:

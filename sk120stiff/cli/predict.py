@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_data, start_model
+from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import blame_reason, plus_minus, sentences, uncertainty_keys
@@ -43,7 +43,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     """
     will_write(out)
     readings, robot = open_data(data)
-    believed = start_model(robot, model)
+    believed = model_for(robot, model)
     for said in look(believed, readings).sentences:
         warnings.warn(said, ToolkitWarning, stacklevel=2)
     predicted = predict_what_holds(believed, situation_of(robot, readings))

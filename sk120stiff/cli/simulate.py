@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import declare_readings, open_data, start_model
+from sk120stiff.cli.opening import declare_readings, model_for, open_data
 from sk120stiff.cli.options import ModelArgument, SeedOption
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import NoiseModel, write_measurements
@@ -83,18 +83,20 @@ def command(
     """
     declare_readings(out)
     readings, robot = open_data(plan)
+    believed = model_for(robot, model)
     made = simulate(
-        start_model(robot, model),
+        believed,
         readings,
         noise=_noise(noise, growth, zero),
         schedule=Schedule(schedule.value, levels, repeats, zero.value),
         outliers=outliers,
         seed=seed,
     )
-    source = f"simulated by 'sk120stiff simulate' from {model.name} and {plan.name}, seed {seed}"
+    named = f"{Path(model).name} and {plan.name}"
+    source = f"simulated by 'sk120stiff simulate' from {named}, seed {seed}"
     made = replace(made, measurements=replace(made.measurements, source=source))
     if positions:
-        written = as_positions(start_model(robot, model), made)
+        written = as_positions(believed, made)
         write_measurements(written, out, as_positions=True)
     else:
         written = made.measurements

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_model, open_robot, pose_of, wrench_of
+from sk120stiff.cli.opening import open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
     AtOption,
     BaseOption,
     ModelOption,
     PoseOption,
-    RobotArgument,
+    RobotOrModelArgument,
     ToolOption,
     WrenchOption,
 )
@@ -44,7 +44,7 @@ UNITS = {
 
 
 def command(
-    robot: RobotArgument,
+    robot: RobotOrModelArgument,
     pose: PoseOption = None,
     wrench: WrenchOption = None,
     model: ModelOption = None,
@@ -60,10 +60,10 @@ def command(
 
     Example: sk120stiff stiffness motoman_sk120 --pose 'joint_2_l=20 deg' --wrench '0,0,-490 N'
     """
-    arm = open_robot(robot, base, tool)
+    believed = open_model(robot, model, base=base, tool=tool)
+    arm = believed.robot
     a, load = pose_of(arm, pose), wrench_of(wrench)
     frame = at or arm.tool_frame
-    believed = open_model(arm, model)
     found = loaded_stiffness(believed, a, load, frame)
     doubt = loaded_uncertainty(believed, a, load, found, frame)
     document = {

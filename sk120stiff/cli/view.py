@@ -5,16 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer, note
-from sk120stiff.cli.opening import open_robot, pose_of, wrench_of
+from sk120stiff.cli.opening import model_file, model_for, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
     BaseOption,
     ModelOption,
     PoseOption,
-    RobotArgument,
+    RobotOrModelArgument,
     ToolOption,
     WrenchOption,
 )
@@ -22,7 +21,7 @@ from sk120stiff.files import will_write
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
-    from sk120stiff.robot import Robot
+    from sk120stiff.model import Model
     from sk120stiff.show import Scene
 
 DataOption = Annotated[
@@ -69,7 +68,7 @@ StaticOption = Annotated[
 
 
 def command(
-    robot: RobotArgument,
+    robot: RobotOrModelArgument,
     model: ModelOption = None,
     data: DataOption = None,
     before: BeforeOption = None,
@@ -93,8 +92,9 @@ def command(
     measured = None if data is None else _read(data)
     if measured is not None:  # the frames that the readings are about
         base, tool = base or measured.base_frame, tool or measured.tool_frame
-    arm = open_robot(robot, base, tool)
-    scene = _scene(arm, model, before, measured, pose, wrench)
+    believed = open_model(robot, model, base=base, tool=tool)
+    file = model or model_file(robot)
+    scene = _scene(believed, file, before, measured, pose, wrench)
     if static is not None:
         from sk120stiff.show import static_scene
 
@@ -119,42 +119,23 @@ def _read(data: Path) -> Measurements:
 
 
 def _scene(
-    robot: Robot,
-    model_file: Path | None,
+    model: Model,
+    file: Path | None,
     before: Path | None,
     data: Measurements | None,
     pose: str | None,
     wrench: str | None,
 ) -> Scene:
-    from sk120stiff.model import base_model, read_model
-    from sk120stiff.show import Elastic, Scene, scene_of_model
-    from sk120stiff.show.building import poses_of
+    from sk120stiff.show import scene_of_model
 
-    a = None if pose is None else pose_of(robot, pose)
-    load = None if wrench is None else wrench_of(wrench)
-    model = base_model(robot) if model_file is None else read_model(model_file, robot)
-    if model is not None:
-        shown = {} if before is None else {"before": read_model(before, robot)}
-        return scene_of_model(
-            model,
-            data,
-            models={**shown, "model": model},
-            title=robot.name,
-            a=a,
-            wrench=load,
-            model_file=model_file or "",
-        )
-    note(
-        "No stiffness is known for this robot; the page shows an assumed one and says so. "
-        "Give a model with --model."
-    )
-    return Scene(
-        robot,
-        Elastic.assumed_for(robot),
-        poses=() if data is None else poses_of(robot, data),
+    robot = model.robot
+    shown = {} if before is None else {"before": model_for(robot, before)}
+    return scene_of_model(
+        model,
+        data,
+        models={**shown, "model": model},
         title=robot.name,
-        point=np.zeros(3) if data is None else data.point,
-        a=a,
-        wrench=load,
-        robot_argument=robot.source,
+        a=None if pose is None else pose_of(robot, pose),
+        wrench=None if wrench is None else wrench_of(wrench),
+        model_file=file or "",
     )

@@ -6,6 +6,7 @@ from sk120stiff.model.file import (
     model_from_text,
     model_text,
     read_model,
+    robot_of_model,
     write_model,
 )
 from sk120stiff.model.holding import held_loads, warn_of_far_bend
@@ -20,6 +21,7 @@ from sk120stiff.model.model import (
     joint_spring_model,
 )
 from sk120stiff.model.predicted import Predicted, predict_with_uncertainty
+from sk120stiff.model.typical import typical_model, typical_parameters
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
 __all__ = [
@@ -44,6 +46,9 @@ __all__ = [
     "model_text",
     "predict_with_uncertainty",
     "read_model",
+    "robot_of_model",
+    "typical_model",
+    "typical_parameters",
     "warn_of_far_bend",
     "write_model",
 ]

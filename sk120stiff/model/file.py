@@ -32,6 +32,7 @@ from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import parse_yaml, read_text, write_atomically
 from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model, Parameter
+from sk120stiff.model.typical import typical_model
 from sk120stiff.model.uncertainty_file import (
     ModelDumper,
     UncertaintySection,
@@ -118,8 +119,23 @@ def write_model(model: Model, path: str | os.PathLike[str]) -> Path:
     return write_atomically(path, model_text(model, folder=Path(path).parent))
 
 
-def read_model(path: str | os.PathLike[str], robot: Robot | None = None) -> Model:
+def read_model(
+    path: str | os.PathLike[str],
+    robot: Robot | None = None,
+    *,
+    base: str | None = None,
+    tool: str | None = None,
+) -> Model:
     """Read a model file, and its robot unless one is given.
+
+    Parameters
+    ----------
+    path
+        The file.
+    robot
+        The robot to use the model with.
+    base, tool
+        Frames in the place of those that the file names, where no robot is given.
 
     Raises
     ------
@@ -133,7 +149,16 @@ def read_model(path: str | os.PathLike[str], robot: Robot | None = None) -> Mode
         The robot given is not the one that the model is of.
     """
     source = Path(path)
-    return model_from_text(read_text(source), where=str(source), folder=source.parent, robot=robot)
+    text, folder = read_text(source), source.parent
+    if robot is None and (base or tool):
+        content = _parsed(text, str(source))
+        robot = load_robot(
+            content.robot,
+            base=base or content.base_frame,
+            tool=tool or content.tool_frame,
+            relative_to=folder,
+        )
+    return model_from_text(text, where=str(source), folder=folder, robot=robot)
 
 
 def model_from_text(
@@ -197,10 +222,21 @@ def _warn_of_untrusted(model: Model, where: str) -> None:
         )
 
 
-def base_model(robot: Robot) -> Model | None:
-    """The `model.yaml` that lies beside a robot's `robot.yaml`, if there is one."""
-    source = find_robot(robot.source)
-    return None if source.model_file is None else read_model(source.model_file, robot)
+def robot_of_model(path: str | os.PathLike[str]) -> str:
+    """The robot that a model file names, as it is found from here."""
+    source = Path(path)
+    named = _parsed(read_text(source), str(source)).robot
+    beside = source.parent / named
+    return str(beside) if not named.lstrip().startswith("<") and beside.exists() else named
+
+
+def base_model(robot: Robot) -> Model:
+    """The `model.yaml` beside a robot's `robot.yaml`; else springs typical of an arm of its size.
+
+    The latter say so in their `origin`; see `typical_model`.
+    """
+    known = find_robot(robot.source).model_file
+    return typical_model(robot) if known is None else read_model(known, robot)
 
 
 def _seen_from(folder: Path | None, source: str) -> str:

@@ -9,7 +9,6 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.errors import InputError
 from sk120stiff.model import Model, base_model
 from sk120stiff.paper.printed import LOWER, STEP, UPPER
 from sk120stiff.robot import Mechanism, Robot, Screws, load_robot
@@ -69,12 +68,7 @@ class Setting:
 def setting() -> Setting:
     """The bundled SK120 with its bundled base model."""
     robot = load_robot("motoman_sk120")
-    model = base_model(robot)
-    if model is None:
-        raise InputError(
-            "the bundled robot has no model.yaml", where=robot.name, remedy="Reinstall the package."
-        )
-    return Setting(robot, model)
+    return Setting(robot, base_model(robot))
 
 
 def motion_axes() -> tuple[Array, Array, Array]:

@@ -87,6 +87,8 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
             + ", ".join(sorted(bundled))
             + ".",
         )
+    if path.name == "robot.yaml" and path.is_file():
+        path = path.parent
     if path.is_dir() and (path / "robot.yaml").is_file():
         description = read_description(path / "robot.yaml")
         told = {name: xacro_value(value) for name, value in description.xacro.items()}

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ASSUMED_STIFFNESS = 1.0e5  # N·m/rad or N/m, where nothing is known: shape only, never a value
+ASSUMED = "springs assumed: typical of an arm of this size, not measured"
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,15 +101,6 @@ class Elastic:
         return cls(robot.mechanism(frame), np.diag(1.0 / values), label)
 
     @classmethod
-    def assumed_for(cls, robot: Robot, *, frame: str | None = None) -> Elastic:
-        """The same assumed spring at every joint, for a robot of which no stiffness is known."""
-        springs = np.full(robot.n, ASSUMED_STIFFNESS)
-        found = cls.of_springs(robot, springs, frame=frame)
-        unit = "100 kN/m" if all(robot.prismatic) else "100 kN·m/rad"
-        unit += " (kN/m where it slides)" if any(robot.prismatic) and "rad" in unit else ""
-        return cls(found.mechanism, found.compliance, f"{unit} assumed at every joint", True)
-
-    @classmethod
     def of_model(cls, model: Model, *, at: ArrayLike | None = None, label: str = "") -> Elastic:
         """A model's arm, without its instruments.
 
@@ -125,6 +116,8 @@ class Elastic:
         InputError
             Nothing in the model yields.
         """
+        from sk120stiff.model import typical_parameters
+
         arm = model.physical()
         pose = arm.robot.rest if at is None else np.asarray(at, dtype=float)
         offset, compliance = _unloaded(arm, pose)
@@ -134,11 +127,13 @@ class Elastic:
                 where=arm.robot.name,
                 remedy="Give a model with joint_springs or another elastic effect.",
             )
+        assumed = bool(typical_parameters(arm))
         names = ", ".join(dict.fromkeys(effect.name for effect in arm.effects))
         return cls(
             mechanism=arm.assembly.mechanism,
             compliance=compliance,
-            label=label or f"model of {names}",
+            label=label or (ASSUMED if assumed else f"model of {names}"),
+            assumed=assumed,
             offset=offset,
             model=None if _is_constant(arm) else arm,
         )

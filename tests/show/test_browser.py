@@ -10,6 +10,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from sk120stiff import load_robot
+from sk120stiff.model import base_model
 from sk120stiff.show import Elastic, Report, Scene, SceneFrame, Section, static_scene
 from sk120stiff.show.frame import Request, compute_frame
 from sk120stiff.show.payload import frame_payload
@@ -43,10 +44,10 @@ SCENES = {
     ),
     "gantry": lambda: Scene(
         load_robot(TWO_SLIDES),
-        Elastic.assumed_for(load_robot(TWO_SLIDES)),
+        Elastic.of_model(base_model(load_robot(TWO_SLIDES))),
         wrench=np.array([100.0, 50.0, -80.0, 5.0, -3.0, 2.0]),
     ),
-    "capsules": lambda: Scene(bare_robot(), Elastic.assumed_for(bare_robot())),
+    "capsules": lambda: Scene(bare_robot(), Elastic.of_model(base_model(bare_robot()))),
 }
 
 

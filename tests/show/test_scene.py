@@ -7,6 +7,7 @@ import pytest
 
 from sk120stiff import load_robot
 from sk120stiff.errors import InputError
+from sk120stiff.model import base_model
 from sk120stiff.show import Elastic, Reading, Scene, ScenePose, scene_html, static_scene
 from sk120stiff.show.bodies import bodies_of
 from sk120stiff.show.links import link_tree
@@ -142,4 +143,4 @@ def test_shapes_that_do_not_fit_are_refused(change) -> None:
 def test_springs_of_another_robot_are_refused() -> None:
     other = load_robot(TWO_SLIDES)
     with pytest.raises(InputError, match="another robot"):
-        Scene(sk120(), Elastic.assumed_for(other))
+        Scene(sk120(), Elastic.of_model(base_model(other)))
