@@ -205,7 +205,9 @@ def _parts(
     if found.definiteness_of_K_theta_minus_K_C != Definiteness.POSITIVE_DEFINITE:
         classes += " The unloaded pose is not stable under this load."
     growth = (
-        f"{found.critical_factor:.4g} times this load would make the arm unstable."
+        "The springs alone are indefinite here: the arm is unstable before any load."
+        if found.critical_factor == 0.0
+        else f"{found.critical_factor:.4g} times this load would make the arm unstable."
         if np.isfinite(found.critical_factor)
         else "No multiple of this load makes the arm unstable."
     )

@@ -31,8 +31,8 @@ class Elastic:
         Chain and coupling from the base frame to the frame of the point; its coordinates are
         z = [actuated; virtual].
     compliance
-        (n, n) symmetric, positive semi-definite tangent compliance of z [rad/(N·m)]; a rigid
-        coordinate has zeros.
+        (n, n) symmetric tangent compliance of z [rad/(N·m)]; a rigid coordinate has zeros. Where
+        it is indefinite the arm is unstable before any load, and the page says so.
     label
         Where the values come from, in a few words.
     assumed
@@ -57,8 +57,8 @@ class Elastic:
             object.__setattr__(self, "offset", np.zeros(n))
         if self.compliance.shape != (n, n):
             raise InputError(f"the compliance is {self.compliance.shape}, not ({n}, {n})")
-        if not np.isfinite(self.compliance).all() or (np.diag(self.compliance) < 0.0).any():
-            raise InputError("a spring is negative, zero or not a number", where=self.label)
+        if not np.isfinite(self.compliance).all():
+            raise InputError("a compliance is not a finite number", where=self.label)
 
     @classmethod
     def of_springs(

@@ -21,6 +21,7 @@ from sk120stiff.stiffness import (
 )
 
 Array = NDArray[np.float64]
+RIGID = 1e-12  # share of the largest principal compliance below which a direction is rigid
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +74,7 @@ class Frame:
         Definiteness of K_C and of K_θ − K_C over the yielding coordinates.
     softening, stiffening
         Share of the joint stiffness that K_C takes in its softest, and adds in its stiffest
-        direction.
+        direction; None where the springs alone are not positive definite, and nothing has a share.
     """
 
     links: Array
@@ -85,12 +86,14 @@ class Frame:
     deflection: dict[str, Array]
     K_C_class: str
     stiffness_class: str
-    softening: float
-    stiffening: float
+    softening: float | None
+    stiffening: float | None
 
     @property
     def critical_factor(self) -> float:
         """Factor on the load at which K_θ − K_C loses definiteness; infinite if it never does."""
+        if self.softening is None:
+            return 0.0
         return 1.0 / self.softening if self.softening > 0.0 else float("inf")
 
 
@@ -126,11 +129,12 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
         deflection["equilibrium"] = position - start.position
         exaggerated = z + request.exaggeration * (rest - z)
         deflected = place_elastic(tree, elastic, exaggerated)
-    soft = np.diag(C) > 0.0
-    K_C_soft = symmetric_part(K_C[np.ix_(soft, soft)])
-    root = np.linalg.cholesky(C[np.ix_(soft, soft)]) if soft.any() else np.zeros((0, 0))
-    shares = np.linalg.eigvalsh(root.T @ K_C_soft @ root) if soft.any() else np.zeros(1)
-    K_theta = np.linalg.inv(C[np.ix_(soft, soft)])
+    c, V = yielding_directions(C)
+    K_C_soft = symmetric_part(V.T @ K_C @ V)
+    shares: Array | None = None
+    if (c > 0.0).all():  # else a spring of the model is negative: unstable before any load
+        root = np.sqrt(c)
+        shares = np.linalg.eigvalsh(root[:, None] * K_C_soft * root) if len(c) else np.zeros(1)
     return Frame(
         links=links,
         deflected=deflected,
@@ -146,10 +150,17 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
         },
         deflection=deflection,
         K_C_class=definiteness_of(K_C_soft).value if K_C_soft.any() else "zero",
-        stiffness_class=definiteness_of(K_theta - K_C_soft).value,
-        softening=max(0.0, float(shares[-1])),
-        stiffening=max(0.0, -float(shares[0])),
+        stiffness_class=definiteness_of(np.diag(1.0 / c) - K_C_soft).value,
+        softening=None if shares is None else max(0.0, float(shares[-1])),
+        stiffening=None if shares is None else max(0.0, -float(shares[0])),
     )
+
+
+def yielding_directions(compliance: Array) -> tuple[Array, Array]:
+    """Principal compliances (r,) of the coordinates that are not zero, directions (n, r)."""
+    values, vectors = np.linalg.eigh(symmetric_part(compliance))
+    yields = np.abs(values) > RIGID * np.max(np.abs(values), initial=0.0)
+    return values[yields], vectors[:, yields]
 
 
 def place_elastic(tree: LinkTree, elastic: Elastic, z: Array) -> Array:

@@ -187,6 +187,7 @@ def _scale(scene: Scene) -> dict[str, Any]:
         screws = scene.elastic.mechanism.screws(scene.elastic.coordinates(a), scene.point)
         for name, J in (("translation", screws.jacobian[:3]), ("rotation", screws.jacobian[3:])):
             values = np.linalg.eigvalsh(J @ scene.elastic.tangent(a) @ J.T)
+            values = np.sort(np.abs(values))  # negative where the arm is unstable
             soft[name].append(float(values[-1]))
             stiff[name].append(float(values[1]))  # the middle one: no singularity carries it away
     references = {}

@@ -62,6 +62,8 @@ def read_answer(folder: Path) -> Answer:
     """The answer in one folder; verdict `error` if the command did not give one."""
     run = _json(folder / "run.json") or {}
     seconds = float(run.get("seconds") or 0.0)
+    if run.get("pages") is False:  # the answer is there, but a user was shown none of it
+        return Answer("error", seconds=seconds)
     document = _json(folder / "verdict.json")
     if not isinstance(document, dict) or "verdict" not in document:
         # an explained refusal is an answer, though an empty one; a crash or a timeout is none

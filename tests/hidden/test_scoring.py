@@ -127,6 +127,36 @@ def test_no_answer_is_no_point(tmp_path: Path) -> None:
     assert mark(truth("L7", TILT), answer)[0] == 0.0
 
 
+def test_a_page_that_failed_is_no_point(tmp_path: Path) -> None:
+    answered(tmp_path, "none")
+    for pages, verdict in ((None, "none"), (True, "none"), (False, "error")):
+        (tmp_path / "run.json").write_text(json.dumps({"exit": 0, "seconds": 9.0, "pages": pages}))
+        answer = read_answer(tmp_path)
+        assert answer.verdict == verdict
+        assert mark(truth("L0", expected="none"), answer)[0] == float(verdict == "none")
+
+
+def test_one_case_in_ten_draws_its_pages() -> None:
+    names = [f"case_{k:04d}" for k in range(2000)]
+    share = sum(run.drawn(name) for name in names) / len(names)
+    assert 0.07 < share < 0.13
+
+
+@pytest.mark.parametrize(
+    ("pages", "told", "whole"),
+    [
+        (("report.html", "scene.html"), "Warning: few poses.", True),
+        (("scene.html",), "", False),
+        (("report.html", "scene.html"), "Warning: The picture 'x' could not be made", False),
+    ],
+)
+def test_pages_are_looked_at(tmp_path: Path, pages, told: str, whole: bool) -> None:
+    for page in pages:
+        (tmp_path / page).write_text("<html>")
+    (tmp_path / "stderr.txt").write_text(told)
+    assert run.pages_are_whole(tmp_path) == whole
+
+
 def test_one_spelling_per_name() -> None:
     assert identity("closure_coupling", "joint_3_u, joint_2_l") == identity(
         "closure_coupling", "joint_2_l+joint_3_u"

@@ -47,6 +47,9 @@ SCENES = {
         Elastic.of_model(base_model(load_robot(TWO_SLIDES))),
         wrench=np.array([100.0, 50.0, -80.0, 5.0, -3.0, 2.0]),
     ),
+    "indefinite": lambda: Scene(
+        sk120(), Elastic.of_model(with_effect("closure_coupling", "joint_2_l,joint_3_u", 2e5))
+    ),
     "capsules": lambda: Scene(bare_robot(), Elastic.of_model(base_model(bare_robot()))),
 }
 

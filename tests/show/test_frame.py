@@ -6,7 +6,7 @@ import pytest
 from sk120stiff.effects import effect
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model, Parameter, loaded_stiffness
-from sk120stiff.show import Elastic
+from sk120stiff.show import Elastic, Scene, scene_html
 from sk120stiff.show.frame import Request, compute_frame, place_elastic
 from sk120stiff.show.links import link_tree
 from tests.show.scenes import random_pose, sk120, springs
@@ -68,6 +68,29 @@ def test_beyond_the_critical_load_it_says_so_and_draws_no_deflection() -> None:
     assert beyond.stiffness_class == "indefinite"
     assert beyond.translation["enhanced"].values.min() < 0.0  # never hidden behind an absolute
     assert beyond.softening > 1.0
+
+
+def test_springs_that_are_indefinite_are_drawn_and_said() -> None:
+    """Cross compliance beyond √(c₂ c₃): the arm would run away before any load."""
+    model = with_effect("closure_coupling", "joint_2_l,joint_3_u", 2e5)
+    frame, found = frame_of(model), loaded_stiffness(model, A, WRENCH)
+    assert frame.stiffness_class == found.definiteness_of_K_theta_minus_K_C == "indefinite"
+    assert (frame.softening, frame.stiffening) == (None, None)
+    assert frame.critical_factor == found.critical_factor == 0.0
+    np.testing.assert_allclose(frame.deflection["enhanced"], found.deflection_enhanced, rtol=1e-8)
+    page = scene_html(Scene(sk120(), Elastic.of_model(model), wrench=WRENCH))
+    assert "indefinite here" in page and "NaN" not in page.split('id="scene">')[1][:200_000]
+
+
+def test_springs_on_the_edge_are_drawn_too() -> None:
+    """Cross compliance of √(c₂ c₃): one combination of the two motors is rigid."""
+    c = [p.value for p in springs().parameters if p.effect.where in ("joint_2_l", "joint_3_u")]
+    model = with_effect(
+        "closure_coupling", "joint_2_l,joint_3_u", float(1.0 / np.sqrt(c[0] * c[1]))
+    )
+    frame, found = frame_of(model), loaded_stiffness(model, A, WRENCH)
+    np.testing.assert_allclose(frame.deflection["enhanced"], found.deflection_enhanced, rtol=1e-6)
+    assert scene_html(Scene(sk120(), Elastic.of_model(model), wrench=WRENCH))
 
 
 def test_no_load_no_share() -> None:

@@ -65,7 +65,8 @@ def plane_ellipses(
     centres = np.array([e.centre for e in ellipses])[:, [u, v]]
     span = _span(ellipses, centres, u, v)
     largest = max(
-        float(np.max(np.linalg.eigvalsh(symmetric_part(e.compliance)[pick]))) for e in ellipses
+        float(np.max(np.abs(np.linalg.eigvalsh(symmetric_part(e.compliance)[pick]))))
+        for e in ellipses
     )
     per_metre = 0.16 * span / largest  # metres drawn per m/N
     angle = np.linspace(0.0, 2.0 * np.pi, 181)

@@ -79,21 +79,6 @@ SK.algebra = (() => {
     return M.map((row) => row.slice(n));
   }
 
-  // Lower triangular L with L Lᵀ = A; null where A is not positive definite.
-  function cholesky(A) {
-    const n = A.length, L = zeros(n, n);
-    for (let i = 0; i < n; i++)
-      for (let j = 0; j <= i; j++) {
-        let sum = A[i][j];
-        for (let k = 0; k < j; k++) sum -= L[i][k] * L[j][k];
-        if (i === j) {
-          if (!(sum > 0)) return null;
-          L[i][i] = Math.sqrt(sum);
-        } else L[i][j] = sum / L[j][j];
-      }
-    return L;
-  }
-
   // Eigenvalues of a symmetric matrix, largest first, with unit vectors as rows: Jacobi's rotations.
   function eigen(symmetricMatrix) {
     const n = symmetricMatrix.length;
@@ -130,6 +115,6 @@ SK.algebra = (() => {
 
   return {
     identity4, times4, inverse4, motion4, position4, turn4, move4, add, minus, scaled, dot, norm, cross,
-    zeros, identity, transposed, times, apply, difference, symmetric, solve, cholesky, eigen,
+    zeros, identity, transposed, times, apply, difference, symmetric, solve, eigen,
   };
 })();

@@ -5,8 +5,13 @@ SK.makeEngine = (constants, onState = () => {}) => {
   const m = SK.algebra;
   const { drives, A, b, offset, compliance: C, chain, tree } = constants;
   const n = C.length;
-  const soft = C.map((row, i) => i).filter((i) => C[i][i] > 0);
-  const pick = (M, rows) => rows.map((i) => rows.map((j) => M[i][j]));
+  // Principal compliances of the coordinates that are not zero, and their directions as rows.
+  const yielding = (() => {
+    const { values, directions } = m.eigen(m.symmetric(C));
+    const largest = Math.max(0, ...values.map(Math.abs));
+    const kept = values.map((value, k) => k).filter((k) => Math.abs(values[k]) > 1e-12 * largest);
+    return { c: kept.map((k) => values[k]), V: kept.map((k) => directions[k]) };
+  })();
 
   const jointValues = (z) => m.add(m.apply(A, z), b); // all joints, then the virtual ones
 
@@ -122,9 +127,12 @@ SK.makeEngine = (constants, onState = () => {}) => {
     const deflection = { conventional: m.apply(top, m.apply(C, torques)), enhanced: m.apply(top, m.apply(loaded, torques)) };
     const rest = equilibrium(z, wrench, point);
     if (rest) deflection.equilibrium = m.minus(rest.position, screws.position);
-    const K_Csoft = m.symmetric(pick(K_C, soft)), L = m.cholesky(pick(C, soft));
-    const shares = m.eigen(m.symmetric(m.times(m.transposed(L), m.times(K_Csoft, L)))).values;
-    const K_theta = m.solve(pick(C, soft), m.identity(soft.length));
+    const { c, V } = yielding;
+    const K_Csoft = m.symmetric(m.times(V, m.times(K_C, m.transposed(V))));
+    // A negative spring: unstable before any load, and nothing has a share.
+    const shares = c.every((value) => value > 0)
+      ? m.eigen(K_Csoft.map((row, i) => row.map((value, j) => value * Math.sqrt(c[i] * c[j])))).values : null;
+    const K_theta = c.map((value, i) => c.map((_, j) => (i === j ? 1 / value : 0)));
     return {
       links: placeElastic(z, point),
       deflected: rest && placeElastic(m.add(z, m.scaled(m.minus(rest.z, z), exaggeration)), point),
@@ -137,8 +145,8 @@ SK.makeEngine = (constants, onState = () => {}) => {
         K_C: K_Csoft.some((row) => row.some((v) => v !== 0)) ? definiteness(K_Csoft) : "zero",
         stiffness: definiteness(m.difference(K_theta, K_Csoft)),
       },
-      softening: Math.max(0, shares[0]),
-      stiffening: Math.max(0, -shares[shares.length - 1]),
+      softening: shares && Math.max(0, shares[0]),
+      stiffening: shares && Math.max(0, -shares[shares.length - 1]),
     };
   }
 

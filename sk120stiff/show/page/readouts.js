@@ -42,7 +42,9 @@ SK.makeReadouts = (scene, state) => {
       rows.push(...fact(element("span", {}, "One step, with ", K_C()), off("enhanced")), ...fact("One step, without", off("conventional")));
     }
     rows.push(...fact(K_C(), frame.classes.K_C === "zero" ? "zero, no load" : frame.classes.K_C));
-    if (loaded) {
+    if (frame.softening === null)
+      rows.push(...fact("Springs", "indefinite here", "the arm is unstable before any load"));
+    else if (loaded) {
       rows.push(...fact(element("span", {}, "Share of ", K_C()), `softens \u2264 ${percent(frame.softening)}`, `stiffens \u2264 ${percent(frame.stiffening)}`));
       const critical = frame.softening > 0 ? 1 / frame.softening : Infinity;
       rows.push(...fact("Critical load", critical === Infinity ? "none this way" : `${number(critical, 3)} \u00d7 this load`));
