@@ -134,7 +134,9 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
     shares: Array | None = None
     if (c > 0.0).all():  # else a spring of the model is negative: unstable before any load
         root = np.sqrt(c)
-        shares = np.linalg.eigvalsh(root[:, None] * K_C_soft * root) if len(c) else np.zeros(1)
+        shares = np.zeros(1)
+        if len(c):
+            shares = np.asarray(np.linalg.eigvalsh(root[:, None] * K_C_soft * root))
     return Frame(
         links=links,
         deflected=deflected,

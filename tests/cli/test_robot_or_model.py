@@ -72,7 +72,7 @@ def test_springs_that_nobody_measured_are_told(run, here: Path) -> None:
 def test_a_spring_that_its_readings_did_not_show_is_told(run, here: Path) -> None:
     text = Path(MODEL).read_text(encoding="utf-8")
     last = text.rindex("origin:")
-    origin = "origin: not identifiable, not to be trusted}"
+    origin = "origin: 'not identifiable, not to be trusted'}"
     Path("found.yaml").write_text(text[:last] + origin + "\n", encoding="utf-8")
     outcome = run("stiffness", "found.yaml", "--json")
     assert outcome.code == 0, outcome.stderr
