@@ -142,7 +142,7 @@ def test_a_command_whose_import_fails_is_reported(run, monkeypatch) -> None:
     ("arguments", "hint"),
     [
         (("chek",), "Did you mean 'check'?"),
-        (("check",), "Missing argument 'ROBOT'"),
+        (("check",), "Missing argument 'ROBOT|MODEL'"),
         (("check", "a", "--nonsense"), "No such option: --nonsense"),
         (("check", "a", "b"), "unexpected extra argument"),
         (("--nonsense",), "No such option"),
