@@ -28,6 +28,10 @@ def command(
         "loops": report.loops,
         "moving": report.moving,
         "frames": report.frames,
+        "other_ends": [
+            {"frame": frame, "joints": joints} for frame, joints in report.choice.others
+        ],
+        "fingers": report.choice.fingers,
         "total_mass_kg": report.total_mass_kg,
         "warnings": report.warnings,
     }

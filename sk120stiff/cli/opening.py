@@ -57,7 +57,8 @@ def open_robot(source: str, base: str | None, tool: str | None) -> Robot:
     if base is None and described.base_frame is None:
         note(f"Base frame: {robot.base_frame} (choose another with --base FRAME).")
     if tool is None and described.tool_frame is None:
-        note(f"Tool frame: {robot.choice.about_tool}. Choose another with --tool FRAME.")
+        about = f"{robot.tool_frame} {robot.choice.about_tool}"
+        note(f"Tool frame: {about}. Choose another with --tool FRAME.")
         if robot.choice.fingers:
             note(f"Held still as fingers: {', '.join(robot.choice.fingers)}.")
     return robot

@@ -13,6 +13,7 @@ from sk120stiff.robot.loading import assemble, find_robot, told_joints
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import (
     Finding,
+    FrameChoice,
     default_frames,
     fingers_on_way,
     locked_on_way,
@@ -42,6 +43,8 @@ class CheckReport:
         All frames (URDF links).
     base_frame, tool_frame, chosen_because
         Frames between which the arm is described, and why, in sentences.
+    choice
+        What would be taken if nobody named frames: other ends of the robot, fingers.
     moving
         All joints with a degree of freedom, coupled ones included.
     total_mass_kg
@@ -58,6 +61,7 @@ class CheckReport:
     base_frame: str
     tool_frame: str
     chosen_because: tuple[str, ...]
+    choice: FrameChoice
     moving: tuple[str, ...]
     total_mass_kg: float
     warnings: tuple[Finding, ...]
@@ -116,6 +120,7 @@ def check_robot(
         base_frame=base_frame,
         tool_frame=tool_frame,
         chosen_because=tuple(reasons),
+        choice=guessed,
         moving=tuple(joint.name for joint in document.moving_joints),
         total_mass_kg=document.total_mass,
         warnings=tuple(findings),

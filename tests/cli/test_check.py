@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.corpus.robots import example
+
 TWO_LINKS = """
 <robot name="two_links">
   <link name="ground"/><link name="upper"/><link name="fore"/><link name="tip"/>
@@ -54,6 +56,13 @@ def test_a_plain_urdf_says_which_frames_were_taken(run, two_links: str) -> None:
     assert "'tip'" in spoken
     shorter = run("check", two_links, "--tool", "upper", "--json").document
     assert shorter["actuated"] == ["shoulder"]
+
+
+def test_the_other_arm_and_the_fingers_stand_in_the_document(run) -> None:
+    document = run("check", str(example("baxter.urdf")), "--json").document
+    assert document["tool_frame"] == "right_hand_link"
+    assert {"frame": "left_hand_link", "joints": 7} in document["other_ends"]
+    assert "r_gripper_l_finger_joint" in document["fingers"]
 
 
 @pytest.mark.parametrize(

@@ -71,8 +71,8 @@ class FrameChoice:
 
     @property
     def about_tool(self) -> str:
-        """The choice of the tool frame and its alternatives, in one line."""
-        text = f"{self.tool} ({self.why_tool})"
+        """Why the tool frame was chosen, and its alternatives, in one line."""
+        text = f"({self.why_tool})"
         if self.others:
             ends = [f"{name} ({motors})" for name, motors in self.others]
             text += f"; the robot ends also at {_few(ends)}"
@@ -83,7 +83,8 @@ class FrameChoice:
     @property
     def sentences(self) -> tuple[str, ...]:
         """Everything a user should know about the choice."""
-        told = [f"base frame {self.base!r}: {self.why_base}", f"tool frame {self.about_tool}"]
+        told = [f"base frame {self.base!r}: {self.why_base}"]
+        told.append(f"tool frame {self.tool!r} {self.about_tool}")
         if self.fingers:
             told.append(f"held still as fingers: {_few(self.fingers)}")
         return tuple(told)
