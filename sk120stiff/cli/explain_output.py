@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
@@ -14,7 +13,7 @@ import numpy as np
 from sk120stiff.cli.document import SCHEMA, as_json_text
 from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
-from sk120stiff.cli.predict import predict_what_holds, prediction_table
+from sk120stiff.cli.predict import csv_text, predict_what_holds, prediction_table
 from sk120stiff.cli.tables import table
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
@@ -142,9 +141,7 @@ def replacing_results(out: Path) -> AbstractContextManager[None]:
 
 def _gaps(fitted: Model, readings: Measurements) -> str:
     predicted = predict_what_holds(fitted, situation_of(fitted.robot, readings))
-    text = io.StringIO()
-    prediction_table(readings, predicted).to_csv(text, index=False)
-    return text.getvalue()
+    return csv_text(prediction_table(readings, predicted))
 
 
 def _write_pages(

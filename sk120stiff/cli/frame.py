@@ -21,6 +21,7 @@ from typing import Annotated, NoReturn, TextIO
 import typer
 
 from sk120stiff.cli.document import SCHEMA, as_json_text
+from sk120stiff.cli.visible import visible
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
 from sk120stiff.errors import Refusal, ToolkitError
 from sk120stiff.files import running
@@ -192,13 +193,14 @@ def _text(parts: Sequence[object]) -> str:
         for before, part in zip([None, *parts], parts, strict=False):
             if before is not None and not (isinstance(before, str) and isinstance(part, str)):
                 console.print()  # a table stands apart
-            console.print(part, soft_wrap=isinstance(part, str))
+            shown = visible(part) if isinstance(part, str) else part
+            console.print(shown, soft_wrap=isinstance(part, str))
     return "\n".join(line.rstrip() for line in capture.get().splitlines())
 
 
 def note(text: str) -> None:
     """Tell the user something beside the answer, on stderr."""
-    print(text, file=sys.stderr)
+    print(visible(text), file=sys.stderr)
 
 
 @contextmanager

@@ -27,7 +27,7 @@ COMMANDS = {
     "new": "A folder to start from: robot, model, empty measurements.",
     "stiffness": "How stiff the arm is: here, this way, under this load.",
     "identify": "Spring values and their uncertainty from measured deflections.",
-    "predict": "Predicted displacement of every reading ± its uncertainty, and the gap to it.",
+    "predict": "Predicted displacement of every reading ± error, and the gap.",
     "explain": "What is missing when simulation and measurement disagree.",
     "effects": "What every effect and its numbers mean: law, axes, sign, unit.",
     "plan": "The poses and loads to measure next.",

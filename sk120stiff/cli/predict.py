@@ -16,7 +16,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import blame_reason, plus_minus, sentences, uncertainty_keys
 from sk120stiff.effects import Situation, situation_of
 from sk120stiff.errors import Refusal, ToolkitWarning
-from sk120stiff.files import will_write, write_atomically
+from sk120stiff.files import guarded_cell, will_write, write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import (
     Model,
@@ -34,7 +34,7 @@ LISTED = 40  # rows that people are shown
 
 
 def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> Answer:
-    """Predicted displacement of every reading ± its uncertainty, and the gap to it.
+    """Predicted displacement of every reading ± error, and the gap.
 
     The uncertainty is that of the deflection, from a model that 'identify' or 'explain' wrote: of
     its parameters, and of what it leaves unexplained. The noise of a reading comes on top.
@@ -49,9 +49,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     predicted = predict_what_holds(believed, situation_of(robot, readings))
     frame = prediction_table(readings, predicted)
     if out is not None:
-        text = io.StringIO()
-        frame.to_csv(text, index=False)
-        write_atomically(out, text.getvalue())
+        write_atomically(out, csv_text(frame))
     measured = readings.displacement
     per_pose: list[dict[str, object]] = []
     rms: float | None = None
@@ -136,6 +134,13 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> pd.DataFra
 
 def _reasons(predicted: Predicted) -> list[str]:
     return [blame_reason(names) for names in predicted.blame]
+
+
+def csv_text(frame: pd.DataFrame) -> str:
+    """The table as CSV; labels that a spreadsheet would take for formulas are written as text."""
+    text = io.StringIO()
+    frame.assign(pose=[guarded_cell(label) for label in frame["pose"]]).to_csv(text, index=False)
+    return text.getvalue()
 
 
 def _rms(gap: Array) -> float:

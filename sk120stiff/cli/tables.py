@@ -19,12 +19,14 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
+from sk120stiff.cli.visible import visible
+
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Table:
     """A table whose first column is text and whose other columns are right-aligned numbers."""
-    made = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False)
+    made = Table(title=visible(title), title_justify="left", box=box.SIMPLE_HEAD, show_edge=False)
     for k, name in enumerate(columns):
-        made.add_column(name, justify="left" if k == 0 else "right", overflow="fold")
+        made.add_column(visible(name), justify="left" if k == 0 else "right", overflow="fold")
     for row in rows:
         made.add_row(*(cell(value) for value in row))
     return made
@@ -32,11 +34,13 @@ def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) 
 
 def cell(value: object) -> str:
     """A number with five significant digits, anything else as it is."""
-    if isinstance(value, bool | int | str):
+    if isinstance(value, str):
+        return visible(value)
+    if isinstance(value, bool | int):
         return str(value)
     if isinstance(value, float) or hasattr(value, "__float__"):
         return f"{float(value) + 0.0:.5g}"  # + 0.0 takes the sign off zero
-    return str(value)
+    return visible(str(value))
 
 
 class _Rate(ProgressColumn):

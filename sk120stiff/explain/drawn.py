@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.identify import Fit
+from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.robot.coupling import Array
 
 Pick = NDArray[np.bool_]
@@ -60,10 +61,8 @@ class Drawn:
             return []
         size = float(np.sqrt(np.mean(self.fit.model.values[self.columns] ** 2)))
         spread = self.fit.problem.whitener.apply(size * self.derivative[:, :, self.columns])
-        group = np.repeat(self.fit.problem.situation.pose, 3)
         blocks = []
-        for pose in np.unique(group):
-            rows = np.flatnonzero(group == pose)
+        for rows in rows_by_label(np.repeat(self.fit.problem.situation.pose, 3)):
             part = spread[rows]
             part = part[:, np.abs(part).max(axis=0) > 0.0]
             U, singular, _ = np.linalg.svd(part, full_matrices=False)

@@ -20,6 +20,7 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.left_over import left_over, orthonormal
 from sk120stiff.identify.saturated import load_basis, pose_columns
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.robot.coupling import Array
 
 Yardstick = Literal["stated uncertainty", "pure error", "scatter within poses"]
@@ -108,8 +109,7 @@ def _cell_columns(measurements: Measurements) -> Array:
     keys = np.column_stack([measurements.pose_index, np.round(measurements.wrench, 9), branch])
     _, cell = np.unique(keys, axis=0, return_inverse=True)
     member = np.zeros(len(cell), dtype=np.intp)
-    for pose in np.unique(measurements.pose_index):
-        rows = measurements.pose_index == pose
+    for rows in rows_by_label(measurements.pose_index):
         member[rows] = np.unique(cell[rows], return_inverse=True)[1]
     indicator = (member[:, None] == np.arange(member.max() + 1)).astype(float)
     return pose_columns(indicator)

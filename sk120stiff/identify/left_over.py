@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.robot.coupling import Array
 
 IMITATED = 1e-6  # length of a unit column beyond the regression below which it is rounding
@@ -40,8 +41,7 @@ def left_over(
         (R,) pose of each row.
     """
     left, columns, rank = white.copy(), inside.copy(), 0
-    for pose in np.unique(group):
-        rows = group == pose
+    for rows in rows_by_label(group):
         block = orthonormal(local[rows])
         left[rows] -= block @ (block.T @ left[rows])
         columns[rows] -= block @ (block.T @ columns[rows])

@@ -17,6 +17,7 @@ from scipy.optimize import minimize_scalar
 
 from sk120stiff.effects import Situation
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
+from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.robot.coupling import Array
 
 STRONG = 10.0  # twice the log-likelihood by which a less simple noise model must win
@@ -33,10 +34,7 @@ def load_basis(situation: Situation, *, jump: bool = False, cubic: bool = False)
     loads = situation.wrench * scale
     size = max(float(np.abs(loads).max(initial=0.0)), 1e-300)
     parts: list[tuple[NDArray[np.intp], Array]] = []
-    for pose in range(len(situation.poses)):
-        rows = np.flatnonzero(situation.pose == pose)
-        if not len(rows):
-            continue
+    for rows in rows_by_label(situation.pose):
         _, singular, Vt = np.linalg.svd(loads[rows] / size, full_matrices=False)
         rank = int((singular > 0.02 * singular[0]).sum()) if singular[0] > 0.0 else 0
         basis = loads[rows] / size @ Vt[:rank].T
@@ -100,9 +98,7 @@ def pose_noise(
     y = whitener.apply(measurements.displacement)
     X = whitener.apply(pose_columns(load_basis(situation, jump=jump, cubic=True)))
     rss, freedom, information = 0.0, len(y), 0.0
-    group = np.repeat(situation.pose, 3)
-    for pose in np.unique(group):
-        rows = group == pose
+    for rows in rows_by_label(np.repeat(situation.pose, 3)):
         U, singular, _ = np.linalg.svd(X[rows], full_matrices=False)
         seen = singular > 1e-9 * max(singular[0], 1e-300)
         along = U[:, seen].T @ y[rows]

@@ -17,6 +17,7 @@ from sk120stiff.identify.covariance import covariance_of
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
 from sk120stiff.identify.polish import seen_directions
+from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
 from sk120stiff.robot.anatomy import arm_length
@@ -132,8 +133,8 @@ def _steps_without_each_pose(fit: Fit) -> tuple[Array, np.ndarray]:
     count = len(problem.situation.poses)
     group = np.repeat(problem.situation.pose, 3)
     steps, usable = np.zeros((count, len(fit.x))), np.zeros(count, dtype=bool)
-    for pose in np.unique(problem.situation.pose):
-        rows = group == pose
+    for rows in rows_by_label(group):
+        pose = group[rows[0]]
         own = fit.jacobian[rows][:, moving] @ root
         left, vectors = np.linalg.eigh(np.eye(own.shape[1]) - own.T @ own)
         usable[pose] = left.min(initial=1.0) > ALONE

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.poses import refuse_differing_joints
+from sk120stiff.measurements.poses import refuse_differing_joints, rows_by_label
 from sk120stiff.measurements.zero import since_zero
 
 Floats = NDArray[np.float64]
@@ -183,6 +183,10 @@ class Measurements:
         return tuple(dict.fromkeys(self.pose))
 
     @cached_property
+    def _rows_of_each(self) -> dict[str, NDArray[np.intp]]:
+        return dict(zip(self.poses, rows_by_label(self.pose_index), strict=True))
+
+    @cached_property
     def pose_index(self) -> Integers:
         """(N,) position of each row's label in `poses`."""
         position = {label: k for k, label in enumerate(self.poses)}
@@ -210,7 +214,7 @@ class Measurements:
         InputError
             No row has the label; the message lists those that exist.
         """
-        if pose not in self.poses:
+        if pose not in self._rows_of_each:
             close = get_close_matches(pose, self.poses, n=1)
             meant = f" (did you mean {close[0]!r}?)" if close else ""
             shown = ", ".join(self.poses[:20]) + (", ..." if len(self.poses) > 20 else "")
@@ -219,7 +223,7 @@ class Measurements:
                 where=self._file(),
                 remedy=f"The poses are {shown}.",
             )
-        return np.flatnonzero(self.pose_index == self.poses.index(pose))
+        return self._rows_of_each[pose].copy()
 
     def select(self, rows: ArrayLike) -> Measurements:
         """The chosen rows as measurements of their own: a mask (N,) or indices.

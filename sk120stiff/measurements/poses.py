@@ -14,6 +14,18 @@ from sk120stiff.errors import InputError
 SAME_JOINT = 1e-9  # rad or m
 
 
+def rows_by_label(labels: NDArray[np.integer]) -> list[NDArray[np.intp]]:
+    """Rows of each label that occurs, in ascending order of the label.
+
+    One sort serves all labels: looking for each on its own would cost rows times labels.
+    """
+    if not len(labels):
+        return []
+    order = np.argsort(labels, kind="stable")
+    ends = np.flatnonzero(np.diff(labels[order])) + 1
+    return np.split(order, ends)
+
+
 def refuse_differing_joints(
     pose: Sequence[str],
     pose_index: NDArray[np.int64],

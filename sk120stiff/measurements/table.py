@@ -173,7 +173,8 @@ def _split(line: str, place: str) -> list[str]:
             where=place,
             remedy="Quotation marks enclose a whole cell and end on its line.",
         ) from error
-    return [cell.strip() for cell in cells]
+    stripped = [cell.strip() for cell in cells]
+    return [files.plain_cell(cell) if cell[:1] == "'" else cell for cell in stripped]
 
 
 def _headers(cells: list[str], line: str, place: str) -> list[str]:

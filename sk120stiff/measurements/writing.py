@@ -70,14 +70,19 @@ def write_measurements(
     columns = list(_columns(measurements, angle, length, measured))
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([header for header, _ in columns])
-    writer.writerows(zip(*(cells for _, cells in columns), strict=True))
+    writer.writerow([files.guarded_cell(header) for header, _ in columns])
+    writer.writerows(zip(*(_guarded(header, cells) for header, cells in columns), strict=True))
     settings = yaml.safe_dump(
         _settings(measurements, target.parent, length), sort_keys=False, allow_unicode=True
     )
     with files.together():
         files.write_atomically(target.with_suffix(".yaml"), settings)
         return files.write_atomically(target, stream.getvalue())
+
+
+def _guarded(header: str, cells: Iterable[str]) -> Iterable[str]:
+    """Cells that hold text of others, so that no spreadsheet takes one for a formula."""
+    return cells if "[" in header else map(files.guarded_cell, cells)
 
 
 def check_name(target: Path) -> None:

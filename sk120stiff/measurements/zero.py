@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.measurements.poses import rows_by_label
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Mask = NDArray[np.bool_]
@@ -60,8 +62,7 @@ def group_by_run(pose: Integers, loaded: Mask, use: Mask, sequence: Floats) -> I
     """
     group = np.zeros(len(pose), dtype=np.int64)
     start = 0
-    for label in range(int(pose.max()) + 1):
-        rows = np.flatnonzero(pose == label)
+    for rows in rows_by_label(pose):
         rows = rows[np.argsort(sequence[rows], kind="stable")]
         runs, after_load = 0, True
         for row in rows:

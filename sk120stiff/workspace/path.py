@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.files import write_atomically
+from sk120stiff.files import guarded_cell, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
@@ -256,6 +256,7 @@ def write_joints(
 
 
 def _cell(text: str) -> str:
+    text = guarded_cell(text)
     return f'"{text.replace(chr(34), chr(34) * 2)}"' if set(text) & set(',"\n') else text
 
 

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -79,3 +80,21 @@ def test_preparing_twice_changes_nothing(monkeypatch) -> None:
     prepare()
     prepare()
     assert os.environ["NUMBA_NUM_THREADS"] == "2"
+
+
+def test_control_characters_of_labels_are_shown_and_not_obeyed(run, tmp_path) -> None:
+    """A label may hold what clears a terminal or turns its text round."""
+    folder = Path(__file__).resolve().parents[2] / "robots/motoman_sk120"
+    lines = (folder / "data/table2_measured.csv").read_text(encoding="utf-8").splitlines()
+    hostile = "\x1b[2J\u202ered"
+    text = "\n".join([lines[0], *(hostile + line[1:] for line in lines[1:6])])
+    (tmp_path / "m.csv").write_text(text, encoding="utf-8")
+    (tmp_path / "m.yaml").write_bytes((folder / "data/table2_measured.yaml").read_bytes())
+    said = run("predict", str(folder / "model.yaml"), str(tmp_path / "m.csv"))
+    assert said.code == 0
+    assert "\\x1b[2J\\u202ered" in said.stdout
+    assert not {"\x1b", "\u202e"} & set(said.stdout + said.stderr)
+    (tmp_path / "m.csv").write_text(text.replace("-0.03,", "x\x1b[2J,"), encoding="utf-8")
+    said = run("predict", str(folder / "model.yaml"), str(tmp_path / "m.csv"))
+    assert said.code == 2
+    assert "\x1b" not in said.stderr

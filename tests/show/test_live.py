@@ -206,7 +206,15 @@ def test_only_so_many_pages() -> None:
 
 
 @pytest.mark.parametrize(
-    "origin", ["http://evil.example", "https://127.0.0.1", "null", "http://127.0.0.1:1", "file://"]
+    "origin",
+    [
+        "http://evil.example",
+        "https://127.0.0.1",
+        "null",
+        "http://127.0.0.1:1",
+        "file://",
+        "http://[bad",
+    ],
 )
 def test_pages_of_others_are_kept_out(origin: str) -> None:
     async def visit(server: LiveServer) -> None:

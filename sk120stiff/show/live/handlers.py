@@ -104,7 +104,10 @@ class SocketHandler(WebSocketHandler):
 
     def check_origin(self, origin: str) -> bool:
         """Only pages that this server has served may talk to it."""
-        parts = urlsplit(origin)
+        try:
+            parts = urlsplit(origin)
+        except ValueError:  # such as http://[bad
+            return False
         return parts.scheme == "http" and parts.netloc in self.server.hosts
 
     def open(self, *_: str, **__: str) -> None:
