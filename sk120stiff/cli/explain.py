@@ -58,7 +58,8 @@ def command(
 
     Finds where the gap lives, names the missing effect, adds it to the model and shows the gap
     shrink. Writes report.html, scene.html, model.yaml, gaps.csv, verdict.json and, where two names
-    cannot be told apart, next_poses.csv.
+    cannot be told apart, next_poses.csv. Slips of the pen in the readings are looked for first and
+    stop it, with what mends them.
 
     Example: sk120stiff explain readings.csv --holdout others.csv --out explained
     """

@@ -88,7 +88,8 @@ def command(
     """Spring values and their uncertainty from measured deflections.
 
     Says how well each value is known, what these readings cannot tell apart, and whether model and
-    readings agree.
+    readings agree. Slips of the pen (signs, units, frames, rows) are looked for first; readings
+    that no arm can have given are refused.
 
     Example: sk120stiff identify robots/motoman_sk120/data/table2_measured.csv --out model.yaml
     """

@@ -98,7 +98,7 @@ def refuse_unbelievable(doubts: Doubts, model: Model, measurements: Measurements
     excused = stated is not None and found.left < (NOISY * stated) ** 2
     if found.share >= HALF or excused or found.count < model.robot.n + SPARE:
         return
-    size, left = (1e6 * np.sqrt(x) for x in (found.left / (1.0 - found.share), found.left))
+    size, left = (_length(np.sqrt(x)) for x in (found.left / (1.0 - found.share), found.left))
     remedy = (
         "Check that every row's joints, load and reading belong together (sorted, shifted or "
         "shuffled columns), the frames, the units, and that the robot is the right one."
@@ -107,7 +107,7 @@ def refuse_unbelievable(doubts: Doubts, model: Model, measurements: Measurements
         remedy = f"It looks as if: {doubts.slip.said}. {doubts.slip.remedy}"
     raise Refusal(
         f"whatever its springs and bearings, this arm explains only {found.share:.0%} of these "
-        f"readings ({size:.3g} µm rms per axis, of which {left:.3g} remain)",
+        f"readings ({size} rms per axis, of which {left} remain)",
         where=where,
         remedy=remedy,
     )
@@ -123,9 +123,17 @@ def _refuse_overstated(
     above = stated > size and OVERSTATED * np.sqrt(found.left) < stated
     if above or stated > np.abs(measured).max():
         raise Refusal(
-            f"the stated uncertainty of one reading, {1e6 * stated:.4g} µm, is larger than the "
-            f"readings themselves ({1e6 * size:.4g} µm rms per axis)",
+            f"the stated uncertainty of one reading, {_length(stated)}, is larger than the "
+            f"readings themselves ({_length(size)} rms per axis)",
             where=where,
-            remedy="Check noise: {sigma: ..., unit: ...} in the YAML file beside the readings; "
-            "without it the uncertainty is estimated.",
+            remedy="Check noise: {sigma: ..., unit: ...} in the YAML file beside the readings, and "
+            "the unit of the readings; without a sigma it is estimated.",
         )
+
+
+def _length(metres: float) -> str:
+    """A length in the unit in which it is easily read."""
+    for unit, size in (("m", 1.0), ("mm", 1e-3)):
+        if metres >= size:
+            return f"{metres / size:.3g} {unit}"
+    return f"{metres * 1e6:.3g} µm"
