@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.map_postures import postures
 from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
     AtOption,
@@ -92,6 +94,15 @@ def command(
             show_default="any orientation",
         ),
     ] = None,
+    start: Annotated[
+        str | None,
+        typer.Option(
+            metavar="POSE",
+            help="For positions: a pose as in --pose; the arm is led from it to every point along "
+            "a straight line and stays in its branch.",
+            show_default="at each point the stiffest branch that is found",
+        ),
+    ] = None,
     directions: Annotated[
         bool, typer.Option("--directions", help="Store the softest and stiffest directions too.")
     ] = False,
@@ -156,6 +167,14 @@ def command(
     rest = pose_of(arm_robot, pose)
     loads = np.array([wrench_of(text) for text in wrench] if wrench else [np.zeros(6)])
     points = _points(arm, grid, rest, axis, orientation)
+    if start is not None:
+        if isinstance(points, JointGrid):
+            raise InputError(
+                "a start pose was given, but the grid is over joints",
+                where="--start",
+                remedy="Give x, y and z in --grid.",
+            )
+        points = replace(points, start=pose_of(arm_robot, start, option="--start"))
     if figures is not None and sum(size > 1 for size in points.grid.shape) < 2:
         raise InputError(
             "a slice needs two axes with more than one point each",
@@ -203,6 +222,9 @@ def command(
     parts = _parts(arm, written, check.files, status, loads, loads_found)
     if job.bends:
         parts += _bent(arm, believed, loads, loads_found)
+    if points.cartesian:
+        document["postures"], text = postures(arm_robot, out, led=start is not None)
+        parts.append(text)
     if drawn:
         parts.append(f"Figures: {len(drawn)} files in {figures}")
     return Answer(document, parts)

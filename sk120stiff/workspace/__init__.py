@@ -1,7 +1,14 @@
 """Stiffness over the workspace: maps, the best posture, deflections compensated, exports."""
 
 from sk120stiff.workspace.arm import ElasticArm, elastic_arm
-from sk120stiff.workspace.branch import Branch, branch_of, joint_heights, lowest_floor, stays_above
+from sk120stiff.workspace.branch import (
+    Branch,
+    branch_of,
+    elbow_sides,
+    joint_heights,
+    lowest_floor,
+    stays_above,
+)
 from sk120stiff.workspace.compensate import Compensation, Standing, compensate, standing
 from sk120stiff.workspace.export import FORMATS, mjcf_text, sdf_text
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
@@ -55,6 +62,7 @@ __all__ = [
     "compensate",
     "damaged_map",
     "elastic_arm",
+    "elbow_sides",
     "joint_heights",
     "joints_along",
     "lowest_floor",

@@ -99,24 +99,38 @@ def branch_of(robot: Robot, a: Array, floor: float) -> Branch:
     )
 
 
+def elbow_sides(robot: Robot, a: Array) -> NDArray[np.int8]:
+    """(N,) 1 where the elbow is up at poses (N, n), -1 where it is down, 0 where there is none."""
+    parts = [_elbows(robot, a[k : k + BLOCK])[1] for k in range(0, max(len(a), 1), BLOCK)]
+    return np.sign(np.concatenate(parts)).astype(np.int8)
+
+
 def _elbow(robot: Robot, a: Array) -> tuple[str | None, float, bool]:
-    origins = robot.screws(a).origins[1:]  # shoulder, …, wrist
-    names = robot.mechanism().chain.names[1:]
-    if len(origins) < 3:
+    origins, above = robot.screws(a).origins[1:], _elbows(robot, a[None])
+    k, height = int(above[0][0]), float(above[1][0])
+    if height == 0.0:
         return None, float("nan"), False
-    way = origins[-1] - origins[0]
-    length = float(np.linalg.norm(way))
-    if length == 0.0:
-        return None, float("nan"), False
-    share = (origins - origins[0]) @ way / length**2
-    off = origins - (origins[0] + share[:, None] * way)
-    # Seen in the upright plane of shoulder and wrist: a shoulder set to the side is no elbow.
-    up = np.array([0.0, 0.0, 1.0])
-    normal = up - (up @ way) / length**2 * way
-    if np.linalg.norm(normal) < 1e-9:
-        return None, float("nan"), False
-    above = off @ (normal / np.linalg.norm(normal))
-    k = int(np.argmax(np.abs(above)))
-    if abs(above[k]) < BENT * length:
-        return None, float("nan"), False
-    return names[k], float(origins[k, 2]), bool(above[k] > 0.0)
+    return robot.mechanism().chain.names[1:][k], float(origins[k, 2]), height > 0.0
+
+
+def _elbows(robot: Robot, a: Array) -> tuple[NDArray[np.intp], Array]:
+    """(N,) which joint after the first is the elbow, and how far it lies above the way [m].
+
+    Above the line from shoulder to wrist, in their upright plane: a shoulder set to the side is no
+    elbow. Zero where the arm is stretched, stands upright, or is too short to have one.
+    """
+    origins = robot.screws(a).origins[:, 1:]  # shoulder, …, wrist
+    count, m = origins.shape[:2]
+    if m < 3:
+        return np.zeros(count, dtype=np.intp), np.zeros(count)
+    way = origins[:, -1] - origins[:, 0]
+    length = np.maximum(np.linalg.norm(way, axis=1), 1e-300)[:, None]
+    along = way / length
+    up = np.array([0.0, 0.0, 1.0]) - along[:, 2:] * along
+    flat = np.linalg.norm(up, axis=1)
+    normal = up / np.maximum(flat, 1e-300)[:, None]
+    above = ((origins - origins[:, :1]) * normal[:, None]).sum(axis=-1)
+    k = np.argmax(np.abs(above), axis=1)
+    height = above[np.arange(count), k]
+    none = (np.abs(height) < BENT * length[:, 0]) | (flat < 1e-9)
+    return k, np.where(none, 0.0, height)

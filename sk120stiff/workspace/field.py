@@ -14,7 +14,7 @@ from sk120stiff.stiffness import CLASSES
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.bending import Bending
 from sk120stiff.workspace.grid import Grid
-from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import Task, lead_straight, solve_inverse, starting_poses
 
 Numbers = NDArray[Any]
 
@@ -25,8 +25,9 @@ STATUS = (
     "within reach, but not with this orientation",
     "only beyond the joint limits",
     "a closed loop cannot be closed",
+    "not on the straight way from the start pose",
 )
-REACHED, OUT_OF_REACH, WRONG_ORIENTATION, BEYOND_LIMITS, OPEN_LOOP = range(5)
+REACHED, OUT_OF_REACH, WRONG_ORIENTATION, BEYOND_LIMITS, OPEN_LOOP, NOT_FROM_START = range(6)
 UNKNOWN_CLASS = 255  # class of a point that was not reached
 
 
@@ -137,7 +138,9 @@ class JointGrid:
 class PositionGrid:
     """A grid whose axes are x, y and z of the point, in base axes.
 
-    Of the postures that reach a point, the one with the largest minimum stiffness counts.
+    Of the postures that reach a point, the one with the largest minimum stiffness counts: another
+    branch of the arm from point to point. With a start, the one to which it leads along a straight
+    line counts.
 
     Attributes
     ----------
@@ -151,6 +154,8 @@ class PositionGrid:
         (n,) joints that may move.
     starts
         Number of poses from which postures are searched.
+    start
+        (n,) coordinates whose branch the arm stays in [rad or m].
     """
 
     grid: Grid
@@ -159,6 +164,7 @@ class PositionGrid:
     rotation: Array | None = None
     movable: NDArray[np.bool_] | None = None
     starts: int = 12
+    start: Array | None = None
     cartesian: bool = field(default=True, init=False)
 
     def poses(self, arm: ElasticArm, begin: int, end: int) -> tuple[Array, NDArray[np.uint8]]:
@@ -170,6 +176,9 @@ class PositionGrid:
                 remedy="Give a grid over joints.",
             )
         task = Task(self._positions(begin, end), self.axis, self.rotation)
+        if self.start is not None:
+            led = lead_straight(arm, task, self.start, movable=self.movable)
+            return led.a, np.where(led.found, REACHED, NOT_FROM_START).astype(np.uint8)
         starts = self._starts(arm)
         best = np.tile(self.rest, (task.count, 1))
         stiffest = np.full(task.count, -np.inf)

@@ -8,13 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.robot.coupling import Array
-from sk120stiff.workspace.arm import ElasticArm
+from sk120stiff.workspace.arm import ElasticArm, Kinematics
 
 POSITION_TOLERANCE = 1e-9  # m
 ANGLE_TOLERANCE = 1e-9  # rad
 ITERATIONS = 40
 BIAS = 1e-10  # of the damping: keeps the step finite at singular poses
 STUCK, PATIENCE = 0.98, 6  # a start that gains no more than this after some steps is given up
+LEADING_STEPS = 24  # on the straight way from a start pose
+LONGEST_LEAD = 0.5  # rad or m in one of these steps; more is a jump to another branch
 REACH = 1.0  # m that count as one radian in the damping
 
 
@@ -195,6 +197,60 @@ def solve_inverse(
         if limits:
             a[active] = np.clip(wrapped(arm, a[active]), arm.lower, arm.upper)
     return Reached(wrapped(arm, a), found)
+
+
+def lead_straight(
+    arm: ElasticArm, task: Task, start: Array, *, movable: NDArray[np.bool_] | None = None
+) -> Reached:
+    """Lead the arm from one pose along straight lines to N targets, all at once.
+
+    The point moves in equal steps, the tool turns first to the orientation that is wanted. A target
+    is met only if no joint jumps on the way, so the arm stays in the branch of its start.
+
+    Parameters
+    ----------
+    arm, task
+        The arm and the targets.
+    start
+        (n,) where the arm begins [rad or m].
+    movable
+        (n,) joints that may move; all by default.
+    """
+    begin = arm.kinematics(start[None])
+    a = np.tile(start, (task.count, 1))
+    on_the_way = np.arange(task.count)
+    turning, away = _turned_first(arm, task, start, begin, movable)
+    a[:] = turning
+    on_the_way = on_the_way if away else on_the_way[:0]
+    for share in np.arange(1, LEADING_STEPS + 1) / LEADING_STEPS:
+        if not len(on_the_way):
+            break
+        here = task.rows(on_the_way)
+        between = begin.position + share * (here.position - begin.position)
+        step = Task(between, here.axis, here.rotation)
+        reached = solve_inverse(arm, step, a[on_the_way], movable=movable)
+        calm = np.abs(reached.a - a[on_the_way]).max(axis=1) <= LONGEST_LEAD
+        good = reached.found & calm
+        a[on_the_way[good]] = reached.a[good]
+        on_the_way = on_the_way[good]
+    found = np.zeros(task.count, dtype=bool)
+    found[on_the_way] = True
+    return Reached(a, found)
+
+
+def _turned_first(
+    arm: ElasticArm, task: Task, start: Array, begin: Kinematics, movable: NDArray[np.bool_] | None
+) -> tuple[Array, bool]:
+    """(n,) the start with its tool as the task wants it, all targets alike; and is that reached?"""
+    if task.axis is None and task.rotation is None:
+        return start, True
+    if (task.axis is not None and task.axis.ndim > 1) or (
+        task.rotation is not None and task.rotation.ndim > 2
+    ):
+        raise ValueError("all targets need one orientation")
+    turned = Task(begin.position, task.axis, task.rotation)
+    reached = solve_inverse(arm, turned, start[None], movable=movable)
+    return reached.a[0], bool(reached.found[0])
 
 
 def _without_spin(J: Array, z: Array) -> Array:

@@ -73,7 +73,10 @@ def identity_of(job: MapJob, chunks: Chunks) -> str:
         chain.placements, chain.axes, chain.revolute, chain.coordinates,
         motion.q, motion.first,
         [(axis.name, axis.values) for axis in points.grid.axes], points.rest,
-        *(getattr(points, name, None) for name in ("axis", "rotation", "movable", "starts")),
+        *(
+            getattr(points, name, None)
+            for name in ("axis", "rotation", "movable", "starts", "start")
+        ),
         job.loads, [variable.name for variable in job.variables],
         chunks.chunk_shape,
         arm.slow.values if arm.slow else None,

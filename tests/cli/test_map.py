@@ -3,8 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sk120stiff.model import joint_spring_model, write_model
 from sk120stiff.workspace import open_map
 from tests.cli.conftest import Run
+from tests.workspace.test_branch import SPRINGS, UP, other_elbow, ur10
 
 GRID = ("--grid", "joint_2_l=-70:70:35; joint_3_u=-100:0:50 deg")
 
@@ -113,3 +115,30 @@ def test_a_damaged_map_is_mended_and_that_is_said(run: Run, tmp_path: Path) -> N
     assert victim.read_bytes() == before
     (store / "joint_2_l" / "zarr.json").unlink()
     assert run(*arguments, "--json").document["mended"] == ["joint_2_l/zarr.json"]
+
+
+def test_positions_are_reached_in_the_branch_of_the_start(run: Run, tmp_path: Path) -> None:
+    """A UR10 over a table: the elbow stays where the start pose has it, and that is said."""
+    robot, model = ur10(), tmp_path / "model.yaml"
+    write_model(joint_spring_model(robot, SPRINGS), model)
+    x, y, z = 1e3 * robot.placement(UP)[:3, 3]
+    grid = f"x={x - 100:.3f}:{x + 100:.3f}:50; y={y:.3f}; z={z:.3f}:{z + 100:.3f}:50 mm"
+    axis = ",".join(f"{c:.12f}" for c in robot.placement(UP)[:3, 2])
+    arguments = ("map", robot.source, "--tool", "tool0", "--model", str(model), "--grid", grid,
+                 f"--tool-axis={axis}", "--json")  # fmt: skip
+    for start, up in ((UP, True), (other_elbow(robot), False)):
+        pose = ",".join(f"{value:.6f}" for value in np.degrees(start))
+        out = tmp_path / f"{up}.zarr"
+        found = run(*arguments, f"--start={pose} deg", "--out", str(out))
+        assert found.code == 0, found.stderr
+        counts = found.document["postures"]
+        reached = found.document["status"]["reached"]
+        assert reached >= 12
+        assert (counts["elbow_up"], counts["elbow_down"]) == ((reached, 0) if up else (0, reached))
+        assert ("below the base plane" in found.stderr) == (not up)
+        joints = open_map(out)["joints"].values.reshape(-1, 6)
+        joints = joints[np.isfinite(joints).all(axis=1)]
+        assert (np.sign(joints[:, 2]) == np.sign(start[2])).all()
+    refused = run("map", "motoman_sk120", *GRID, "--start", "0,0,0,0,0,0 deg", "--out", str(out))
+    assert refused.code == 2
+    assert "--start" in refused.stderr
