@@ -13,6 +13,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument
 from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.cli.uncertainty import NO_REMAINDER, blame_reason, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, joint_spring_model
@@ -24,6 +25,7 @@ from sk120stiff.workspace import (
     Compensation,
     LoadedPath,
     Standing,
+    StandingUncertainty,
     branch_of,
     compensate,
     elastic_arm,
@@ -31,6 +33,7 @@ from sk120stiff.workspace import (
     lowest_floor,
     read_path,
     standing,
+    standing_uncertainty,
     stays_above,
     write_joints,
 )
@@ -95,7 +98,8 @@ def command(
 
     The loaded tool then stands, at exact equilibrium, where the unloaded nominal robot would have
     stood. Weight and wrong geometry that the model knows are corrected too. Says what remains and
-    why, and in which branch the arm runs.
+    why, and in which branch the arm runs. With a model that 'identify' or 'explain' wrote, ± what
+    the model does not know.
 
     Example: sk120stiff compensate model.yaml path.csv --start '0,20,-30,0,-60,0 deg' --out new.csv
     """
@@ -126,13 +130,14 @@ def command(
             movable=movable,
             progress=report,
         )
-    after = found.after
+    after, judge = found.after, believed
     if against is not None:
-        truth = model_for(robot, against)
+        truth = judge = model_for(robot, against)
         after = standing(truth, found.a, nominal, given.wrench, frame=at)
         before = standing(truth, nominal, nominal, given.wrench, frame=at)
         found = Compensation(found.a, before, after, found.reasons)
-    write_joints(out, given, robot, found.a, _notes(found))
+    doubt = standing_uncertainty(judge, found.a, given.wrench, frame=at)
+    write_joints(out, given, robot, found.a, _notes(found, _doubt_notes(doubt)))
     document = {
         "robot": robot.name,
         "rows": given.count,
@@ -151,11 +156,61 @@ def command(
         ],
         "branch": _branch_keys(branch, given, robot),
         "judged_by": str(against or model),
+        "uncertainty": uncertainty_keys(judge) | _doubt_keys(doubt),
         "out": str(out),
     }
     held = bool(found.before.exists.any())
-    parts = [_branch_words(branch, robot), *_parts(document, given, found)]
+    parts = [
+        _branch_words(branch, robot),
+        *_parts(document, given, found),
+        *_doubt_words(judge, doubt),
+    ]
     return Answer(document, parts=parts, exit_code=0 if held else 1)
+
+
+def _doubt_notes(doubt: StandingUncertainty | None) -> dict[str, list[str]]:
+    """Columns of the file; blank where nothing is known."""
+    if doubt is None:
+        return {}
+    columns = {"after_std_parameters[um]": doubt.std_parameters}
+    if doubt.std_remainder is not None:
+        columns["after_std_remainder[um]"] = doubt.std_remainder
+    return {
+        name: [f"{x * 1e6:.4f}" if np.isfinite(x) else "" for x in std]
+        for name, std in columns.items()
+    }
+
+
+def _doubt_keys(doubt: StandingUncertainty | None) -> dict[str, object]:
+    if doubt is None:
+        return {}
+    left = doubt.std_remainder
+    return {
+        "after_std_parameters_um": _root_mean_square(doubt.std_parameters) * 1e6,
+        "after_std_remainder_um": None if left is None else _root_mean_square(left) * 1e6,
+        "unknown_because": blame_reason(doubt.blame) or None,
+    }
+
+
+def _doubt_words(model: Model, doubt: StandingUncertainty | None) -> list[str]:
+    if doubt is None:
+        return sentences(model, None, None)
+    if doubt.blame:
+        return [f"How far off it stands in truth is unknown: it {blame_reason(doubt.blame)}."]
+    own, left = _root_mean_square(doubt.std_parameters), 0.0
+    words = f"{own * 1e6:.2g} µm from the parameters"
+    if doubt.std_remainder is None:
+        words += f"; {NO_REMAINDER}"
+    else:
+        left = _root_mean_square(doubt.std_remainder)
+        words += f", {left * 1e6:.2g} µm from what the model leaves unexplained"
+    return [f"After ± {np.hypot(own, left) * 1e6:.2g} µm: one standard distance, {words}."]
+
+
+def _root_mean_square(std: Array) -> float:
+    """Over the points that have an equilibrium; infinite if one of them is unknown."""
+    there = std[~np.isnan(std)]
+    return float(np.sqrt(np.mean(there**2))) if len(there) else float("nan")
 
 
 def _floor(robot: Robot, text: str | None, path: LoadedPath) -> float:
@@ -241,13 +296,14 @@ def _largest(values: Array) -> float:
     return float(finite.max()) if len(finite) else float("nan")
 
 
-def _notes(found: Compensation) -> dict[str, list[str]]:
+def _notes(found: Compensation, doubt: dict[str, list[str]]) -> dict[str, list[str]]:
     def micrometres(where: Standing) -> list[str]:
         return ["" if np.isnan(d) else f"{d * 1e6:.4f}" for d in where.distance]
 
     return {
         "before[um]": micrometres(found.before),
         "after[um]": micrometres(found.after),
+        **doubt,
         "remark": list(found.reasons),
     }
 

@@ -202,13 +202,16 @@ class Assembly:
 
         return law, linear
 
-    def sensitivities(self, solution: Solution, values: Array) -> Array:
-        """(N, 3, P) exact derivative of the readings by the internal parameter values."""
-        situation, rest, before = solution.situation, solution.rest, solution.unloaded
-        soft = self._soft(values)
-        adjoint = _adjoint(rest, soft)  # (N, 3, n_z) = J N⁻¹
-        weighs = self.mechanism.chain.weighs
-        adjoint_0 = _adjoint(before, soft) if weighs else before.screws.linear_jacobian
+    def standing_sensitivities(self, solution: Solution, values: Array) -> Array:
+        """(N, 3, P) exact derivative of where the loaded point stands, base axes.
+
+        By the parameters of the arm itself: those of load and reading errors have no part in it.
+        """
+        adjoint = _adjoint(solution.rest, self._soft(values))
+        return self._standing(solution, values, adjoint)
+
+    def _standing(self, solution: Solution, values: Array, adjoint: Array) -> Array:
+        situation, rest = solution.situation, solution.rest
         out = np.zeros((situation.count, 3, int(self.slices[-1].stop) if self.slices else 0))
         for effect, part, index in self._elastic:
             torques = solution.onset if isinstance(effect, Switching) else rest.torques
@@ -216,11 +219,24 @@ class Assembly:
                 torques = torques + rest.weights
             found = effect.elongation(torques[:, index], situation, values[part])
             out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
+        for part, index in self._geometric:
+            out[:, :, part] += adjoint[:, :, index]
+        return out
+
+    def sensitivities(self, solution: Solution, values: Array) -> Array:
+        """(N, 3, P) exact derivative of the readings by the internal parameter values."""
+        situation, rest, before = solution.situation, solution.rest, solution.unloaded
+        soft = self._soft(values)
+        adjoint = _adjoint(rest, soft)  # (N, 3, n_z) = J N⁻¹
+        weighs = self.mechanism.chain.weighs
+        adjoint_0 = _adjoint(before, soft) if weighs else before.screws.linear_jacobian
+        out = self._standing(solution, values, adjoint)
+        for effect, part, index in self._elastic:
             if isinstance(effect, LinearElastic) and weighs:
                 found = effect.elongation(before.weights[:, index], situation, values[part])
                 out[:, :, part] -= adjoint_0[:, :, index] @ found.by_parameter
         for part, index in self._geometric:
-            out[:, :, part] += adjoint[:, :, index] - adjoint_0[:, :, index]
+            out[:, :, part] -= adjoint_0[:, :, index]
         loaded = rest.screws.at(situation.force_point)
         per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, 3, 6)
         for part, columns in solution.loads.columns:

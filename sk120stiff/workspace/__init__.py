@@ -33,6 +33,7 @@ from sk120stiff.workspace.posture import (
     path_points,
 )
 from sk120stiff.workspace.springs import SpringArm, spring_arm
+from sk120stiff.workspace.standing_uncertainty import StandingUncertainty, standing_uncertainty
 
 __all__ = [
     "FORMATS",
@@ -56,6 +57,7 @@ __all__ = [
     "Reached",
     "SpringArm",
     "Standing",
+    "StandingUncertainty",
     "Task",
     "best_posture",
     "branch_of",
@@ -76,6 +78,7 @@ __all__ = [
     "solve_inverse",
     "spring_arm",
     "standing",
+    "standing_uncertainty",
     "starting_poses",
     "stays_above",
     "summarise_map",

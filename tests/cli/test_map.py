@@ -47,7 +47,7 @@ def test_slices_are_drawn_for_every_load_and_pair_of_axes(run: Run, tmp_path: Pa
     names = {
         f"load{load}_joint_2_l_joint_3_u_{kind}.{ending}"
         for load in (1, 2)
-        for kind in ("stiffness", "definiteness")
+        for kind in ("stiffness", "definiteness", "deflection")
         for ending in ("svg", "png")
     }
     assert {path.name for path in folder.iterdir()} == names

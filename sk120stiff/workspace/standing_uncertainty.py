@@ -1,0 +1,86 @@
+"""How surely a loaded tool stands where a model says: what the model's own uncertainty makes of it.
+
+A correction cancels what the model believes. What remains in truth is what the model does not know:
+its parameters within their uncertainty, and what it leaves unexplained.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.effects import situation_of_load
+from sk120stiff.errors import Refusal
+from sk120stiff.model import Model, held_loads
+from sk120stiff.model.predicted import blamed
+from sk120stiff.model.uncertainty import spread
+from sk120stiff.robot.coupling import Array
+from sk120stiff.workspace.arm import seen_from
+
+BLOCK = 1024  # points solved together
+
+
+@dataclass(frozen=True, eq=False)
+class StandingUncertainty:
+    """Standard distance of N loaded points from where a model says that they stand.
+
+    Attributes
+    ----------
+    std_parameters
+        (N,) root of the variances along x, y and z, from the parameters [m]; infinite where a value
+        counts that the readings of the fit do not show, NaN where no equilibrium exists.
+    std_remainder
+        (N,) the same from what the model leaves unexplained [m]; None: not known.
+    blame
+        Parameters that make it infinite.
+    """
+
+    std_parameters: Array
+    std_remainder: Array | None
+    blame: tuple[str, ...]
+
+
+def standing_uncertainty(
+    model: Model,
+    commanded: ArrayLike,
+    wrench: ArrayLike,
+    *,
+    frame: str | None = None,
+    point: ArrayLike | None = None,
+) -> StandingUncertainty | None:
+    """± of where a tool stands for commands (N, n) under loads (N, 6), as `standing` tells it.
+
+    Weight and wrong geometry count too. None if the model stores no uncertainty.
+    """
+    known = model.uncertainty
+    if known is None:
+        return None
+    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
+    a = np.atleast_2d(physical.robot.coordinates(commanded))
+    load = np.broadcast_to(np.asarray(wrench, dtype=float), (len(a), 6))
+    L, B = known.factors(physical.names)
+    std = np.full(len(a), np.nan)
+    blame: list[str] = []
+    for begin in range(0, len(a), BLOCK):
+        rows = np.arange(begin, min(begin + BLOCK, len(a)))
+        situation = situation_of_load(physical.robot, a[rows], load[rows], point=at)
+        try:
+            solution = physical.solve(situation)
+        except Refusal:
+            held = held_loads(physical, situation)
+            if not held.any():
+                continue
+            rows, situation = rows[held], situation.rows(held)
+            solution = physical.solve(situation)
+        derivative = physical.assembly.standing_sensitivities(solution, physical.values)
+        axes = spread(derivative @ L, derivative @ B, known.noise)
+        std[rows] = np.linalg.norm(axes, axis=1)
+        if np.isinf(axes).any():
+            blame += blamed(known, physical.names, derivative[np.isinf(axes).any(axis=1)])
+    left = None
+    if known.remainder is not None:
+        left = np.linalg.norm(known.remainder.std(load), axis=1)
+    return StandingUncertainty(std, left, tuple(dict.fromkeys(blame)))
