@@ -25,6 +25,7 @@ from sk120stiff.model import Model, typical_model, write_model
 from sk120stiff.model.typical import RULE
 from sk120stiff.robot import Robot, find_robot
 from sk120stiff.robot.anatomy import sample_poses
+from sk120stiff.robot.naming import robot_name
 
 ROBOT, MODEL, READINGS, SETTINGS = "robot.yaml", "model.yaml", "readings.csv", "readings.yaml"
 FILES = (ROBOT, MODEL, READINGS, SETTINGS)
@@ -98,13 +99,15 @@ def _description(named: str, arm: Robot, out: Path) -> str:
     if str(found.urdf).lstrip().startswith("<"):
         raise InputError("give a file, not text", where="ROBOT")
     urdf = Path(found.urdf)
-    nearby = not Path(named).is_absolute() and Path(named).exists()
+    told = Path(robot_name(named).place)
+    nearby = not told.is_absolute() and told.exists()
     place = Path(os.path.relpath(urdf, out)).as_posix() if nearby else str(urdf.resolve())
     kept = found.description.model_dump(mode="json", exclude_defaults=True)
     described: dict[str, object] = {
         "name": arm.name,
         **kept,
         "urdf": place,
+        **({"xacro": dict(found.xacro)} if found.xacro else {}),
         "base_frame": arm.base_frame,
         "tool_frame": arm.tool_frame,
         "actuated": list(arm.actuated),

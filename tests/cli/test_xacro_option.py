@@ -5,6 +5,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+import yaml
 
 from sk120stiff.cli.main import COMMANDS
 
@@ -51,6 +52,16 @@ def test_arguments_are_kept_in_the_model(run, arm: str, tmp_path: Path) -> None:
     document = run("stiffness", arm, *values, *load).document
     # 25 N·m on 1e4 N·m/rad turn a lever of 0.25 m
     assert document["deflection"]["conventional"][2] == pytest.approx(-25.0 / 1e4 * 0.25)
+
+
+def test_a_new_folder_keeps_the_arguments(run, arm: str, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run("new", Path(arm).name, "--xacro-arg", "prefix:=007_", "--out", "mine").code == 0
+    described = yaml.safe_load(Path("mine/robot.yaml").read_text())
+    assert described["urdf"] == "../arm.urdf.xacro"
+    assert described["xacro"] == {"prefix": "007_"}
+    monkeypatch.chdir(tmp_path.parent)
+    assert run("check", str(tmp_path / "mine"), "--json").document["actuated"] == ["007_elbow"]
 
 
 def test_every_command_that_takes_a_robot_has_the_option(run) -> None:
