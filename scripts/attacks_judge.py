@@ -63,7 +63,7 @@ def _time_limit() -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
 
 
-def here(attack: str, *arguments: str) -> Verdict:
+def here(attack: str, *arguments: str, codes: Sequence[int] = ANSWERS) -> Verdict:
     """Run a command in this process; thousands of runs are possible so."""
     from sk120stiff.cli.main import main
 
@@ -77,7 +77,7 @@ def here(attack: str, *arguments: str) -> Verdict:
         code = 0  # the time says it
     except BaseException as error:  # noqa: BLE001 - nothing may come out of main
         said.write(f"Traceback: {type(error).__name__}: {error}")
-    return judged(attack, code, said.getvalue(), time.process_time() - begin)
+    return judged(attack, code, said.getvalue(), time.process_time() - begin, codes)
 
 
 def apart(

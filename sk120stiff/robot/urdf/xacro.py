@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from sk120stiff.errors import MissingPart
+from sk120stiff.files import note_read
 from sk120stiff.robot.urdf.findings import Notebook, close_name, listed, shown
 from sk120stiff.robot.urdf.source import MAX_BYTES, RawSource
 from sk120stiff.robot.urdf.xml_text import without_comments
@@ -115,6 +116,8 @@ def expand(
         _run(job, notes)
         result, report = Path(files["result"]), Path(files["report"])
         told = json.loads(report.read_text(encoding="utf-8")) if report.is_file() else {}
+        for file in dict.fromkeys(told.get("opened", ())):
+            note_read(file)
         if told.get("missing"):
             _refuse_missing(raw, text, told["missing"], arguments, notes)
         if told.get("error") or not result.is_file():

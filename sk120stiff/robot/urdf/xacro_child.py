@@ -76,6 +76,7 @@ def _expand(job: dict[str, Any], report: dict[str, Any]) -> None:
     # xacro knows the file that it reads, but does not hand it on to $(dirname)
     substitution_args._eval_dirname = lambda _: str(Path(xacro.filestack[-1]).absolute().parent)
     xacro.check_attrs = _with_arguments_without_default(xacro.check_attrs, job["arguments"])
+    report["opened"] = _files_opened_from_now()
     os.chdir(path.parent)
     try:
         document = xacro.process_file(str(path), mappings=dict(job["arguments"]))
@@ -109,6 +110,18 @@ def _neighbour(name: str) -> Any:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def _files_opened_from_now() -> list[str]:
+    """Grows with every file that is read: what xacro includes and loads is an input too."""
+    opened: list[str] = []
+
+    def notice(event: str, details: tuple[Any, ...]) -> None:
+        if event == "open" and isinstance(details[0], str) and details[1] in ("r", "rb"):
+            opened.append(os.path.abspath(details[0]))
+
+    sys.addaudithook(notice)
+    return opened
 
 
 def _guess(path: Path) -> list[Path]:
