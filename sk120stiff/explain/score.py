@@ -23,6 +23,7 @@ from sk120stiff.explain.regression import Index, Regression, Solved, Sums, solve
 
 LESS_USUAL = {"joint_tilt": 1.0}  # breaks ties: an arm rocks on its floor more often than it tilts
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
+PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit
 DRAWN_SIZES = (0.7, 1.5, 3.0, 6.0)  # standard deviations tried, in typical sizes
 
 
@@ -163,6 +164,19 @@ def _sizes(regression: Regression, sums: Sums, solved: Solved, parts: Sequence[I
             gain = float(values @ signature - covered @ sums.over(base, covered)) / variance
             price += price_of_sizes(gain, len(own), n)
     return price
+
+
+def entry_fall(regression: Regression, effect: int) -> float:
+    """Fall of the misfit, in noise variances, at which an effect joins a model with all its sizes.
+
+    It is the fall that equals the price of the effect, its sizes included.
+    """
+    count, rows = len(regression.columns[effect]), float(regression.rows)
+    rest = price_of_looking(regression, rows) + _price_of_choice(regression, effect, tied=True)
+    fall = rest
+    for _ in range(PRICED):  # the price of sizes grows with the logarithm of the fall
+        fall = rest + price_of_sizes(fall, count, rows)
+    return fall
 
 
 def price_of_sizes(gain: float, count: int, rows: float) -> float:

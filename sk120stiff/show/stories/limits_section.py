@@ -68,8 +68,9 @@ def blind_section(answer: Explanation) -> Section:
             Table(
                 ["effect", "would have shown"],
                 _sizes(answer, visible),
-                "Smallest size that would have been named in four of five cases: a stiffness at "
-                "or below the value given, anything else at or above it.",
+                "Smallest size that would have been named in four of five cases, alone or beside "
+                "names that these readings cannot tell from it: a stiffness at or below the value "
+                "given, anything else at or above it.",
             )
         )
     return Section("What these readings cannot show", blocks)
