@@ -81,7 +81,7 @@ def test_sensitivities_of_all_effects_together(name):
     typical = np.array([parameter.spec.typical for parameter in model.parameters])
     rng = np.random.default_rng(10)
     for _ in range(10):
-        direction = 0.02 * typical * rng.normal(size=len(typical))
+        direction = 0.005 * typical * rng.normal(size=len(typical))  # no gear jumps so near
 
         def moved(by: float, direction: Array = direction) -> Array:
             return model.predict(situation, model.values + by * direction)
