@@ -140,7 +140,7 @@ def _document(made: Demo) -> dict[str, object]:
         "gap_um": {
             "paper": 1e6 * made.rms(made.paper),
             "identified": 1e6 * made.rms(made.found.model),
-            "scatter_within_poses": None if made.noise is None else 1e6 * made.noise,
+            "noise_floor": None if made.noise is None else 1e6 * made.noise,
             "heldout": 1e6 * made.answer.steps[0].heldout_rms,
         },
         "per_pose": [

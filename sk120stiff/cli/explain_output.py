@@ -18,8 +18,10 @@ from sk120stiff.cli.tables import table
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import DOUBTFUL, Explanation, verdict_document
+from sk120stiff.explain.adequacy import Adequacy
 from sk120stiff.files import together, will_write, write_atomically
 from sk120stiff.identify import known_model, unseen_reasons
+from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model, write_model
 from sk120stiff.show.wording import with_error
@@ -233,8 +235,10 @@ def parts(
         f"{name} cannot be seen: {why}." for name, why in unseen_reasons(answer.final).items()
     ]
     if answer.findings and answer.adequacy.lacking:
-        p = answer.adequacy.probability
-        shown.append(f"That is not all: more is left than the noise makes (p = {p:.1g}).")
+        shown.append("That is not all: more is left than the noise makes.")
+    shown.append(noise_sentence(answer.final))
+    if answer.adequacy.whole is not None:
+        shown.append(answer.adequacy.whole.sentence())
     shown += answer.noise_reasons
     shown += [
         f"Set aside as no smooth cause can have made it: pose {readings.pose[row]}, "
@@ -251,18 +255,32 @@ def parts(
 
 def said(answer: Explanation) -> str:
     """The verdict as a sentence."""
-    if answer.verdict == "none" and answer.adequacy.probability < DOUBTFUL:
-        p = answer.adequacy.probability
-        return (
-            f"No effect can be named. What is left is a little more than the noise (p = {p:.2g}), "
-            "not enough to claim that something is missing."
-        )
+    if answer.verdict == "none":
+        return _none(answer.adequacy)
     return {
-        "none": "Model and data agree within the noise: nothing is missing that they could show.",
         "named": "Something was missing, and it has a name.",
         "ambiguous": "Something is missing; these readings cannot tell which of several names.",
         "outside": _outside(answer),
     }[answer.verdict]
+
+
+def _none(left: Adequacy) -> str:
+    if left.chance is None:
+        return (
+            "No effect can be named. The noise is unknown, so whether something is missing stays "
+            "open: state it, or repeat readings."
+        )
+    if left.understated is not None:
+        return (
+            f"σ looks {left.understated:.2f} times too small; nothing structured is left that the "
+            "data could show."
+        )
+    if left.chance < DOUBTFUL:
+        return (
+            f"No effect can be named. What is left is a little more than the noise (p = "
+            f"{left.chance:.2g}), not enough to claim that something is missing."
+        )
+    return "Model and data agree within the noise: nothing is missing that they could show."
 
 
 def _outside(answer: Explanation) -> str:

@@ -32,6 +32,7 @@ from sk120stiff.identify import (
     refitted,
     unseen_reasons,
     weak_directions,
+    yardstick,
 )
 from sk120stiff.identify.report import noise_sentence, place_of
 from sk120stiff.measurements import Measurements
@@ -127,16 +128,19 @@ def command(
             lines = compare(models, readings, progress=report)
     if out is not None:
         write_model(replace(known_model(found), provenance=provenance(data, readings)), out)
+    noise = yardstick(found)
     document = {
         "robot": robot.name,
         "parameters": parameter_rows(found, intervals),
         "rms_um": found.rms * 1e6,
-        "sigma_um": found.sigma * 1e6,
-        "sigma_stated": found.sigma_stated,
+        "sigma_um": None if noise.sigma is None else noise.sigma * 1e6,
+        "sigma_from": noise.source,
+        "sigma_stated": noise.source == "stated",
+        "noise_floor_um": None if noise.floor is None else noise.floor * 1e6,
         "chi_square": found.chi_square,
         "degrees_of_freedom": found.degrees_of_freedom,
         "lack_of_fit": lack_of_fit(found),
-        "lack_of_fit_probability": found.lack_of_fit,
+        "inflated": found.noise_factor if found.exceeds else None,
         "aic": found.aic,
         "bic": found.bic,
         "condition": found.condition,

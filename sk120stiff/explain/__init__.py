@@ -1,8 +1,7 @@
 """Find where model and readings disagree, name what is missing, add it, show the gap shrink."""
 
-from sk120stiff.explain.document import noise_floor, verdict_document
+from sk120stiff.explain.document import verdict_document
 from sk120stiff.explain.explanation import (
-    DOUBTFUL,
     Detectable,
     Evidence,
     Explanation,
@@ -15,6 +14,7 @@ from sk120stiff.explain.localise import localise
 from sk120stiff.explain.steering import Options
 from sk120stiff.explain.where_words import where_sentences
 from sk120stiff.explain.workflow import explain
+from sk120stiff.identify import DOUBTFUL
 
 __all__ = [
     "DOUBTFUL",
@@ -28,7 +28,6 @@ __all__ = [
     "Verdict",
     "explain",
     "localise",
-    "noise_floor",
     "verdict_document",
     "where_sentences",
 ]

@@ -59,7 +59,12 @@ def next_poses(
         name, _, where = rivals[0].partition(":")
         rival = effect(model.robot, name, where, poses=situation.poses)
         choice = discriminating_readings(
-            model, finding.effect, rival, pool, count=count, sigma=answer.final.sigma
+            model,
+            finding.effect,
+            rival,
+            pool,
+            count=count,
+            sigma=answer.noise.sigma * answer.final.noise_factor,
         )
         rows = list(choice.rows)
         return pool.situation.a[rows], pool.situation.wrench[rows]

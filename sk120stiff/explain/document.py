@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.explain.explanation import Explanation, Finding
-from sk120stiff.identify import Fit, unseen_reasons
+from sk120stiff.identify import unseen_reasons
+from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Parameter
 
@@ -34,7 +35,8 @@ def verdict_document(
         "parameters": parameters_before_and_after(answer),
         "gap": {
             "unit": "um",
-            "noise_floor": noise_floor(answer.final) * 1e6,
+            "noise_floor": _um(answer.noise_floor),
+            "p": answer.adequacy.chance,
             "steps": [
                 {
                     "model": step.label,
@@ -49,8 +51,10 @@ def verdict_document(
         "not_named": list(answer.unnamed),
         "limits": list(answer.limits),
         "noise": {
-            "model": answer.noise.describe(),
-            "sigma_um": answer.final.sigma * 1e6,
+            "model": noise_sentence(answer.final),
+            "source": answer.yardstick.source,
+            "sigma_um": _um(answer.yardstick.sigma),
+            "degrees_of_freedom": answer.yardstick.freedom,
             "decided": list(answer.noise_reasons),
             "set_aside": [
                 {"pose": readings.pose[row], "line": int(readings.line[row])}
@@ -62,6 +66,7 @@ def verdict_document(
             "left_over": answer.adequacy.excess,
             "explained": answer.adequacy.explained,
             "tests": dict(answer.adequacy.tests),
+            "understated": answer.adequacy.understated,
         },
         "not_observable": list(answer.not_observable),
         "smallest_detectable": [
@@ -72,11 +77,8 @@ def verdict_document(
     }
 
 
-def noise_floor(fit: Fit) -> float:
-    """Rms per axis that noise alone would give the gap [m]."""
-    own, zero = fit.problem.noise.variances(fit.problem.measurements)
-    factor = 1.0 if fit.sigma_stated else fit.noise_factor
-    return float(np.sqrt(np.mean(own + zero)) * factor)
+def _um(metres: float | None) -> float | None:
+    return None if metres is None else metres * 1e6
 
 
 def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:

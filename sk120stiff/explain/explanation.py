@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 from sk120stiff.effects import Effect
 from sk120stiff.explain.adequacy import Adequacy
 from sk120stiff.explain.confirm import Confirmation
 from sk120stiff.explain.notebook import summary_html
-from sk120stiff.identify import Fit
+from sk120stiff.identify import Fit, Yardstick, yardstick
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.robot.coupling import Array
 
 Verdict = Literal["none", "named", "ambiguous", "outside"]
-DOUBTFUL = 0.05  # below this probability of what is left, "none" is said with a doubt
 
 
 @dataclass(frozen=True)
@@ -157,6 +157,16 @@ class Explanation:
     smallest_detectable: tuple[Detectable, ...] = ()
     next_poses: tuple[Array, Array] | None = None
     details: Mapping[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def yardstick(self) -> Yardstick:
+        """The noise that all gaps are held against, on every page and in every file."""
+        return yardstick(self.final)
+
+    @property
+    def noise_floor(self) -> float | None:
+        """Rms per axis that noise alone would give the gap [m]; None where nothing tells it."""
+        return self.yardstick.floor
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

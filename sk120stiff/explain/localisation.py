@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from sk120stiff.identify.yardstick import Source
 from sk120stiff.robot.coupling import Array
 
 Whole = Literal["excess", "gap"]
@@ -92,14 +93,14 @@ class OwnAtPoses:
     Attributes
     ----------
     name
-        ``constant``, ``drift`` or ``proportional`` to the load.
+        ``constant``, ``drift``, ``proportional`` to the load, ``branches``: other when unloading.
     statistic, freedom
         What it takes away of the misfit [noise variances], and its degrees of freedom.
     probability
         That chance makes it.
     """
 
-    name: Literal["constant", "drift", "proportional"]
+    name: Literal["constant", "drift", "proportional", "branches"]
     statistic: float
     freedom: int
     probability: float
@@ -173,15 +174,15 @@ class Localisation:
     rms, noise
         Rms gap per axis, and what the noise alone would leave [m]; None where nothing tells it.
     noise_from
-        Where the size of the noise comes from: it was ``stated``, or it is the ``scatter`` within
-        poses; with ``gap`` nothing but the gap itself could tell it.
+        Where the size of the noise comes from: it was ``stated``, ``repeats`` tell it, or the
+        ``scatter`` within poses; ``unknown``: nothing tells, but the gap itself.
     whole
         What shares are shares of: the ``excess`` of the gap's square over the noise, or the square
         of the ``gap`` itself, where the noise is unknown or makes most of it.
     beyond
         Share of the whole that noise does not make; 1 where nothing tells.
     probability
-        That noise alone makes such a gap; None where nothing tells.
+        That noise alone makes such a gap (`lack_of_fit`); None where nothing tells.
     poses, levels, directions, orders, postures
         By pose, by size of the load, by direction in several axes, by order in the load, by
         posture.
@@ -198,7 +199,7 @@ class Localisation:
 
     rms: float
     noise: float | None
-    noise_from: Literal["stated", "scatter", "gap"]
+    noise_from: Source
     whole: Whole
     beyond: float
     probability: float | None

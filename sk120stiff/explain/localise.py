@@ -3,8 +3,8 @@
 Everything is judged against the noise, after the model's own parameters have had their say: the
 statistic of a suspect is T = ‖orth(M_B V^(-1/2) S)ᵀ r‖², with B the columns of the model's
 parameters, S those of the suspect, r the whitened gap and M_B projecting out B. If the gap is noise
-alone, T is χ² with rank(S) degrees of freedom (F where the size of the noise was found from the
-scatter within poses). Probabilities are corrected for the number of looks by Holm's rule.
+alone, T is χ² with rank(S) degrees of freedom (F where repeats or the scatter within poses tell the
+noise). Probabilities are corrected for the number of looks by Holm's rule.
 
 Shares are of what exceeds the noise. Where nothing tells the noise, or the noise makes most of the
 gap, that is nothing to divide by: shares are of the gap itself then, and it is said.
@@ -34,7 +34,7 @@ from sk120stiff.explain.localisation import (
 )
 from sk120stiff.explain.suspects import Suspect, axes_of, reach_of, suspects_of
 from sk120stiff.explain.within_poses import WithinPoses, within_poses
-from sk120stiff.identify import Fit
+from sk120stiff.identify import Fit, Yardstick, lack_of_fit, yardstick
 from sk120stiff.identify.left_over import orthonormal
 from sk120stiff.robot.coupling import Array
 
@@ -46,25 +46,28 @@ INDISTINCT = 0.02  # share of a direction below which a picture takes it for the
 SEEN_AT_ALL = 1e-6  # share of a column that must remain, else the model's own parameters do it
 
 
-def localise(fit: Fit) -> Localisation:
+def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
     """Find where the gap of a fitted model lives.
 
     Parameters
     ----------
     fit
         The fitted model, usually the base model.
+    noise
+        What to hold the gap against; None: the fit's own `yardstick`.
     """
-    look = _look(fit)
+    look = _look(fit, noise or yardstick(fit))
+    test = lack_of_fit(fit)
     situation = fit.problem.situation
     poses = _poses(look)
     suspects, beside = _suspicions(look)
     return Localisation(
         rms=fit.rms,
         noise=_noise(look, slice(None)),
-        noise_from=look.within.noise_from,
+        noise_from=look.noise.source,
         whole=look.whole,
         beyond=look.beyond if look.whole == "gap" and look.known else 1.0,
-        probability=look.within.misfit,
+        probability=None if test is None else test.probability,
         poses=poses,
         levels=_levels(look),
         directions=_directions(look),
@@ -90,17 +93,18 @@ class _Look:
     inside: Array  # (3N, rank) orthonormal basis of what the model's parameters can do, whitened
     white: Array  # (3N,) whitened gap, `inside` projected out
     variance: Array  # (N,) noise variance of a displacement per axis [m²]
+    noise: Yardstick
     within: WithinPoses
 
     @property
     def known(self) -> bool:
         """Something beside the gap tells the size of the noise."""
-        return self.within.freedom > 0.0
+        return self.noise.freedom > 0.0
 
     @cached_property
     def beyond(self) -> float:
         """Share of the gap's square that exceeds the noise, of the raw or of the white gap."""
-        white = float(self.white @ self.white) / self.within.scale
+        white = float(self.white @ self.white) / self.noise.scale
         expected = len(self.white) - self.inside.shape[1]
         raw, noise = float((self.gap**2).sum()), 3.0 * float(self.variance.sum())
         shares = (1.0 - expected / max(white, 1e-300), 1.0 - noise / max(raw, 1e-300))
@@ -122,7 +126,7 @@ class _Look:
         return max(float((self.gap**2).sum() - 3.0 * self.floor.sum()), 1e-300)
 
 
-def _look(fit: Fit) -> _Look:
+def _look(fit: Fit, noise: Yardstick) -> _Look:
     problem = fit.problem
     axes = problem.situation.reading_axes
     predicted, full = fit.model.predict_with_sensitivities(problem.situation)
@@ -134,7 +138,6 @@ def _look(fit: Fit) -> _Look:
     raw = problem.measured - predicted
     white = drawn.whiten(raw)
     white = white - inside @ (inside.T @ white)
-    within = within_poses(fit, white, inside, drawn.whiten)
     own, zero = problem.noise.variances(problem.measurements, problem.sizes)
     return _Look(
         fit=fit,
@@ -144,8 +147,9 @@ def _look(fit: Fit) -> _Look:
         whiten=drawn.whiten,
         inside=inside,
         white=white,
-        variance=(own + zero).mean(axis=1) * within.scale,
-        within=within,
+        variance=(own + zero).mean(axis=1) * noise.scale,
+        noise=noise,
+        within=within_poses(fit, white, inside, drawn.whiten, noise),
     )
 
 
@@ -169,7 +173,7 @@ def _chance_of_pose(look: _Look, white: Array, rows: Index) -> float:
     """Probability of such a gap at one pose: beside the noise, or beside the gaps of the others."""
     own, count = float(white[rows].sum()), 3 * len(rows)
     if look.known:
-        return look.within.tail(own, count)
+        return look.noise.tail(own, count)
     rest = float(white.sum()) - own
     freedom = len(look.white) - look.inside.shape[1] - count
     if freedom < 1 or not count or rest <= 0.0:
@@ -270,14 +274,14 @@ def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion,
     length, left = np.linalg.norm(lineup.white, axis=0), np.linalg.norm(beyond, axis=0)
     visible = left > SEEN_AT_ALL * np.maximum(length, 1e-300)
     white = look.white - known @ (known.T @ look.white)
-    total = float(white @ white) / look.within.scale
+    total = float(white @ white) / look.noise.scale
     freedom = len(white) - known.shape[1]
     found: list[tuple[Suspicion, int]] = []
     for k, (suspect, own) in enumerate(zip(lineup.suspects, lineup.parts, strict=True)):
         basis = orthonormal(beyond[:, own][:, visible[own]])
         rank = basis.shape[1]
         if 0 < rank < freedom:
-            T = float(((basis.T @ white) ** 2).sum()) / look.within.scale
+            T = float(((basis.T @ white) ** 2).sum()) / look.noise.scale
             found.append((_suspicion(suspect, T, rank, total, freedom, look), k))
     corrected = holm([suspicion.probability for suspicion, _ in found])
     return sorted(
@@ -306,14 +310,14 @@ def _suspicion(
     suspect: Suspect, T: float, rank: int, total: float, freedom: int, look: _Look
 ) -> Suspicion:
     """The statistic with its probability, not yet corrected for the number of looks."""
-    within = look.within
+    noise = look.noise
     unit = 1.0
     if look.known:
-        p = within.tail(T * within.scale, rank)
+        p = noise.tail(T * noise.scale, rank)
     else:  # nothing tells the noise but what the suspect itself leaves
         unit = max(total - T, 1e-300) / (freedom - rank)
         p = float(stats.f.sf(T / rank / unit, rank, freedom - rank))
-    whole = float(look.white @ look.white) / within.scale
+    whole = float(look.white @ look.white) / noise.scale
     if look.whole == "excess":
         whole -= len(look.white) - look.inside.shape[1]
     return Suspicion(

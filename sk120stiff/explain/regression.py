@@ -330,7 +330,7 @@ def regression_at(
         ),
         lower=np.concatenate([lower, lower[sources]]),
         plausible=np.concatenate([plausible, plausible[sources]]),
-        sigma_known=fit.sigma_stated,
+        sigma_known=fit.sigma_known,
         alpha=alpha,
     )
 

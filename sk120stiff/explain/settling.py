@@ -37,7 +37,7 @@ class Attempt:
     candidates
         All effects considered.
     total
-        Score of the whole, noise model included; attempts under other noise models compare by it.
+        Score of the whole, noise included; attempts under other zero readings compare by it.
     """
 
     base: Fit
@@ -98,10 +98,8 @@ def attempt(
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     axes = np.log(3.0 * measurements.n_readings)
-    if (
-        not regression.sigma_known
-    ):  # its part of the likelihood that no model changes, and its price
-        score += regression.rows + axes
+    if not regression.sigma_known:  # its part of the likelihood that no model changes
+        score += regression.rows
     return Attempt(
         base=base,
         final=final,
@@ -109,7 +107,7 @@ def attempt(
         chosen=chosen,
         aside=aside,
         candidates=tuple(candidates),
-        total=score + whole + 3.0 * axes * len(aside) + 2.0 * axes * (noise.growth > 0.0),
+        total=score + whole + 3.0 * axes * len(aside),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -73,6 +74,8 @@ def nested(found: Attempt, counts: Sequence[int]) -> Learn:
 
     def learn(readings: Measurements) -> list[Fit]:
         base = fit(start, readings)
+        if base.sigma_known and not found.base.sigma_known:  # a search at the misfit's own scale
+            base = fit(start, readings, noise=replace(base.problem.noise, freedom=0))
         if not any(counts):
             return [base for _ in counts]
         regression = regression_at(base, found.candidates, ids, alpha=alpha)

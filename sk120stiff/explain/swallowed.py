@@ -64,7 +64,7 @@ def swallowed(fit: Fit, effects: Sequence[Effect]) -> tuple[Swallowed, ...]:
     own = derivative[:, :, moving] * problem.scale[~fit.at_bound]
     white = problem.whitener.apply(own)
     inside = orthonormal(white)
-    noise = 1.0 if fit.sigma_stated else fit.noise_factor
+    noise = 1.0 if fit.sigma_known else fit.noise_factor
     typical = np.array([p.spec.typical for p in full.parameters])
     owner = [p.effect.id for p in full.parameters]
     out = []

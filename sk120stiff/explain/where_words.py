@@ -11,6 +11,10 @@ WHOLE = 0.9  # share of the excess that leaves nothing worth a search
 LITTLE = 0.3  # share of the excess below which the strongest suspect is no explanation
 HARDLY = 0.02  # share of the excess that higher orders of the strongest suspect may leave
 WORTH_SAYING = 0.1
+ORIGINS = {
+    "scatter": ", as found from the scatter within poses",
+    "repeats": ", as found from repeats",
+}
 MANY_POSES = 5  # more than this carry no longer a short list
 
 
@@ -44,7 +48,7 @@ def _size(found: Localisation) -> str:
             "shares are of the gap itself, noise included."
         )
     noise = _um(found.noise)
-    origin = "" if found.noise_from == "stated" else ", as found from the scatter within poses"
+    origin = ORIGINS.get(found.noise_from, "")
     if found.probability >= LEVEL:
         also = ", yet part of it goes with something" if found.strongest else ""
         return (

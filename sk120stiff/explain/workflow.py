@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
-from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.adequacy import Adequacy, adequacy
+from sk120stiff.explain.best_attempt import best_attempt, held_against
 from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.doubt import with_doubt
 from sk120stiff.explain.explanation import Explanation
 from sk120stiff.explain.naming import SHADOW, Named, judged
-from sk120stiff.explain.noise_race import race
 from sk120stiff.explain.settling import Attempt, attempt, with_effects
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
 from sk120stiff.explain.steps import gap_steps
 from sk120stiff.identify import refuse_unusable
-from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
 from sk120stiff.slips import look, refuse_unbelievable, without_copies
@@ -65,17 +64,19 @@ def explain(
     sound = _sound(model, measurements)
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
-    found, reasons = _best_attempt(model, used, wish)
-    left = _adequacy(found)
+    found, noise = _best_attempt(model, used, wish)
+    left = _adequacy(found, noise)
     named = Named()
     allowed = LEFT_OVER
     if not _too_much(left, allowed):
         tell("confirming on other poses", 0.5)
         found, named = judged(found, seed=wish.seed)
-        left = _adequacy(found)
+        left = _adequacy(found, noise)
         if named.shadows:
             allowed = SHADOW
     findings = named.findings
+    reasons = (*decided(noise, used), *left.of_the_statement())
+    base = held_against(noise, found.base)
     if _too_much(left, allowed):
         nearest = [effect.id for effect in found.effects]
         return _finished(
@@ -83,11 +84,11 @@ def explain(
             Explanation(
                 verdict="outside",
                 findings=(),
-                base=found.base,
-                final=found.base,
+                base=base,
+                final=base,
                 steps=gap_steps(found, (), holdout, seed=wish.seed),
-                noise=found.base.problem.noise,
-                noise_reasons=tuple(reasons),
+                noise=noise,
+                noise_reasons=reasons,
                 set_aside=tuple(rows[found.aside].tolist()),
                 adequacy=left,
                 unnamed=named.reasons,
@@ -102,11 +103,11 @@ def explain(
     answer = Explanation(
         verdict="none" if not findings else "named" if settled else "ambiguous",
         findings=findings,
-        base=found.base,
-        final=with_doubt(found, findings),
+        base=base,
+        final=held_against(noise, with_doubt(found, findings)),
         steps=gap_steps(found, effects, holdout, seed=wish.seed),
-        noise=found.base.problem.noise,
-        noise_reasons=tuple(reasons),
+        noise=noise,
+        noise_reasons=reasons,
         set_aside=tuple(rows[found.aside].tolist()),
         adequacy=left,
         unnamed=named.reasons,
@@ -128,12 +129,11 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
 
 def _best_attempt(
     model: Model, measurements: Measurements, wish: Options
-) -> tuple[Attempt, Sequence[str]]:
-    """The attempt that explains most, under the noise model that the readings speak for."""
+) -> tuple[Attempt, NoiseModel]:
+    """The attempt that explains most, and the noise that it is held against."""
     base_model = with_assumed(model, measurements, wish.assume)
     candidates = candidates_for(base_model, measurements, wish)
     plain = tuple(effect for effect in candidates if not effect.exchangeable)
-    situation = situation_of(base_model.robot, measurements)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
     def under(chosen: NoiseModel) -> Attempt:
@@ -147,7 +147,7 @@ def _best_attempt(
             alpha=wish.alpha,
         )
 
-    return race(measurements, situation, under)
+    return best_attempt(measurements, under)
 
 
 def _sound(model: Model, measurements: Measurements) -> Measurements:
@@ -168,8 +168,9 @@ def _silent(phrase: str, share: float) -> None:
     del phrase, share
 
 
-def _adequacy(found: Attempt) -> Adequacy:
-    return adequacy(found.final, found.regression, found.scored.solved.columns)
+def _adequacy(found: Attempt, noise: NoiseModel) -> Adequacy:
+    final = held_against(noise, found.final)
+    return adequacy(final, found.regression, found.scored.solved.columns)
 
 
 def _too_much(left: Adequacy, allowed: float) -> bool:

@@ -1,27 +1,28 @@
 """Measurements + model become a `Fit`: least squares, uncertainty, what cannot be known."""
 
 from sk120stiff.identify.comparison import Compared, compare
-from sk120stiff.identify.estimate import fit, refuse_unusable
+from sk120stiff.identify.estimate import fit, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.held_out import HeldOut, Learn, drawn_parts, held_out, pose_parts, refitted
-from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
+from sk120stiff.identify.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
 from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.profile import profile_intervals
 from sk120stiff.identify.report import fit_report
-from sk120stiff.identify.saturated import choose_noise
 from sk120stiff.identify.solving import solve, solve_near
 from sk120stiff.identify.uncertainty import known_model
 from sk120stiff.identify.unseen import unseen_reasons, why_unseen
 from sk120stiff.identify.weak import weak_directions
+from sk120stiff.identify.yardstick import Yardstick, yardstick
 
 __all__ = [
+    "DOUBTFUL",
     "Compared",
     "Fit",
     "HeldOut",
     "LackOfFit",
     "Learn",
     "Problem",
-    "choose_noise",
+    "Yardstick",
     "compare",
     "drawn_parts",
     "fit",
@@ -29,6 +30,7 @@ __all__ = [
     "held_out",
     "known_model",
     "lack_of_fit",
+    "likelier",
     "pose_parts",
     "profile_intervals",
     "refitted",
@@ -38,4 +40,5 @@ __all__ = [
     "unseen_reasons",
     "weak_directions",
     "why_unseen",
+    "yardstick",
 ]

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
-from sk120stiff.identify.estimate import fit
+from sk120stiff.identify.estimate import fit, likelier
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.held_out import HeldOut, held_out, refitted
-from sk120stiff.identify.saturated import choose_noise
-from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import Model
 
 CLEAR = 2.0  # standard errors from which on a difference is called one
@@ -88,16 +86,11 @@ def compare(
     if len(models) < 2:
         raise InputError("a comparison takes two models or more")
     used = measurements.masked()
-    given = noise
-    if noise is None and used.displacement is not None:
-        first = next(iter(models.values()))
-        noise = choose_noise(used, situation_of(first.robot, used))[0]
-    fits: dict[str, Fit] = {}
+    fits = _fits(models, used, [noise] if noise is not None else candidates(used))
     errors: dict[str, HeldOut | None] = {}
     for k, (name, model) in enumerate(models.items()):
-        fits[name] = fit(model, used, noise=noise)
         errors[name] = (
-            held_out(used, refitted(model, noise=given), seed=seed)[0]
+            held_out(used, refitted(model, noise=noise), seed=seed)[0]
             if len(used.poses) > 1
             else None
         )
@@ -123,6 +116,15 @@ def compare(
             )
         )
     return tuple(lines)
+
+
+def _fits(
+    models: Mapping[str, Model], used: Measurements, noises: Sequence[NoiseModel]
+) -> dict[str, Fit]:
+    """All models under the noise under which the best of them is likelier."""
+    tried = [{name: fit(m, used, noise=noise) for name, m in models.items()} for noise in noises]
+    best = [max(2.0 * found.log_likelihood for found in fits.values()) for fits in tried]
+    return tried[likelier(best)]
 
 
 def _note(found: Fit, loss: float | None, doubt: float | None, *, first: bool, bic: float) -> str:

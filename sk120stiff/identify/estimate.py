@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.problem import Problem
-from sk120stiff.identify.robust import robust_noise, solve_robustly
-from sk120stiff.identify.saturated import STRONG, choose_noise
+from sk120stiff.identify.robust import solve_robustly
 from sk120stiff.identify.solvers import Method
 from sk120stiff.identify.solving import solve
-from sk120stiff.measurements import Measurements, NoiseModel, candidates
+from sk120stiff.measurements import Measurements, NoiseModel, candidates, decided
 from sk120stiff.model import Model
 
-AGREES = 0.01  # probabilities of a larger misfit, up to 1 less this, that stated noise explains
+IN_DOUBT = 4.6  # twice the log-likelihood, a tenfold one, that separate zero readings must gain
 FEWEST = 2  # readings; one alone leaves nothing to judge a fit by
 
 
@@ -36,8 +35,9 @@ def fit(
     measurements
         Readings with displacements; masked rows are left out.
     noise
-        Covariance of the readings. Default: what the data say of themselves (`choose_noise`); a σ
-        that they do not state is estimated with the fit.
+        Covariance of the readings. Default: what the data say of themselves (`candidates`). A zero
+        that nobody described is decided by the likelihood of the fits, and in doubt shared; a σ
+        that neither the data nor repeats tell is estimated with the fit.
     method
         ``"trf"`` (trust region, bounds) or ``"lm"`` (Levenberg–Marquardt); both reach the same.
     robust
@@ -53,40 +53,24 @@ def fit(
     """
     refuse_unusable(model, measurements)
     used = measurements.masked()
-    reasons: tuple[str, ...] = ()
-    if noise is None:
-        noise, said = choose_noise(used, situation_of(model.robot, used))
-        reasons = tuple(said)
-        if robust:
-            noise, reasons = robust_noise(used, noise, reasons)
-        else:
-            found = solve(Problem(model, used, noise), method=method)
-            return _checked(_reconsidered(found, reasons, method), measurements)
-    problem = Problem(model, used, noise)
-    found = solve_robustly(problem, method=method) if robust else solve(problem, method=method)
+    open_ = [noise] if noise is not None else candidates(used)
+    fits = [solve(Problem(model, used, each), method=method) for each in open_]
+    found = fits[likelier([2.0 * each.log_likelihood for each in fits])]
+    if robust:
+        found = solve_robustly(found.problem, method=method)
+    reasons = () if noise is not None else decided(found.problem.noise, used)
     return _checked(replace(found, reasons=reasons), measurements)
 
 
-def _reconsidered(found: Fit, reasons: tuple[str, ...], method: Method) -> Fit:
-    """The fit under the plain noise as described, unless its gaps ask for more than that too.
+def likelier(support: Sequence[float]) -> int:
+    """Which of one or two noise models to take, the simpler one first: in doubt that.
 
-    What a model explains (a jump in a gear, say) may look like noise as long as no model is there.
-    The gaps of a fitted model hold all the noise, so noise cannot be larger than they are.
+    Parameters
+    ----------
+    support
+        Twice the log-likelihood of the readings under each, or a score's negative.
     """
-    problem = found.problem
-    noise = problem.noise
-    plain = next(n for n in candidates(problem.measurements) if n.zero == noise.zero)
-    if plain.growth == noise.growth and (plain.sigma == noise.sigma or not noise.stated):
-        return replace(found, reasons=reasons)
-    other = solve(Problem(problem.model, problem.measurements, plain), method=method)
-    if plain.stated and other.lack_of_fit is not None:
-        enough = AGREES < other.lack_of_fit < 1.0 - AGREES
-    else:
-        enough = 2.0 * (found.log_likelihood - other.log_likelihood) < STRONG
-    if not enough:
-        return replace(found, reasons=reasons)
-    kept = tuple(reason for reason in reasons if "zero readings" in reason)
-    return replace(other, reasons=kept)
+    return int(len(support) > 1 and support[1] > support[0] + IN_DOUBT)
 
 
 def _checked(found: Fit, measurements: Measurements) -> Fit:

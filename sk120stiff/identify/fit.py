@@ -22,6 +22,8 @@ from sk120stiff.identify.problem import Problem
 from sk120stiff.model import ON_BOUND, TOGETHER, UNSEEN, Model, Parameter
 from sk120stiff.robot.coupling import Array
 
+LEVEL = 0.01  # probability below which model and readings are said to disagree
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -74,9 +76,9 @@ class Fit:
         return self.problem.gap(self.x)
 
     @property
-    def sigma_stated(self) -> bool:
-        """Was the noise's size known? Else it is estimated from the residual."""
-        return self.problem.noise.stated
+    def sigma_known(self) -> bool:
+        """Is the noise's size known from elsewhere? Else it is estimated from the residual."""
+        return self.problem.noise.known
 
     @property
     def rms(self) -> float:
@@ -101,33 +103,44 @@ class Fit:
 
     @property
     def noise_factor(self) -> float:
-        """Noise that the residual shows over the noise assumed; 1 if all is well."""
+        """What the residual shows over the noise assumed; 1 if all is well."""
         if self.spread is not None:
             return self.spread
         return float(np.sqrt(self.chi_square / max(self.degrees_of_freedom, 1)))
 
-    @property
-    def sigma(self) -> float:
-        """Standard uncertainty of one reading per axis, stated or else estimated [m]."""
-        return self.problem.noise.sigma * (1.0 if self.sigma_stated else self.noise_factor)
+    @cached_property
+    def misfit(self) -> tuple[float, tuple[int, int | None], float] | None:
+        """The whole misfit held against a σ known from elsewhere; None where there is none.
 
-    @property
-    def lack_of_fit(self) -> float | None:
-        """Probability of a larger χ² if the model were true; None where that says nothing.
-
-        So it is where σ was not stated, and where readings were trusted less than it says.
+        χ² where σ was stated; where repeats told it, F of what exceeds their pure error over that
+        error. With it the degrees of freedom (of the yardstick: None if it is exact), and the
+        probability of a larger one if the model were true. Readings that were trusted less than
+        their σ says leave no sum of squares to test.
         """
-        weighted = self.problem.weights is not None
-        if not self.sigma_stated or weighted or self.degrees_of_freedom < 1:
+        freedom, noise = self.degrees_of_freedom, self.problem.noise
+        if not self.sigma_known or self.problem.weights is not None or freedom < 1:
             return None
-        return float(stats.chi2.sf(self.chi_square, self.degrees_of_freedom))
+        if noise.stated:
+            chance = float(stats.chi2.sf(self.chi_square, freedom))
+            return self.chi_square, (freedom, None), chance
+        repeats = int(noise.freedom)
+        if freedom <= repeats:
+            return None
+        ratio = max(self.chi_square - repeats, 0.0) / (freedom - repeats)
+        chance = float(stats.f.sf(ratio, freedom - repeats, repeats))
+        return ratio, (freedom - repeats, repeats), chance
+
+    @property
+    def exceeds(self) -> bool:
+        """The model leaves more than a σ known from elsewhere allows."""
+        return self.misfit is not None and self.misfit[2] < LEVEL and self.noise_factor > 1.0
 
     @property
     def log_likelihood(self) -> float:
-        """Natural logarithm of the likelihood of the readings, σ at its best where not stated."""
+        """Natural logarithm of the likelihood of the readings, σ at its best where not known."""
         count = len(self.residual)
         constant = self.problem.whitener.logdet + count * float(np.log(2.0 * np.pi))
-        if self.sigma_stated:
+        if self.sigma_known:
             return -0.5 * (self.chi_square + constant)
         variance = float(np.log(max(self.chi_square, 1e-300) / count))
         return -0.5 * (count * variance + count + constant)
@@ -145,7 +158,7 @@ class Fit:
 
     @property
     def _counted(self) -> int:
-        return self.estimated + (0 if self.sigma_stated else 1)
+        return self.estimated + (0 if self.sigma_known else 1)
 
     @cached_property
     def overlays(self) -> tuple[Overlay, ...]:
@@ -180,12 +193,23 @@ class Fit:
 
     @property
     def unit(self) -> float:
-        """Noise that counts over noise assumed; infinite where nothing is left to estimate it."""
-        if self.sigma_stated:
-            return float(np.sqrt(self.inflation))
+        """What counts over the noise assumed; infinite where nothing is left to estimate it.
+
+        Where the model leaves more than a known σ allows, the standard errors are inflated by as
+        much (Birge 1932): what is missing is no noise, but it moves the estimates too.
+        """
+        if self.sigma_known:
+            return float(np.sqrt(self.inflation)) * (self.noise_factor if self.exceeds else 1.0)
         if self.degrees_of_freedom < 1:
             return float(np.inf)
         return self.noise_factor * float(np.sqrt(self.inflation))
+
+    @property
+    def freedom(self) -> float:
+        """Degrees of freedom behind `unit`; infinite where a stated σ bears it alone."""
+        if not self.sigma_known or self.exceeds:
+            return self.degrees_of_freedom
+        return self.problem.noise.freedom
 
     @cached_property
     def correlation(self) -> Array:
@@ -207,9 +231,9 @@ class Fit:
     def reach(self, level: float = 0.95) -> float:
         """Half width of an interval in standard errors: normal, or Student where σ is estimated."""
         upper = 0.5 * (1.0 + level)
-        if self.sigma_stated or self.degrees_of_freedom < 1:
+        if np.isinf(self.freedom) or self.freedom < 1:
             return float(stats.norm.ppf(upper))
-        return float(stats.t.ppf(upper, self.degrees_of_freedom))
+        return float(stats.t.ppf(upper, self.freedom))
 
     def intervals(self, level: float = 0.95) -> tuple[tuple[float, float], ...]:
         """Confidence intervals of the public values, one (low, high) per estimated parameter.

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.robot.coupling import Array
 
-IMITATED = 1e-6  # length of a unit column beyond the regression below which it is rounding
+# Length of a unit column beyond the regression below which it tells nothing: what a parameter does
+# within a pose beyond lines is of second order, and the lines have fixed the parameter long before.
+IMITATED = 0.01
 
 
 def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.lack_of_fit import lack_of_fit
 from sk120stiff.identify.weak import weak_directions
+from sk120stiff.identify.yardstick import yardstick
 from sk120stiff.measurements import Measurements
 
 LEAST_CORRELATION = 0.3
@@ -75,7 +75,14 @@ def _statistics(fit: Fit) -> list[str]:
             f"χ² = {fit.chi_square:.4g}, AIC = {fit.aic:.6g}, BIC = {fit.bic:.6g}, "
             f"log likelihood = {fit.log_likelihood:.6g}."
         )
-    return lines + [test.sentence() for test in lack_of_fit(fit)]
+    test = lack_of_fit(fit)
+    lines += [] if test is None else [test.sentence()]
+    if fit.exceeds:
+        lines.append(
+            f"The gap is {fit.noise_factor:.3g} times what the noise makes. The standard errors "
+            "are inflated by as much."
+        )
+    return lines
 
 
 def _noise(fit: Fit) -> list[str]:
@@ -83,11 +90,13 @@ def _noise(fit: Fit) -> list[str]:
 
 
 def noise_sentence(fit: Fit) -> str:
-    """What one reading is worth, and where that is known from."""
-    factor = 1.0 if fit.sigma_stated else fit.noise_factor
-    noise = replace(fit.problem.noise.scaled(factor), stated=True)
-    known = "The size is stated." if fit.sigma_stated else "The size is estimated with the fit."
-    return f"{noise.describe()} {known}"
+    """What one reading is worth, where that is known from, and what the zero reading does."""
+    noise = yardstick(fit)
+    model = fit.problem.noise.scaled(noise.scale**0.5)
+    said = noise.sentence()
+    if noise.sigma is None and fit.degrees_of_freedom > 0:
+        said += f" If the model were true, it would be {model.sigma * 1e6:.3g} µm for one reading."
+    return f"{said} {model.of_growth_and_zero()}"
 
 
 def _down_weighted(fit: Fit) -> list[str]:

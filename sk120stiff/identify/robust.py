@@ -18,7 +18,6 @@ from sk120stiff.identify.fit import Fit, with_values
 from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.solvers import Method
 from sk120stiff.identify.solving import solve, solve_near
-from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.robot.coupling import Array
 
 LIMIT = float(np.sqrt(stats.chi2.ppf(0.99, 3)))  # one clean reading in a hundred lies beyond
@@ -30,7 +29,7 @@ SETTLED = 1e-6
 def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
     """Solve a problem with Huber's loss on whole readings.
 
-    Where σ is not stated it is taken from the median of the readings' lengths, which outliers do
+    Where σ is not known it is taken from the median of the readings' lengths, which outliers do
     not move.
 
     Raises
@@ -43,7 +42,7 @@ def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
     iterations = found.iterations
     for _ in range(ROUNDS):
         lengths = reading_lengths(found.problem, found.gap)
-        spread = 1.0 if problem.noise.stated else _spread(lengths, found.estimated)
+        spread = 1.0 if problem.noise.known else _spread(lengths, found.estimated)
         new = np.minimum(1.0, LIMIT * spread / np.maximum(lengths, 1e-300))
         settled = float(np.abs(new - weights).max()) < SETTLED
         if settled:
@@ -84,15 +83,6 @@ def reading_lengths(problem: Problem, gap: Array) -> Array:
     guess_gain = zero / (1.0 + zero * information)
     guess = guess_gain * (sums[1][group] - trust * gap)
     return np.asarray(np.sqrt(((gap - guess) ** 2 / (own + guess_gain)).sum(axis=1)))
-
-
-def robust_noise(
-    measurements: Measurements, noise: NoiseModel, reasons: tuple[str, ...]
-) -> tuple[NoiseModel, tuple[str, ...]]:
-    """The noise as described, without what outliers would make of its size and growth."""
-    plain = next((n for n in candidates(measurements) if n.zero == noise.zero), noise)
-    kept = tuple(reason for reason in reasons if "zero readings" in reason)
-    return plain, kept
 
 
 def _spread(lengths: Array, estimated: int) -> float:

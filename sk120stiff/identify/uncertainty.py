@@ -17,6 +17,7 @@ from sk120stiff.identify.covariance import covariance_of
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.lack_of_fit import LackOfFit, lack_of_fit
 from sk120stiff.identify.polish import seen_directions
+from sk120stiff.identify.yardstick import Yardstick, yardstick
 from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
@@ -47,30 +48,31 @@ def known_model(fit: Fit) -> Model:
     if fit.doubt is not None:
         covariance = covariance + np.diag((fit.doubt * scale) ** 2)
     unseen = np.where(lost[:, None], blind * size[:, None], 0.0).T
-    tests = lack_of_fit(fit)
+    test, noise = lack_of_fit(fit), yardstick(fit)
     known = Uncertainty(
         names=tuple(parameter.name for parameter in fit.parameters),
         values=np.array([parameter.value for parameter in fit.parameters]),
         covariance=0.5 * (covariance + covariance.T),
         unseen=unseen[np.abs(unseen).max(axis=1, initial=0.0) > 0.0],
-        noise=fit.sigma,
-        freedom=None if fit.sigma_stated else float(fit.degrees_of_freedom),
-        source=_source(fit),
+        noise=noise.sigma or problem.noise.sigma * fit.noise_factor,
+        freedom=None if np.isinf(fit.freedom) else float(fit.freedom),
+        source=_source(fit, noise),
     )
-    if tests:
-        known = replace(known, remainder=_remainder(fit, known, tests))
+    if test is not None:
+        known = replace(known, remainder=_remainder(fit, known, test))
     return fit.model.known(known)
 
 
-def _source(fit: Fit) -> str:
+def _source(fit: Fit, noise: Yardstick) -> str:
     measurements = fit.problem.measurements
-    size = f"{fit.sigma * 1e6:.3g} µm per axis"
-    noise = f"noise stated, {size}" if fit.sigma_stated else f"noise estimated, {size}"
+    said = "noise unknown"
+    if noise.sigma is not None:
+        said = f"noise {noise.sigma * 1e6:.3g} µm per axis, by {noise.name}"
     poses = len(measurements.poses)
-    return f"{measurements.n_readings} readings at {poses} poses; {noise}"
+    return f"{measurements.n_readings} readings at {poses} poses; {said}"
 
 
-def _remainder(fit: Fit, known: Uncertainty, tests: tuple[LackOfFit, ...]) -> Remainder | None:
+def _remainder(fit: Fit, known: Uncertainty, test: LackOfFit) -> Remainder | None:
     """What is left at poses left out, per axis of the base; None if none can be left out."""
     problem = fit.problem
     situation = problem.situation
@@ -85,7 +87,7 @@ def _remainder(fit: Fit, known: Uncertainty, tests: tuple[LackOfFit, ...]) -> Re
     gap = np.einsum("nij,nj->ni", axes, problem.measured - predicted - moved)
     L = known.factors(known.names)[0]
     own = (np.einsum("nij,njp,pr->nir", axes, derivative, L) ** 2).sum(axis=-1)
-    noise = np.einsum("nij,nj->ni", axes**2, _noise(fit, tests))
+    noise = np.einsum("nij,nj->ni", axes**2, _noise(fit, test))
     here = usable[situation.pose]
     length = arm_length(problem.model.robot) or 1.0
     size = load_size(situation.wrench, length)[here]
@@ -96,7 +98,6 @@ def _remainder(fit: Fit, known: Uncertainty, tests: tuple[LackOfFit, ...]) -> Re
     square, error = _mean_over_poses(surplus, situation.pose[here])
     rms = np.sqrt(np.maximum(square, 0.0))
     growing = variance + (rms * size[:, None] / load) ** 2
-    worst = min(tests, key=lambda test: test.probability)
     return Remainder(
         rms=rms,
         upper=np.sqrt(np.maximum(square, 0.0) + error),
@@ -104,8 +105,8 @@ def _remainder(fit: Fit, known: Uncertainty, tests: tuple[LackOfFit, ...]) -> Re
         load=load,
         length=length,
         grows=_misfit(gap[here], growing) <= _misfit(gap[here], variance + rms**2),
-        probability=worst.probability,
-        significant=worst.probability < COUNTS,
+        probability=test.probability,
+        significant=test.probability < COUNTS,
     )
 
 
@@ -145,7 +146,7 @@ def _steps_without_each_pose(fit: Fit) -> tuple[Array, np.ndarray]:
     return steps, usable
 
 
-def _noise(fit: Fit, tests: tuple[LackOfFit, ...]) -> Array:
+def _noise(fit: Fit, test: LackOfFit) -> Array:
     """(N, 3) variance of the displacements by the noise alone [m²], axes of the readings.
 
     A σ that was estimated from the whole gap holds what the model lacks; the scatter that the
@@ -153,16 +154,12 @@ def _noise(fit: Fit, tests: tuple[LackOfFit, ...]) -> Array:
     """
     problem = fit.problem
     own, zero = problem.noise.variances(problem.measurements, problem.sizes)
-    return np.asarray((own + zero) * _noise_factor(fit, tests) ** 2)
+    return np.asarray((own + zero) * _noise_factor(fit, test) ** 2)
 
 
-def _noise_factor(fit: Fit, tests: tuple[LackOfFit, ...]) -> float:
-    if fit.sigma_stated:
-        return 1.0
-    for test in tests:
-        taken, rest = test.freedom
-        if rest is not None and test.lacking:
-            return float(np.sqrt(fit.chi_square / (taken * test.statistic + rest)))
+def _noise_factor(fit: Fit, test: LackOfFit) -> float:
+    if fit.sigma_known or test.lacking:
+        return float(np.sqrt(yardstick(fit).scale))
     return fit.noise_factor
 
 

@@ -44,7 +44,7 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
     said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound & fit.held)]
     far = (np.abs(fit.x) > fit.problem.span) & fit.identifiable
     said += [_implausible(fit.parameters[k]) for k in np.flatnonzero(far)]
-    if fit.degrees_of_freedom < 1 and not fit.sigma_stated:
+    if fit.degrees_of_freedom < 1 and not fit.sigma_known:
         said.append(
             "As many values were estimated as were read, and no uncertainty is stated: "
             "nothing is left to tell how well they are known."

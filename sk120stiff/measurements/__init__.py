@@ -3,7 +3,7 @@
 from sk120stiff.measurements.data import Measurements, NoiseStatement
 from sk120stiff.measurements.importing import Imported, read_figaroh
 from sk120stiff.measurements.joining import join_measurements
-from sk120stiff.measurements.noise import NoiseModel, candidates
+from sk120stiff.measurements.noise import NoiseModel, candidates, decided
 from sk120stiff.measurements.reading import read_measurements
 from sk120stiff.measurements.repeats import pure_error
 from sk120stiff.measurements.whitening import Whitener
@@ -16,6 +16,7 @@ __all__ = [
     "NoiseStatement",
     "Whitener",
     "candidates",
+    "decided",
     "join_measurements",
     "pure_error",
     "read_figaroh",

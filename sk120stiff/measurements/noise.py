@@ -1,9 +1,12 @@
-"""The noise of displacement readings: its law, and the candidates that data leave open.
+"""The noise of displacement readings: its law, and what data and their repeats say of it.
 
 The law, per axis and in the axes of the readings: a displacement is a loaded reading minus the mean
 of `zero_count` zero readings. The loaded reading has the variance σ² + (growth·|d|)², or s² where
 the row states its own, plus (growth·|d|)². The zero reading has σ²/zero_count. Rows that subtract
 the same zero reading share its error, whatever the number of rows.
+
+What was stated is the yardstick: no scatter overrules it. Noise that grows with the displacement
+was stated, or shows in true repeats; nothing else tells it from a cause that grows with the load.
 """
 
 from __future__ import annotations
@@ -16,14 +19,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.branches import TOLD
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.repeats import pure_error
+from sk120stiff.measurements.repeats import ENOUGH, Repeated, repeated
 from sk120stiff.measurements.whitening import Whitener
 
 Floats = NDArray[np.float64]
 
-# Growths that a search over noise models tries where the data do not state one.
-GROWTHS = (0.0, 0.003, 0.01, 0.02, 0.05)
 # Where nothing says how large the noise is, a model needs a scale to start from: a laser tracker's.
 _START = 10e-6  # m
 _FINEST = 1e-9  # m; a smaller scatter is that of copied rows or computed data, of no instrument
@@ -42,8 +44,9 @@ class NoiseModel:
     zero
         ``"shared"``: rows of equal `Measurements.zero_group` share the error of their zero
         reading; ``"separate"``: each row has a zero reading of its own.
-    stated
-        Whether sigma is known (stated, or found from repeats) or only a scale to start from.
+    freedom
+        Degrees of freedom behind sigma: infinite where it was stated, those of the repeats that
+        tell it, 0 where it is only a scale to start from and the fit has to tell.
 
     Raises
     ------
@@ -54,7 +57,7 @@ class NoiseModel:
     sigma: float
     growth: float = 0.0
     zero: Literal["shared", "separate"] = "shared"
-    stated: bool = True
+    freedom: float = np.inf
 
     def __post_init__(self) -> None:
         if not 0 < self.sigma < np.inf:
@@ -63,6 +66,18 @@ class NoiseModel:
             raise InputError(f"a noise growth of {self.growth} is not between 0 and 1")
         if self.zero not in ("shared", "separate"):
             raise InputError(f"a zero reading that is {self.zero!r} has no covariance")
+        if not self.freedom >= 0:
+            raise InputError(f"{self.freedom} degrees of freedom are no number of them")
+
+    @property
+    def stated(self) -> bool:
+        """Sigma was stated."""
+        return bool(np.isinf(self.freedom))
+
+    @property
+    def known(self) -> bool:
+        """Sigma was stated, or repeats tell it well enough; else a fit has to."""
+        return self.freedom >= ENOUGH
 
     def scaled(self, factor: float) -> NoiseModel:
         """The same model with sigma and growth times `factor`.
@@ -118,50 +133,77 @@ class NoiseModel:
         """The model in plain words."""
         size = f"{self.sigma * 1e6:.3g} µm per axis"
         words = f"One reading has a standard uncertainty of {size}"
-        if not self.stated:
+        if not self.known:
             words = f"The standard uncertainty of one reading is to be estimated, from {size} on"
+        return f"{words}. {self.of_growth_and_zero()}"
+
+    def of_growth_and_zero(self) -> str:
+        """What the model holds beside the size of sigma, in plain words."""
+        said = ""
         if self.growth > 0:
-            words += f", and the loaded one {self.growth * 100:.3g} % of its displacement besides"
+            said = f"The loaded one has {self.growth * 100:.3g} % of its displacement besides. "
         if self.zero == "shared":
-            return f"{words}. Rows that subtract the same zero reading share its error."
-        return f"{words}. Each row subtracts a zero reading of its own, so errors are independent."
+            return f"{said}Rows that subtract the same zero reading share its error."
+        return f"{said}Each row subtracts a zero reading of its own, so errors are independent."
 
 
 def candidates(measurements: Measurements) -> list[NoiseModel]:
-    """The noise models that the data leave open, simplest first.
+    """The noise models that the data leave open: more than one where nobody described the zero.
 
-    Sigma is the stated one, else the median of the rows' own, else from repeats, else a start value
-    marked ``stated=False``. A zero that nobody described is tried both ways; a growth that is
-    neither stated nor part of the rows' own uncertainties is tried over `GROWTHS`.
+    Sigma is the stated one, else the median of the rows' own, else from repeats, else a scale to
+    start from (``freedom=0``). A growth that is neither stated nor part of the rows' own
+    uncertainties is taken from repeats, and is zero without them.
     """
     usable = measurements.masked()
-    own_group = len(np.unique(usable.zero_group)) == usable.n_readings
     zeros: list[Literal["shared", "separate"]] = ["shared", "separate"]
     if usable.zero != "unknown":
         zeros = [usable.zero]
-    elif own_group:
+    elif len(np.unique(usable.zero_group)) == usable.n_readings:
         zeros = ["separate"]
-    growths = GROWTHS if usable.sigma is None else (0.0,)
-    if usable.noise.growth is not None:
-        growths = (usable.noise.growth,)
-    models = []
-    for growth in growths:
-        for zero in zeros:
-            sigma, stated = _sigma(usable, zero)
-            models.append(NoiseModel(sigma, growth, zero, stated))
-    return models
+    return [_described(usable, zero) for zero in zeros]
 
 
-def _sigma(measurements: Measurements, zero: Literal["shared", "separate"]) -> tuple[float, bool]:
-    if measurements.noise.sigma is not None:
-        return measurements.noise.sigma, True
+def decided(noise: NoiseModel, measurements: Measurements) -> tuple[str, ...]:
+    """What was taken for noise beyond the data's own description, in sentences."""
+    said = [note for note in measurements.notes if TOLD in note]
+    if measurements.zero == "unknown" and len(candidates(measurements)) > 1:
+        said.append(
+            f"Nobody said how zero readings were shared; {noise.zero} ones explain the readings "
+            "best. Write 'displacement: {zero: shared}' or 'separate' if you know."
+        )
+    if 0 < noise.freedom < np.inf and noise.known:
+        said.append(
+            f"No uncertainty is stated; repeats give {noise.sigma * 1e6:.3g} µm for one reading "
+            f"({noise.freedom:.0f} degrees of freedom)."
+        )
+    if noise.growth > 0 and measurements.noise.growth is None:
+        said.append(
+            f"Repeats scatter the more the larger the displacement: {noise.growth * 100:.2g} % of "
+            "it is added to the uncertainty, in squares."
+        )
+    return tuple(said)
+
+
+def _described(measurements: Measurements, zero: Literal["shared", "separate"]) -> NoiseModel:
+    stated, growth = measurements.noise.sigma, measurements.noise.growth
+    of_rows = measurements.sigma is not None
+    found = None
+    if not of_rows and (stated is None or growth is None):
+        found = repeated(measurements, zero, grows=growth is None)
+    if growth is None:
+        growth = found.growth if found is not None else 0.0
+    if stated is not None:
+        return NoiseModel(stated, growth, zero)
     if measurements.sigma is not None:
-        return float(np.median(measurements.sigma)), True
-    found = pure_error(measurements, zero)
-    # Fewer than ten degrees of freedom leave σ open by a quarter or more: a start, not knowledge.
-    if found is not None and found[0] > _FINEST:
-        return found[0], found[1] >= 10
-    return _START, False
+        return NoiseModel(float(np.median(measurements.sigma)), growth, zero)
+    sigma, freedom = _from_repeats(found)
+    return NoiseModel(sigma, growth, zero, freedom)
+
+
+def _from_repeats(found: Repeated | None) -> tuple[float, float]:
+    if found is None or found.sigma <= _FINEST:
+        return _START, 0
+    return found.sigma, found.freedom
 
 
 def _sizes(measurements: Measurements, sizes: ArrayLike | None) -> Floats:

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from sk120stiff import files, units
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.measurements import columns
+from sk120stiff.measurements.branches import branches_by_order
 from sk120stiff.measurements.columns import Roles
 from sk120stiff.measurements.data import Measurements, NoiseStatement
 from sk120stiff.measurements.poses import refuse_differing_joints
-from sk120stiff.measurements.rows import SMALLEST_SIGMA, read_rows
+from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
 from sk120stiff.measurements.subtraction import displacements
 from sk120stiff.measurements.table import Table, read_table
 
@@ -110,6 +111,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile) -> Measurements:
         force_point = np.array(settings.force.point.in_metres(file.place("force.point.unit")))
     found = displacements(table, roles, rows, settings.displacement.zero)
     kept = found.rows
+    branch, told = _branch(rows)
     return Measurements(
         path=table.path,
         robot=_robot(settings.robot, table.path.parent),
@@ -128,7 +130,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile) -> Measurements:
         sigma=None if rows.sigma is None else rows.sigma[kept],
         order=None if rows.order is None else rows.order[kept],
         time=None if rows.time is None else rows.time[kept],
-        branch=None if rows.branch is None else tuple(rows.branch[i] for i in kept),
+        branch=None if branch is None else tuple(branch[i] for i in kept),
         repeat=None if rows.repeat is None else rows.repeat[kept],
         line=np.array(table.lines)[kept],
         source=settings.source.strip(),
@@ -142,9 +144,19 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile) -> Measurements:
         zero_order=found.order,
         zero_time=found.time,
         use=found.use,
-        notes=(*_assumed_frames(settings), *found.notes),
+        notes=(*_assumed_frames(settings), *found.notes, *told),
         data_hash=_hash(table.path, file.path),
     )
+
+
+def _branch(rows: Rows) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
+    """Loading or unloading as written, else as the order tells; and what was taken for granted."""
+    if rows.branch is not None or rows.measured is None:
+        return rows.branch, ()
+    clock = next((c for c in (rows.order, rows.time) if c is not None), None)
+    sequence = np.arange(float(len(rows.pose))) if clock is None else clock
+    found = branches_by_order(rows.pose_index, rows.wrench, sequence)
+    return (None, ()) if found is None else (found[0], (found[1],))
 
 
 def _assumed_frames(settings: Settings) -> list[str]:

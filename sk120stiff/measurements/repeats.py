@@ -1,25 +1,54 @@
-"""Pure error: what repeated readings say of the noise, whatever the model of the robot."""
+"""Pure error: what repeated readings say of the noise, whatever the model of the robot.
+
+Repeats are rows with the same joint values, the same wrench and the same branch. A load that was
+reached once from below and once from above was not repeated: what differs there may be the arm.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.whitening import Whitener
 
+Zero = Literal["shared", "separate"]
 
-def pure_error(
-    measurements: Measurements, zero: Literal["shared", "separate"] | None = None
-) -> tuple[float, int] | None:
+STRONG = 10.0  # twice the log-likelihood by which noise that grows must win
+ENOUGH = 10  # degrees of freedom; fewer leave σ open by a quarter or more
+_REACH = (-7.0, 7.0)  # natural logarithm of growth·|d|/σ at the usual displacement
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """Noise as repeats show it.
+
+    Attributes
+    ----------
+    sigma
+        Standard uncertainty of one reading per axis [m].
+    growth
+        Standard uncertainty per metre of displacement, in squares beside it; 0 unless the repeats
+        ask for it strongly.
+    freedom
+        Degrees of freedom behind them.
+    """
+
+    sigma: float
+    growth: float
+    freedom: int
+
+
+def pure_error(measurements: Measurements, zero: Zero | None = None) -> tuple[float, int] | None:
     """Standard uncertainty of one reading per axis (m) from repeats, and its degrees of freedom.
 
-    Repeats are rows in use with the same joint values, the same wrench and the same branch. The
-    mean of each such cell is free; what is left is weighed by the covariance of the zero readings
-    (generalised least squares), so that rows with a common zero reading and rows with zero readings
-    of their own give the same σ.
+    The mean of each cell of repeats is free; what is left is weighed by the covariance of the zero
+    readings (generalised least squares), so that rows with a common zero reading and rows with zero
+    readings of their own give the same σ.
 
     Parameters
     ----------
@@ -32,38 +61,52 @@ def pure_error(
     -------
     (sigma, dof), or None where nothing was repeated.
     """
+    found = repeated(measurements, zero, grows=False)
+    return None if found is None else (found.sigma, found.freedom)
+
+
+def repeated(
+    measurements: Measurements, zero: Zero | None = None, *, grows: bool = True
+) -> Repeated | None:
+    """Noise from repeats; None where nothing was repeated.
+
+    Parameters
+    ----------
+    measurements, zero
+        As for `pure_error`.
+    grows
+        Look for a part that grows with the displacement too.
+    """
     usable = measurements.masked()
     if usable.displacement is None:
         return None
-    _, place = np.unique(np.round(usable.joints, 9), axis=0, return_inverse=True)
-    cell = _cells(usable, place)
-    repeated = np.bincount(cell)[cell] > 1
     separate = (zero or usable.zero) == "separate"
-    squares, freedom = 0.0, 0
-    for at in np.unique(place[repeated]):
-        rows = np.flatnonzero(repeated & (place == at))
-        zero_variance = np.repeat(1.0 / usable.zero_count[rows, None], 3, axis=1)
-        own = np.ones_like(zero_variance)
-        whitener = (
-            Whitener(own + zero_variance, np.zeros_like(own), np.arange(len(rows)))
-            if separate
-            else Whitener(own, zero_variance, usable.zero_group[rows])
-        )
-        labels, member = np.unique(cell[rows], return_inverse=True)
-        means = (member[:, None] == np.arange(len(labels))).astype(np.float64)
-        design = np.repeat(means[:, None, :], 3, axis=1)  # (rows, 3, cells)
-        y = whitener.apply(usable.displacement[rows]).reshape(-1, 3)
-        x = whitener.apply(design).reshape(len(rows), 3, -1)[:, 0]  # the axes do not differ
-        q, _ = np.linalg.qr(x)
-        squares += float(np.sum((y - q @ (q.T @ y)) ** 2))
-        freedom += 3 * (len(rows) - len(labels))
-    if freedom == 0:
+    cell = cells_of(usable)
+    rows = np.flatnonzero(np.bincount(cell)[cell] > 1)
+    if not len(rows):
         return None
-    return float(np.sqrt(squares / freedom)), freedom
+    usable, cell = usable.select(rows), cell[rows]
+    plain, freedom, level = _left(usable, cell, 0.0, separate)
+    flat = Repeated(float(np.sqrt(plain / freedom)), 0.0, freedom)
+    usual = float(np.median(np.linalg.norm(np.asarray(usable.displacement), axis=1)))
+    if not grows or freedom < ENOUGH or usual == 0.0 or plain == 0.0:
+        return flat
+
+    def unlikely(logarithm: float) -> float:
+        squares, _, logdet = _left(usable, cell, float(np.exp(logarithm)) / usual, separate)
+        return freedom * float(np.log(squares)) + logdet
+
+    best = minimize_scalar(unlikely, bounds=_REACH, method="bounded", options={"xatol": 0.02})
+    if freedom * float(np.log(plain)) + level - best.fun < STRONG:
+        return flat
+    ratio = float(np.exp(best.x)) / usual
+    sigma = float(np.sqrt(_left(usable, cell, ratio, separate)[0] / freedom))
+    return Repeated(sigma, min(ratio * sigma, 0.99), freedom)
 
 
-def _cells(m: Measurements, place: NDArray[np.int64]) -> NDArray[np.int64]:
+def cells_of(m: Measurements) -> NDArray[np.int64]:
     """(N,) equal numbers for rows with the same joint values, wrench and branch."""
+    _, place = np.unique(np.round(m.joints, 9), axis=0, return_inverse=True)
     branches = ("", "load", "unload")
     branch = np.zeros(m.n_readings)
     if m.branch is not None:
@@ -71,3 +114,49 @@ def _cells(m: Measurements, place: NDArray[np.int64]) -> NDArray[np.int64]:
     keys = np.column_stack([place, np.round(m.wrench, 9), branch])
     cells: NDArray[np.int64] = np.unique(keys, axis=0, return_inverse=True)[1]
     return cells
+
+
+def _left(
+    m: Measurements, cell: NDArray[np.int64], ratio: float, separate: bool
+) -> tuple[float, int, float]:
+    """Weighted squares that the means of the cells leave, their freedom, and what V costs.
+
+    V is in units of σ², its part that grows is (ratio·|d|)². The cost is ln det V + ln det XᵀV⁻¹X,
+    of the restricted likelihood.
+    """
+    displacement = np.asarray(m.displacement)
+    size = np.linalg.norm(displacement, axis=1)
+    own = np.repeat(1.0 + (ratio * size[:, None]) ** 2, 3, axis=1)
+    zero = np.repeat(1.0 / m.zero_count[:, None], 3, axis=1)
+    whitener = (
+        Whitener(own + zero, np.zeros_like(own), np.arange(len(own)))
+        if separate
+        else Whitener(own, zero, m.zero_group)
+    )
+    y = whitener.apply(displacement).reshape(-1, 3)
+    place, member = _places(m, cell)
+    means = np.repeat((member[:, None] == np.arange(member.max() + 1))[:, None, :], 3, axis=1)
+    x = whitener.apply(means.astype(np.float64)).reshape(len(y), 3, -1)[:, 0]  # axes do not differ
+    squares, freedom, price = 0.0, 0, whitener.logdet
+    order = np.argsort(place, kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(place[order])) + 1):
+        q, r = np.linalg.qr(x[rows, : member[rows].max() + 1])
+        squares += float(np.sum((y[rows] - q @ (q.T @ y[rows])) ** 2))
+        freedom += 3 * (len(rows) - q.shape[1])
+        price += 6.0 * float(np.log(np.abs(np.diag(r))).sum())
+    return squares, freedom, price
+
+
+def _places(
+    m: Measurements, cell: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """(N,) number of the joint values of each row, and of its cell among those at its place."""
+    place = np.unique(np.round(m.joints, 9), axis=0, return_inverse=True)[1]
+    order = np.lexsort((cell, place))
+    new = np.diff(cell[order], prepend=-1) != 0
+    running = np.cumsum(new) - 1
+    first = np.flatnonzero(np.diff(place[order], prepend=-1) != 0)
+    counts = np.diff(np.append(first, len(order)))
+    member = np.empty(len(order), dtype=np.int64)
+    member[order] = running - np.repeat(running[first], counts)
+    return place, member

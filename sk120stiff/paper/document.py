@@ -90,7 +90,7 @@ def _fit(fitted: Fit) -> dict[str, object]:
             for p in fitted.parameters
         ],
         "rms_um": 1e6 * fitted.rms,
-        "sigma_um": 1e6 * fitted.sigma,
+        "sigma_um": 1e6 * fitted.problem.noise.sigma * fitted.noise_factor,
         "condition": fitted.condition,
         "iterations": fitted.iterations,
     }

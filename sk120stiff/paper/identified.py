@@ -20,8 +20,8 @@ from sk120stiff.robot.coupling import Array
 STARTS = (1e2, 1e4, 1e5, 1e7)
 
 # Scatter is not published: these have a scale to start from, and are compared with each other only.
-SHARED_ZERO = NoiseModel(10e-6, zero="shared", stated=False)
-EQUAL_WEIGHTS = NoiseModel(10e-6, zero="separate", stated=False)
+SHARED_ZERO = NoiseModel(10e-6, zero="shared", freedom=0)
+EQUAL_WEIGHTS = NoiseModel(10e-6, zero="separate", freedom=0)
 
 
 @dataclass(frozen=True, eq=False)

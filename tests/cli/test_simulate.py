@@ -42,7 +42,7 @@ def test_the_springs_come_back(run, tmp_path: Path) -> None:
             low, high = parameter["interval_95"]
             assert 0.97 * true < parameter["value"] < 1.03 * true
             assert low < true < high
-        assert found["lack_of_fit_probability"] > 1e-3
+        assert found["lack_of_fit"]["probability"] > 1e-3
 
 
 def test_without_noise_the_gap_is_nothing(run, tmp_path: Path) -> None:

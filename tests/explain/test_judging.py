@@ -11,13 +11,11 @@ from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, situation_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.confirm import Confirmation
-from sk120stiff.explain.noise_race import likeliest_growth
 from sk120stiff.explain.outliers import outlying_rows
 from sk120stiff.explain.regression import regression_at
 from sk120stiff.explain.score import price_of_sizes
 from sk120stiff.explain.steering import candidates_for
 from sk120stiff.identify import fit
-from sk120stiff.measurements import NoiseModel, NoiseStatement
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, LinkBending
 from tests.hidden.generator.causes_foreign import QuadraticMount
@@ -145,16 +143,6 @@ def test_clean_readings_without_a_stated_noise_have_no_outliers(springs):
     assert found <= 1
 
 
-def test_the_growth_of_the_noise_is_found_again(springs):
-    readings = hidden(seed=9)
-    rng = np.random.default_rng(1)
-    size = np.linalg.norm(readings.displacement, axis=1, keepdims=True)
-    moved = readings.displacement + 0.02 * size * rng.normal(size=readings.displacement.shape)
-    readings = replace(readings, displacement=moved, noise=NoiseStatement(sigma=SIGMA))
-    start = fit(springs, readings, noise=NoiseModel(SIGMA, growth=0.05, zero="shared"))
-    assert likeliest_growth(start) == pytest.approx(0.02, rel=0.15)
-
-
 def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
     """A column that bends looks like torque that moves the other joint, with other springs."""
     answer = explain(springs, hidden(LinkBending("link_1_s", {"flexibility": 1e-7})))
@@ -205,16 +193,6 @@ def test_a_bias_beside_a_strong_beam_is_still_named(springs):
     beam = LinkBending("link_2_l", {"flexibility": 1e-6})
     answer = explain(springs, hidden(beam, ForceBias("sensor", {"x": 8.0, "y": 4.0, "z": 0.0})))
     assert {finding.effect.name for finding in answer.findings} == {"link_bending", "force_bias"}
-
-
-def test_noise_that_was_stated_too_small_is_no_cause(springs):
-    alarms = 0
-    for seed in range(6):
-        readings = hidden(seed=100 + seed, loads=6)
-        answer = explain(springs, replace(readings, noise=NoiseStatement(sigma=0.5 * SIGMA)))
-        alarms += answer.verdict != "none"
-        assert answer.final.sigma == pytest.approx(SIGMA, rel=0.1)
-    assert alarms == 0
 
 
 def test_another_law_that_the_readings_refute_leaves_no_doubt(springs):

@@ -159,7 +159,7 @@ def test_noise_is_found_where_it_is_not_stated() -> None:
 def test_few_readings_do_not_tell_the_noise() -> None:
     readings = hidden(poses=3, loads=2, stated=False)
     found = localise(base_fit(readings, noise=None))
-    assert found.noise_from == "gap"
+    assert found.noise_from == "unknown"
     assert found.probability is None
     assert "Nothing tells how large the noise is" in where_sentences(found)[0]
 

@@ -25,7 +25,7 @@ def found(fitted: Fit) -> Localisation:
 
 
 def test_no_noise_is_made_up(found) -> None:
-    assert found.noise_from == "gap"
+    assert found.noise_from == "unknown"
     assert found.noise is None
     assert {pose.noise for pose in found.poses} == {level.noise for level in found.levels} == {None}
     text = " ".join(where_sentences(found))

@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 
 from sk120stiff.effects import effect, situation_of
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.identify import Problem, fit, solve
+from sk120stiff.identify import Problem, fit, lack_of_fit, solve
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
 from tests.identify.conftest import readings_of, without_statement
@@ -53,7 +53,7 @@ def test_the_minimum_is_a_minimum(robot, springs, table2) -> None:
 
 def test_covariance_and_intervals_by_the_textbook(springs, table2) -> None:
     for stated in (True, False):
-        found = solve(Problem(springs, table2, replace(NOISE, stated=stated)))
+        found = solve(Problem(springs, table2, replace(NOISE, freedom=np.inf if stated else 0)))
         J = found.jacobian
         freedom = len(J) - 3
         variance = 1.0 if stated else found.chi_square / freedom
@@ -72,7 +72,7 @@ def test_covariance_and_intervals_by_the_textbook(springs, table2) -> None:
 
 def test_likelihood_criteria_by_hand(springs, table2) -> None:
     """log N(gap; 0, σ² V) with σ at its best, from the dense covariance."""
-    found = solve(Problem(springs, table2, replace(NOISE, stated=False)))
+    found = solve(Problem(springs, table2, replace(NOISE, freedom=0)))
     V = NOISE.covariance(table2)
     count = 3 * table2.n_readings
     scale = found.chi_square / count
@@ -155,10 +155,10 @@ def test_no_freedom_left_leaves_no_error(springs, table2) -> None:
     """Six numbers for three springs and a turned tracker: they fit, and nothing tells how well."""
     two = table2.select([4, 14])
     model = springs + effect(springs.robot, "reading_rotation")
-    found = fit(model, two, noise=replace(NOISE, stated=False))
+    found = fit(model, two, noise=replace(NOISE, freedom=0))
     assert found.degrees_of_freedom == 0
     assert all(p.std is None or p.std == np.inf for p in found.parameters)
-    assert found.lack_of_fit is None
+    assert lack_of_fit(found) is None
     stated = fit(model, two, noise=NOISE)
     assert all(p.std is None or np.isfinite(p.std) for p in stated.parameters)
 

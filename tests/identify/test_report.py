@@ -17,7 +17,7 @@ def test_the_paper_fit_in_words(springs, table2) -> None:
     for part in ("1.3573e+06", "±", "(1.1 %)", "1.328e+06 .. 1.388e+06", "N*m/rad", "1.4098e+06"):
         assert part in first
     assert "15 readings of three axes at 3 poses, 3 values estimated" in text
-    assert "12.3 µm per axis" in text
+    assert "9.66 µm, by the scatter within poses (18 degrees of freedom)" in text
     assert "AIC" in text
     assert "do not tell" not in text
 

@@ -78,7 +78,7 @@ def test_repeats_after_a_new_zero_count_what_that_zero_adds() -> None:
 def test_without_repeats_there_is_no_pure_error() -> None:
     m = repeated(np.random.default_rng(0), "shared", times=1)
     assert pure_error(m) is None
-    assert not candidates(m)[0].stated
+    assert not candidates(m)[0].known
 
 
 def test_masked_rows_and_other_branches_are_no_repeats() -> None:
@@ -93,7 +93,9 @@ def test_masked_rows_and_other_branches_are_no_repeats() -> None:
 def test_candidates_take_sigma_from_repeats() -> None:
     m = repeated(np.random.default_rng(2), "shared")
     first = candidates(m)[0]
-    assert first.stated
+    assert first.known
+    assert not first.stated  # known is not stated: it has degrees of freedom
+    assert first.freedom == 162
     assert first.sigma == pytest.approx(SIGMA, rel=0.2)
 
 
@@ -108,4 +110,4 @@ def test_copied_rows_state_no_noise() -> None:
         displacement=np.vstack([displacement, displacement]),
         zero="separate",
     )
-    assert all(not noise.stated and noise.sigma > 1e-6 for noise in candidates(m))
+    assert all(not noise.known and noise.sigma > 1e-6 for noise in candidates(m))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.explain import Explanation, Localisation
+from sk120stiff.explain import Explanation
 from sk120stiff.explain.swallowed import WHOLE, Swallowed
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
@@ -91,16 +91,13 @@ class Demo:
 
     @property
     def noise(self) -> float | None:
-        """Rms that the scatter within poses makes [m]; None where nothing tells."""
-        found = self.answer.details.get("localisation")
-        known = isinstance(found, Localisation) and found.noise_from != "gap"
-        return found.noise if isinstance(found, Localisation) and known else None
+        """Rms that noise alone makes [m]; None where nothing tells."""
+        return self.answer.noise_floor
 
     @property
     def chance(self) -> float | None:
-        """Probability that the scatter within poses makes the gap that is left."""
-        found = self.answer.details.get("localisation")
-        return found.probability if isinstance(found, Localisation) else None
+        """Probability that noise makes the gap that is left."""
+        return self.answer.adequacy.chance
 
 
 def demo_report(
@@ -164,8 +161,9 @@ def demo_lead(demo: Demo) -> str:
     if demo.noise is None or demo.chance is None:
         return said + f"With {poses} nothing can be named as missing."
     return said + (
-        f"The scatter within poses accounts for {um(demo.noise)} µm. Whether the rest is real, and "
-        f"what it is, {poses} cannot tell: no effect of the catalogue earns its name here."
+        f"The noise, by {demo.answer.yardstick.name}, makes {um(demo.noise)} µm. Whether the rest "
+        f"is real, and what it is, {poses} cannot tell: no effect of the catalogue earns its name "
+        "here."
     )
 
 
@@ -176,7 +174,9 @@ def _answer(demo: Demo) -> Section:
         KeyFigure("gap, identified", um(after), "µm", f"{percent(1.0 - after / before)} closed"),
     ]
     if demo.noise is not None:
-        figures.append(KeyFigure("scatter", um(demo.noise), "µm", "within poses, no model needed"))
+        figures.append(
+            KeyFigure("noise alone", um(demo.noise), "µm", f"by {demo.answer.yardstick.name}")
+        )
     value, note = _SHORT[demo.answer.verdict]
     figures.append(KeyFigure("what is missing", value, "", note))
     acts = [
@@ -278,7 +278,7 @@ def _second_act(demo: Demo) -> Section:
                 alt="Bars of the gap at every pose: "
                 + "; ".join(f"{n} {listed([um(float(v)) for v in g])} µm" for n, g in gaps.items()),
                 caption="The gap of every pose, before and after."
-                + (" Dashed: what the scatter within poses makes." if floor is not None else ""),
+                + (" Dashed: what noise alone makes." if floor is not None else ""),
             ),
             on_the_arm(found, demo.models),
         ],
@@ -310,7 +310,7 @@ def _third_act(demo: Demo) -> Section:
     if answer.verdict == "none" and demo.noise is not None and demo.chance is not None:
         blocks.append(
             Note(
-                f"The springs leave {um(first.fit_rms)} µm where the scatter within poses makes "
+                f"The springs leave {um(first.fit_rms)} µm where the noise alone makes "
                 f"{um(demo.noise)} µm (p = {chance(demo.chance)}). Something may well be missing. "
                 "But a name must predict poses that it has not seen, and be told from its rivals; "
                 f"with {counted(len(demo.found.problem.situation.poses), 'pose')} none is.",

@@ -13,7 +13,7 @@ from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.report import Block, Items, Note, Section, Table
 from sk120stiff.show.stories.verdicts import near, sentence_of
-from sk120stiff.show.wording import counted, listed, number, percent, unit_of, with_error
+from sk120stiff.show.wording import chance, counted, listed, number, percent, unit_of, with_error
 
 MANY = 12  # parameters of one effect beyond which a table helps nobody
 
@@ -56,7 +56,7 @@ def _finding(answer: Explanation, finding: Finding) -> list[Block]:
                 "Not settled",
             )
         )
-    blocks.append(_evidence(answer, finding))
+    blocks.append(_evidence(finding))
     return blocks
 
 
@@ -101,16 +101,15 @@ def parameter_rows(fit: Fit, parameters: list[Parameter]) -> list[tuple[object, 
     return rows
 
 
-def _evidence(answer: Explanation, finding: Finding) -> Table:
+def _evidence(finding: Finding) -> Table:
     e = finding.evidence
     c = e.confirmation
     rows: list[tuple[object, object, object]] = [
         (
             "Misfit without it",
             f"χ² larger by {e.misfit_gain:.0f}",
-            "in noise variances, all parameters refitted"
-            if answer.final.sigma_stated
-            else "in units of the assumed noise, all parameters refitted",
+            "in variances of the noise, or of the misfit where that is larger; all parameters "
+            "refitted",
         ),
         (
             "Score without it",
@@ -147,10 +146,10 @@ def _nothing(answer: Explanation) -> list[Block]:
         "alone and together, with the springs refitted beside them. None improves the model by "
         "more than chance, on the fitted poses and on poses left out.",
     ]
-    if left.tests and left.probability < DOUBTFUL:
+    if left.chance is not None and left.understated is None and left.chance < DOUBTFUL:
         blocks.append(
             Note(
-                f"The tests of what is left give p = {left.probability:.2g}. That is not enough to "
+                f"The test of what is left gives p = {chance(left.chance)}. That is not enough to "
                 "claim that something is missing, and not little enough to be sure that nothing "
                 "is: more poses would settle it.",
                 "caution",
@@ -162,10 +161,11 @@ def _nothing(answer: Explanation) -> list[Block]:
 
 def _outside(answer: Explanation) -> list[Block]:
     left = answer.adequacy
+    test = min(left.tests, key=left.tests.__getitem__, default="")
     blocks: list[Block] = [
-        f"What the best models of the catalogue leave over is beyond noise (p = "
-        f"{left.probability:.2g}; {left.excess:.1f} noise standard deviations in all, where what "
-        f"they explain amounts to {left.explained:.1f}).",
+        f"What the best models of the catalogue leave over is beyond noise, most clearly in the "
+        f"test '{test}' ({left.excess:.1f} noise standard deviations in all, where what they "
+        f"explain amounts to {left.explained:.1f}).",
     ]
     if answer.suspects:
         rows = [(name, sentence_of(answer, name)) for name in answer.suspects]

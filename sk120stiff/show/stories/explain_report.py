@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from sk120stiff.explain import Explanation, noise_floor
+from sk120stiff.explain import Explanation
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import (
     Block,
@@ -110,7 +110,7 @@ def _line(answer: Explanation, k: int) -> str:
 def key_figures(answer: Explanation) -> KeyFigures:
     """The numbers that matter: gap, noise, names, what is left."""
     first, last = answer.steps[0], answer.steps[-1]
-    floor = noise_floor(answer.final)
+    floor = answer.noise_floor
     changed = bool(answer.findings)
     gap = KeyFigure(
         "gap, held out",
@@ -120,9 +120,9 @@ def key_figures(answer: Explanation) -> KeyFigures:
     )
     noise = KeyFigure(
         "noise alone",
-        um(floor),
-        "µm",
-        "stated or from repeats" if answer.final.sigma_stated else "estimated from the scatter",
+        "?" if floor is None else um(floor),
+        "" if floor is None else "µm",
+        "unknown" if floor is None else f"by {answer.yardstick.name}",
     )
     closed = KeyFigure(
         "closed",
@@ -130,12 +130,16 @@ def key_figures(answer: Explanation) -> KeyFigures:
         "",
         "of the held-out gap",
     )
-    tests = answer.adequacy.tests
-    left = KeyFigure(
-        "left beyond noise",
-        ("yes" if answer.adequacy.lacking else "no") if tests else "?",
-        "",
-        f"p = {chance(answer.adequacy.probability)}" if tests else "nothing tells",
-    )
+    left = KeyFigure("left beyond noise", *_left(answer))
     figures = [gap, noise, closed, left] if changed else [gap, noise, left]
     return KeyFigures(figures)
+
+
+def _left(answer: Explanation) -> tuple[str, str, str]:
+    """Is anything left beyond noise: word, unit, and the probability that noise makes it."""
+    left = answer.adequacy
+    if left.chance is None:
+        return "?", "", "the noise is unknown"
+    if left.understated is not None:
+        return f"{left.understated:.2f}", "σ", "as stated, which looks too small"
+    return "yes" if left.lacking else "no", "", f"p = {chance(left.chance)}"

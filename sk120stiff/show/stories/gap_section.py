@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.explain import Explanation, noise_floor
+from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
 from sk120stiff.show.figures import GapStep, gap_per_pose, gap_waterfall
@@ -30,12 +30,16 @@ def gap_section(
     scene, scene_link
         Text of the scene's page, and its address beside the report.
     """
-    floor = noise_floor(answer.final)
+    floor = answer.noise_floor
     blocks: list[Block] = [
         "The gap is measured minus predicted displacement, root mean square over readings and "
         f"axes. The held-out gap is taken {heldout}: readings that had no part in the fit. "
-        f"Noise alone makes about {um(floor)} µm; a model that is right comes near that, by chance "
-        "a little below or above.",
+        + (
+            "The noise is unknown."
+            if floor is None
+            else f"Noise alone makes about {um(floor)} µm; a model that is right comes near that, "
+            "by chance a little below or above."
+        ),
         steps_table(answer),
     ]
     if len(answer.steps) > 1:
@@ -71,19 +75,19 @@ def steps_table(answer: Explanation) -> Table:
     )
 
 
-def _waterfall(answer: Explanation, floor: float) -> Picture:
+def _waterfall(answer: Explanation, floor: float | None) -> Picture:
     steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
     first, last = answer.steps[0], answer.steps[-1]
     return Picture(
         lambda: gap_waterfall(steps, noise_floor=floor),
         alt=f"Bars of the gap of {len(steps)} models. Fitted: from {um(first.fit_rms)} to "
         f"{um(last.fit_rms)} µm. Held out: from {um(first.heldout_rms)} to "
-        f"{um(last.heldout_rms)} µm. Noise floor {um(floor)} µm.",
+        f"{um(last.heldout_rms)} µm." + ("" if floor is None else f" Noise floor {um(floor)} µm."),
         caption="Bars: readings that were fitted. Diamonds: poses left out.",
     )
 
 
-def _per_pose(fit: Fit, models: dict[str, Model], floor: float) -> Picture | str:
+def _per_pose(fit: Fit, models: dict[str, Model], floor: float | None) -> Picture | str:
     poses = fit.problem.situation.poses
     gaps = {name: pose_rms(fit, model) for name, model in models.items()}
     if len(poses) > MANY:

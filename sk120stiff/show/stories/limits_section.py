@@ -8,9 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.effects import all_effects
-from sk120stiff.explain import Detectable, Explanation, noise_floor
+from sk120stiff.explain import Detectable, Explanation
+from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import Block, Items, Note, Section, Table
+from sk120stiff.show.stories.verdicts import noise_makes
 from sk120stiff.show.wording import counted, number, um, unit_of
 
 
@@ -20,21 +22,22 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
     rows = [(name, number(p, 2)) for name, p in left.tests.items()]
     blocks: list[Block] = [
         f"The final model leaves {um(answer.final.rms)} µm rms per axis on the fitted readings; "
-        f"the noise makes {um(noise_floor(answer.final))} µm.",
+        f"{noise_makes(answer)}.",
+        *([] if left.whole is None else [left.whole.sentence()]),
     ]
     if rows:
         blocks.append(
-            Table(["test", "p"], rows, "Is anything left beyond noise? Small p: yes.", digits=2)
+            Table(
+                ["test", "p"],
+                rows,
+                "What the rest may go with. Small p: more than chance.",
+                digits=2,
+            )
         )
     else:
-        blocks.append("The noise is estimated from the gap itself, so no test of it is possible.")
+        blocks.append("The noise is unknown, so no test of what is left is possible.")
     blocks += [*answer.unnamed, *answer.limits]
-    blocks += [answer.noise.describe(), *answer.noise_reasons]
-    if not answer.final.sigma_stated:
-        blocks.append(
-            f"The final model, if true, shows a noise of {um(answer.final.sigma)} µm for one "
-            "reading. It should agree with the scatter within poses, which needs no model."
-        )
+    blocks += [noise_sentence(answer.final), *answer.noise_reasons]
     if answer.set_aside:
         blocks.append(_set_aside(answer, readings))
     return Section("What is left, and the noise", blocks)

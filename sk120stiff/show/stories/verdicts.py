@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sk120stiff.effects import effect
-from sk120stiff.explain import DOUBTFUL, Explanation, Finding, noise_floor
-from sk120stiff.show.wording import counted, um
+from sk120stiff.explain import DOUBTFUL, Explanation, Finding
+from sk120stiff.show.wording import chance, counted, um
 
 FEW = 2  # rivals that are told in the first lines; the evidence lists all
 
@@ -27,18 +27,25 @@ def lead_of(answer: Explanation) -> str:
 
 
 def _none(answer: Explanation) -> str:
-    step = answer.steps[0]
-    if answer.adequacy.probability < DOUBTFUL:
+    step, left = answer.steps[0], answer.adequacy
+    misses = f"The model misses the readings by {um(step.fit_rms)} µm rms per axis"
+    if answer.noise_floor is None:
         return (
-            f"No effect can be named. The model misses the readings by {um(step.fit_rms)} µm rms "
-            f"per axis, a little more than the noise alone makes ({um(noise_of(answer))} µm); "
-            "that is not enough to claim that something is missing."
+            f"No effect can be named. {misses}; the noise is unknown, so whether something is "
+            "missing stays open."
         )
-    return (
-        f"Nothing is missing that these readings could show. The model misses them by "
-        f"{um(step.fit_rms)} µm rms per axis; the noise alone makes "
-        f"{um(noise_floor(answer.final))} µm."
-    )
+    makes = f"the noise alone makes {um(answer.noise_floor)} µm"
+    if left.understated is not None:
+        return (
+            f"Nothing structured is missing that these readings could show. {misses}; {makes} as "
+            f"it was stated, and that looks {left.understated:.2f} times too small."
+        )
+    if left.chance is not None and left.chance < DOUBTFUL:
+        return (
+            f"No effect can be named. {misses}, a little more than the noise: {makes} (p = "
+            f"{chance(left.chance)}). That is not enough to claim that something is missing."
+        )
+    return f"Nothing is missing that these readings could show. {misses}; {makes}."
 
 
 def _named(answer: Explanation) -> str:
@@ -70,8 +77,8 @@ def _outside(answer: Explanation) -> str:
         why = "no effect that was looked for explains it"
     return (
         f"Something is missing, and {why}. The model misses the "
-        f"readings by {um(step.fit_rms)} µm rms per axis; the noise alone makes "
-        f"{um(noise_of(answer))} µm. Where it lives is told below."
+        f"readings by {um(step.fit_rms)} µm rms per axis; "
+        f"{noise_makes(answer)}. Where it lives is told below."
     )
 
 
@@ -81,15 +88,16 @@ def shrinks(answer: Explanation) -> str:
     added = "it" if len(answer.findings) == 1 else "them"
     return (
         f"With {added} in the model the gap on poses left out of the fit falls from "
-        f"{um(first.heldout_rms)} to {um(last.heldout_rms)} µm; the noise alone makes "
-        f"{um(noise_floor(answer.final))} µm."
+        f"{um(first.heldout_rms)} to {um(last.heldout_rms)} µm; "
+        f"{noise_makes(answer)}."
     )
 
 
-def noise_of(answer: Explanation) -> float:
-    """What the noise makes as far as anything but the gap tells [m]."""
-    found = answer.details.get("localisation")
-    return float(found.noise) if found is not None else noise_floor(answer.final)
+def noise_makes(answer: Explanation) -> str:
+    """What noise alone makes of the gap, in words."""
+    if answer.noise_floor is None:
+        return "the noise is unknown"
+    return f"the noise alone makes {um(answer.noise_floor)} µm"
 
 
 def near(finding: Finding) -> list[str]:

@@ -1,0 +1,46 @@
+"""The attempt that explains most: how the zero was shared, and a search at the misfit's own scale.
+
+What was stated of the noise, or found from repeats, stays the yardstick. But where all that is
+found leaves more than it allows, the law of something is not exact, and a search that takes every
+micrometre beyond the noise for a cause finds impostors. So it is made again with a scale that the
+misfit tells, and what it found is held against the yardstick afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from sk120stiff.explain.settling import Attempt
+from sk120stiff.identify import Fit, Problem, likelier, solve_near
+from sk120stiff.identify.fit import with_values
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
+
+Try = Callable[[NoiseModel], Attempt]
+
+
+def best_attempt(measurements: Measurements, under: Try) -> tuple[Attempt, NoiseModel]:
+    """The best attempt, and the noise that its fits are to be held against.
+
+    Parameters
+    ----------
+    measurements
+        Readings in use.
+    under
+        Makes an attempt under one noise model.
+    """
+    tried = [under(noise) for noise in candidates(measurements)]
+    found = tried[likelier([-each.total for each in tried])]
+    noise = found.base.problem.noise
+    if noise.known and found.final.exceeds:
+        found = under(replace(noise, freedom=0))
+    return found, noise
+
+
+def held_against(noise: NoiseModel, fit: Fit) -> Fit:
+    """The same estimates, their misfit and their errors judged by this noise."""
+    problem = fit.problem
+    if problem.noise == noise:
+        return fit
+    again = solve_near(Problem(problem.model, problem.measurements, noise), fit.x)
+    return with_values(replace(again, doubt=fit.doubt))

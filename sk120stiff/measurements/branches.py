@@ -1,0 +1,67 @@
+"""Loading and unloading where no column says so, from the order in which loads were applied."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+SAME = 0.03  # share of the largest load within which a load is met again
+TOLD = "the loads rise and then fall again"
+
+
+def branches_by_order(
+    pose: Integers, wrench: Floats, sequence: Floats
+) -> tuple[tuple[str, ...], str] | None:
+    """``load`` and ``unload`` for every row, and a sentence; None where the order tells nothing.
+
+    A pose tells branches if its loads, along one line, rise to a peak and fall from it, and at
+    least one on the way down was met on the way up. Most poses with three loads or more have to.
+
+    Parameters
+    ----------
+    pose
+        (N,) number of the pose of each row.
+    wrench
+        (N, 6) loads; rows without load count for nothing.
+    sequence
+        (N,) order or time of the rows, or their place in the file.
+    """
+    size = np.linalg.norm(wrench[:, :3], axis=1)
+    falling = np.zeros(len(pose), dtype=bool)
+    told, able = 0, 0
+    for label in np.unique(pose):
+        rows = np.flatnonzero((pose == label) & (size > 0.0))
+        rows = rows[np.argsort(sequence[rows], kind="stable")]
+        if len(rows) < 3:
+            continue
+        able += 1
+        down = _way_down(wrench[rows, :3], size[rows])
+        told += down is not None
+        if down is not None:
+            falling[rows[down]] = True
+    if 2 * told <= able:
+        return None
+    words = tuple("unload" if falls else "load" for falls in falling)
+    return words, (
+        f"At {told} of {able} poses {TOLD} in the order of the rows; they are taken as loading "
+        "and unloading. Add a column 'branch' with load or unload to say it yourself."
+    )
+
+
+def _way_down(force: Floats, size: Floats) -> NDArray[np.bool_] | None:
+    """(k,) the rows of one pose, in their order, that follow the peak; None without such a way."""
+    slack = SAME * size.max()
+    peak = int(np.argmax(size >= size.max() - slack))
+    steps = np.diff(size)
+    if (steps[:peak] < -slack).any() or (steps[peak:] > slack).any():
+        return None
+    along = force @ force[peak] / size[peak]
+    if (np.abs(size - along) > slack).any():
+        return None
+    down = np.zeros(len(size), dtype=bool)
+    down[peak + 1 :] = size[peak + 1 :] < size.max() - slack
+    met = np.abs(size[down][:, None] - size[: peak + 1]).min(axis=1, initial=np.inf) <= slack
+    return down if met.any() else None

@@ -1,0 +1,103 @@
+"""The noise of an answer: what was stated is the yardstick, and no effect is taken for noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff import Model, base_model, load_robot
+from sk120stiff.explain import explain, verdict_document
+from sk120stiff.identify import fit, lack_of_fit
+from sk120stiff.measurements import NoiseStatement
+from tests.explain.readings import SIGMA, hidden
+from tests.hidden.generator.causes_elastic import BaseRocking
+from tests.hidden.generator.causes_joint import FrictionHysteresis, Memory
+
+DRAG = FrictionHysteresis("joint_2_l", {"half_width": 2e-4})
+
+
+@pytest.fixture(scope="module")
+def springs() -> Model:
+    model = base_model(load_robot("motoman_sk120"))
+    assert model is not None
+    return model
+
+
+def understated(readings, factor):
+    return replace(readings, noise=NoiseStatement(sigma=SIGMA / factor))
+
+
+@pytest.mark.parametrize("factor", [1.35, 2.0])
+def test_a_stated_uncertainty_that_is_merely_too_small_is_said_to_be(springs, factor):
+    for seed in range(2):
+        answer = explain(springs, understated(hidden(seed=100 + seed, loads=6), factor))
+        assert answer.verdict == "none"
+        assert answer.adequacy.understated == pytest.approx(factor, rel=0.1)
+        assert "times too small; nothing structured is left" in " ".join(answer.noise_reasons)
+        assert answer.noise.sigma == SIGMA / factor  # it stays the yardstick
+        assert answer.noise_floor == pytest.approx(2**0.5 * SIGMA / factor)
+
+
+def test_a_statement_exceeded_eight_times_is_a_finding(springs):
+    answer = explain(springs, understated(hidden(seed=100, loads=6), 9.0))
+    assert answer.verdict == "outside"
+    assert "times the stated uncertainty" in " ".join(answer.noise_reasons)
+
+
+def test_hysteresis_is_named_and_not_taken_for_noise(springs):
+    answer = explain(springs, hidden(DRAG, schedule="up_down", loads=6, poses=14, sigma=5e-6))
+    assert [finding.effect.id for finding in answer.findings] == ["friction_hysteresis:joint_2_l"]
+    assert answer.noise.sigma == 5e-6
+    assert answer.noise_floor == pytest.approx(2**0.5 * 5e-6)
+
+
+def test_hysteresis_that_nothing_can_name_is_outside(springs):
+    """Neither branch nor order: the effect cannot be named, and is no noise for all that."""
+    readings = hidden(DRAG, schedule="up_down", loads=6, poses=14, sigma=5e-6)
+    bare = replace(readings, branch=None, order=None, zero_order=None)
+    answer = explain(springs, bare)
+    assert answer.verdict == "outside"
+    assert answer.noise.sigma == 5e-6
+
+
+def test_a_foreign_memory_is_not_called_noise(springs):
+    cause = Memory("joint_2_l", {"share": 0.4}, {"play": 150.0})
+    answer = explain(springs, hidden(cause, schedule="up_down", loads=6, poses=14, sigma=5e-6))
+    assert answer.verdict != "none"
+
+
+def test_one_question_has_one_number(springs):
+    """The same p and the same floor from the fit, the answer, and its file."""
+    readings = hidden(seed=100, stated=False)
+    answer = explain(springs, readings)
+    found = fit(springs, readings)
+    document = verdict_document(answer, readings)
+    test = lack_of_fit(found)
+    assert answer.verdict == "none"
+    assert document["gap"]["p"] == pytest.approx(test.probability, rel=1e-9)
+    assert document["gap"]["noise_floor"] == pytest.approx(
+        1e6 * answer.details["localisation"].noise, rel=1e-9
+    )
+    assert answer.details["localisation"].probability == pytest.approx(test.probability)
+
+
+def test_an_unknown_noise_has_no_floor(springs):
+    """One load per pose, nobody stated σ: the gap is no yardstick of the gap."""
+    cause = BaseRocking("base_link", {"x": 2e-7, "y": 2e-7})
+    readings = hidden(cause, loads=1, poses=40, stated=False)
+    answer = explain(springs, readings)
+    document = verdict_document(answer, readings)
+    assert document["gap"]["noise_floor"] is None
+    assert document["gap"]["p"] is None
+    assert document["noise"]["source"] == "unknown"
+
+
+def test_errors_hold_what_is_left(springs):
+    """An answer that leaves more than the stated noise widens its errors by as much."""
+    readings = understated(hidden(seed=101, loads=6), 2.0)
+    answer = explain(springs, readings)
+    honest = fit(springs, hidden(seed=101, loads=6))
+    assert [p.std for p in answer.final.parameters] == pytest.approx(
+        [p.std for p in honest.parameters], rel=0.1
+    )
+    assert np.isfinite(answer.final.unit)
