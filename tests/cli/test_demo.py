@@ -44,7 +44,7 @@ def test_gaps_are_those_of_the_published_numbers(demo) -> None:
     gap = document["gap_um"]
     assert gap["paper"] == pytest.approx((sum(v * v for v in before) / 3) ** 0.5, rel=1e-9)
     assert gap["identified"] < 0.7 * gap["paper"]
-    assert gap["scatter_within_poses"] < gap["identified"] < gap["heldout"]
+    assert gap["noise_floor"] < gap["identified"] < gap["heldout"]
 
 
 def test_springs_are_found_with_their_uncertainty(demo) -> None:
@@ -55,6 +55,23 @@ def test_springs_are_found_with_their_uncertainty(demo) -> None:
     for joint, value in paper.items():
         assert 0.9 < found[joint]["value"] / value < 1.0  # a few per cent softer
         assert 0.0 < found[joint]["std"] < 0.05 * value
+
+
+def test_one_question_has_one_number_everywhere(demo, run) -> None:
+    """p and noise floor of Table II: `identify`, `demo`, verdict.json, and the page."""
+    out, document = demo
+    verdict = json.loads((out / "verdict.json").read_text(encoding="utf-8"))
+    data = "robots/motoman_sk120/data/table2_measured.csv"
+    found = run("identify", data, "--json").document
+    p, floor = found["lack_of_fit"]["probability"], found["noise_floor_um"]
+    assert verdict["gap"]["p"] == pytest.approx(p, rel=1e-9)
+    assert verdict["gap"]["noise_floor"] == pytest.approx(floor, rel=1e-9)
+    assert document["gap_um"]["noise_floor"] == pytest.approx(floor, rel=1e-9)
+    assert floor < found["rms_um"]  # noise does not make more than there is
+    told = set(re.findall(r"p = ([0-9.e−-]+[0-9])", verdict["where"][0]))
+    assert told == {f"{p:.2g}"}
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert verdict["where"][0] in unescape(page)
 
 
 def test_three_poses_are_no_ground_for_a_name(demo) -> None:

@@ -47,7 +47,7 @@ def test_the_papers_readings(run) -> None:
     assert found["condition"] < 2.0
     assert found["weak_directions"] == []
     assert found["iterations"] >= 1
-    assert found["lack_of_fit"][0]["against"] == "scatter within poses"
+    assert found["lack_of_fit"]["against"] == found["sigma_from"] == "scatter"
     assert found["degrees_of_freedom"] == 42
 
 

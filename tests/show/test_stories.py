@@ -11,6 +11,7 @@ import pytest
 from sk120stiff.effects import effect
 from sk120stiff.explain import Explanation, Finding, explain
 from sk120stiff.explain.swallowed import swallowed
+from sk120stiff.identify import LackOfFit
 from sk120stiff.model import base_model
 from sk120stiff.robot import load_robot
 from sk120stiff.show import scene_html
@@ -167,8 +168,10 @@ def test_none_does_not_claim_a_gap_closed() -> None:
     text = plain(page("none"))
     assert "falls from" not in text
     assert "closed" not in text
-    sure = replace(answer("none"), adequacy=replace(named().adequacy, probability=0.5))
-    doubt = replace(answer("none"), adequacy=replace(named().adequacy, probability=0.01))
+    test = LackOfFit("stated", 300.0, (290, None), 0.5, 1.0)
+    sure = replace(answer("none"), adequacy=replace(named().adequacy, whole=test))
+    little = replace(test, probability=0.02)
+    doubt = replace(answer("none"), adequacy=replace(named().adequacy, whole=little))
     assert lead_of(sure).startswith("Nothing is missing that these readings could show.")
     assert "not enough to claim" in lead_of(doubt)
 
