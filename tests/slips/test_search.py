@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sk120stiff import load_robot
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import explain
 from sk120stiff.slips import find_slip, look
-from tests.slips.readings import ARMS, spoilt
+from tests.slips.drawn import drawn
+from tests.slips.readings import ARMS, UR5, spoilt
 
 # slip, words of the finding, words of the remedy; {k} is a joint's name
 SLIPS = [
@@ -94,3 +96,14 @@ def test_poses_beyond_the_joint_limits_are_told() -> None:
     said = look(known.model, far).limits
     assert said is not None
     assert "joint_2_l stands at" in said and "(-70 .. 70)" in said
+
+
+def test_a_slip_is_told_beside_an_effect_that_no_passive_arm_has() -> None:
+    """What is missing from the model leaves a tenth of the squares of sound readings."""
+    known = drawn(load_robot(str(UR5)), 90211)
+    sound = look(known.model, known.readings)
+    assert sound.slip is None
+    found = find_slip(known.robot, spoilt(known, "sign,1"))
+    assert found is not None
+    assert found.said.startswith(f"{known.robot.actuated[1]} seems to have the wrong sign")
+    assert found.after < 0.9
