@@ -25,6 +25,7 @@ from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.coupling import Array
 
 COUNTS = 0.05  # probability of the misfit by noise alone below which the remainder counts
+ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 ALONE = 1e-6  # information that the other poses have, below which a pose cannot be left out
 
 
@@ -48,6 +49,8 @@ def known_model(fit: Fit) -> Model:
     if fit.doubt is not None:
         covariance = covariance + np.diag((fit.doubt * scale) ** 2)
     unseen = np.where(lost[:, None], blind * size[:, None], 0.0).T
+    nothing = np.sqrt(np.diag(covariance)) < ROUNDING * np.abs(unseen).max(axis=0, initial=0.0)
+    covariance = np.where(nothing | nothing[:, None], 0.0, covariance)
     test, noise = lack_of_fit(fit), yardstick(fit)
     known = Uncertainty(
         names=tuple(parameter.name for parameter in fit.parameters),

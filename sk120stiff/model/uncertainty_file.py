@@ -39,7 +39,7 @@ class _Strict(BaseModel):
 class _Parameter(_Strict):
     name: str
     value: float
-    std: float = Field(ge=0.0)
+    std: float | None = Field(default=None, ge=0.0)
     unit: str
 
 
@@ -92,11 +92,12 @@ def uncertainty_document(model: Model) -> dict[str, object] | None:
     known = model.uncertainty
     if known is None:
         return None
+    hidden = {known.names[k] for k in np.flatnonzero(known.unseen.any(axis=0))}
     rows = [
         Line(
             name=name,
             value=_short(value),
-            std=_short(std),
+            std=None if std == 0.0 and name in hidden else _short(std),
             unit=model.parameter(name).spec.internal_unit,
         )
         for name, value, std in zip(known.names, known.values, known.std, strict=True)
@@ -198,9 +199,13 @@ def _read(section: UncertaintySection) -> Uncertainty:
         correlation[k, : k + 1] = correlation[: k + 1, k] = row
     if (np.diag(correlation) != 1.0).any() or (np.abs(correlation) > 1.0).any():
         raise InputError("a correlation is not between -1 and 1, or not 1 with itself")
-    std = np.array([entry.std for entry in section.parameters])
+    hidden = {name for row in section.unseen for name in row}
+    for entry in section.parameters:
+        if entry.std is None and entry.name not in hidden:
+            raise InputError(f"{entry.name} has no std, and is not named under 'unseen' either")
+    std = np.array([entry.std or 0.0 for entry in section.parameters])
     names = tuple(entry.name for entry in section.parameters)
-    stray = {name for row in section.unseen for name in row} - set(names)
+    stray = hidden - set(names)
     if stray:
         raise InputError(f"'unseen' names {sorted(stray)[0]!r}, which is no estimated parameter")
     left = section.remainder

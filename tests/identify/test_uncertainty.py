@@ -4,12 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import yaml
 
 from sk120stiff.effects import effect, situation_of, situation_of_load
 from sk120stiff.identify import fit, known_model
 from sk120stiff.identify.uncertainty import _steps_without_each_pose
 from sk120stiff.measurements import NoiseModel, NoiseStatement
-from sk120stiff.model import Model, joint_spring_model, predict_with_uncertainty
+from sk120stiff.model import (
+    Model,
+    joint_spring_model,
+    model_from_text,
+    model_text,
+    predict_with_uncertainty,
+)
 from sk120stiff.plan import Schedule
 from sk120stiff.robot import Robot
 from tests.identify.conftest import readings_of, without_statement
@@ -82,6 +89,10 @@ def test_a_spring_that_does_not_show_makes_what_depends_on_it_unknown(robot: Rob
     noisy = readings.displacement + SIGMA * rng.normal(size=readings.displacement.shape)
     known = known_model(fit(six, replace(readings, displacement=noisy, zero="separate")))
     assert len(known.uncertainty.unseen) == 1
+    (written,) = yaml.safe_load(model_text(known))["uncertainty"]["parameters"][5:]
+    assert written["name"].startswith("joint_springs:joint_6_t") and written["std"] is None
+    again = model_from_text(model_text(known)).uncertainty
+    np.testing.assert_allclose(again.std, known.uncertainty.std, rtol=1e-8)
     load = np.array([[100.0, 200.0, -300.0, 0.0, 0.0, 0.0]])
     on_axis = predict_with_uncertainty(known, situation_of_load(robot, robot.rest, load))
     assert np.isfinite(on_axis.std_parameters).all() and on_axis.blame == ((),)

@@ -125,6 +125,7 @@ def test_a_note_or_a_flag_by_hand_keeps_it(model: Model) -> None:
         (("correlation", 1), [0.6, 1.0, 0.1], "lower triangle"),
         (("correlation",), [[1.0], [0.9, 1.0], [-0.9, 0.9, 1.0]], "positive semi-definite"),
         (("parameters", 0, "std"), -1.0, "greater than or equal to 0"),
+        (("parameters", 0, "std"), None, "not named under 'unseen'"),
         (("parameters", 0, "unit"), "mrad", "not in 'rad/"),
         (("noise_um",), 0.0, "not positive"),
         (("remainder", "rms_um"), [1.0, 2.0], "at least 3"),
