@@ -27,9 +27,7 @@ from sk120stiff.slips.sheet import Sheet, sheet_of
 CLEARER = 1.7  # times as much that is left without the correction
 CLEARER_TOGETHER = 2.5  # the same for several joints at once: more is tried, so more is asked
 LUCK = 30.0  # twice the log-likelihood that the best of a hundred useless corrections never gains
-SOUND = (
-    0.75  # share explained once the readings are right; effects that no passive arm has cost some
-)
+SOUND = 0.75  # share explained once readings are right; what no passive arm does costs some
 DOUBTFUL = 0.97  # share below which several joints are tried at once
 NEXT_TO = 1.5  # times as much left by another correction that is told beside the best one
 STEPS = 3  # slips told of one file
