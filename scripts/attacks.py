@@ -56,15 +56,16 @@ def main() -> int:
         if asked.only and name not in asked.only:
             continue
         begin = time.perf_counter()
+        found: list[Verdict] = []
         with tempfile.TemporaryDirectory(prefix="attack-") as folder:
-            found = list(line(Path(folder) / "desk"))
+            for each in line(Path(folder) / "desk"):
+                found.append(each)
+                if each.loss:  # told at once: a line may take minutes
+                    print(f"    LOST  {each.attack}\n          {each.loss}", flush=True)
         held = sum(not each.loss for each in found)
         slowest = max((each.seconds for each in found), default=0.0)
         took = time.perf_counter() - begin
         print(f"{name:26}{len(found):7}{held:7}{slowest:8.1f} s{took:7.0f} s", flush=True)
-        for each in found:
-            if each.loss:
-                print(f"    LOST  {each.attack}\n          {each.loss}", flush=True)
         lost += len(found) - held
     return int(lost > 0)
 
