@@ -147,6 +147,10 @@ def _document(made: Demo) -> dict[str, object]:
             {"pose": pose, "paper_um": before, "identified_um": after}
             for pose, before, after in _per_pose(made)
         ],
+        "one_force_gain": [
+            {"gain": found.gain, "rms_um": 1e6 * found.rms, "three_springs_um": 1e6 * springs}
+            for found, springs in made.gains
+        ],
         "parameters": parameter_rows(made.found),
     }
 
@@ -174,6 +178,7 @@ def _parts(made: Demo, written: Mapping[str, object]) -> list[object]:
     shown: list[object] = [
         table("1. Gap [µm rms per axis]", ["", "paper's springs", "identified"], gaps),
         table("2. Springs [N·m/rad]", ["", "paper", "identified"], springs),
+        made.of_the_gain(),
         f"3. {said(answer)}",
         *findings(answer),
         *answer.where[:2],

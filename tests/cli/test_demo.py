@@ -57,6 +57,19 @@ def test_springs_are_found_with_their_uncertainty(demo) -> None:
         assert 0.0 < found[joint]["std"] < 0.05 * value
 
 
+def test_one_force_gain_explains_as_much_as_three_springs(demo) -> None:
+    """The figures for equal weights come from a calculation outside the program."""
+    out, document = demo
+    by_noise, equal = document["one_force_gain"]
+    assert equal["gain"] == pytest.approx(1.057, abs=5e-4)
+    assert equal["rms_um"] == pytest.approx(16.57, abs=0.01)
+    assert equal["three_springs_um"] == pytest.approx(16.45, abs=0.01)
+    assert by_noise["three_springs_um"] == pytest.approx(document["gap_um"]["identified"])
+    assert by_noise["rms_um"] < 1.01 * by_noise["three_springs_um"]
+    text = unescape((out / "report.html").read_text(encoding="utf-8"))
+    assert f"One force gain of {by_noise['gain']:.3f}" in text
+
+
 def test_one_question_has_one_number_everywhere(demo, run) -> None:
     """p and noise floor of Table II: `identify`, `demo`, verdict.json, and the page."""
     out, document = demo

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.swallowed import WHOLE, Swallowed
-from sk120stiff.identify import Fit
+from sk120stiff.identify import Fit, fit
+from sk120stiff.identify.one_gain import OneGain, one_gain
+from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.show.figures import (
     Estimate,
@@ -82,6 +85,25 @@ class Demo:
     def models(self) -> dict[str, Model]:
         """Before and after identification."""
         return {PAPER: self.paper, OURS: self.found.model}
+
+    @cached_property
+    def gains(self) -> tuple[tuple[OneGain, float], ...]:
+        """One gain of the force on the paper's springs, and the gap of three new springs [m].
+
+        By the noise with the zero readings that rows share, and by equal weights.
+        """
+        equal = NoiseModel(self.found.problem.noise.sigma, zero="separate", freedom=0)
+        plain = fit(self.paper, self.found.problem.measurements, noise=equal)
+        return tuple((one_gain(self.paper, each), each.rms) for each in (self.found, plain))
+
+    def of_the_gain(self) -> str:
+        """What one number does in the place of the new springs, in words."""
+        (gain, springs), (plain, of_plain) = self.gains
+        return (
+            f"One force gain of {gain.gain:.3f} on the paper's springs explains as much as three "
+            f"new springs: it leaves {um(gain.rms)} µm, they leave {um(springs)} µm (with equal "
+            f"weights {plain.gain:.3f}: {1e6 * plain.rms:.2f} and {1e6 * of_plain:.2f} µm)."
+        )
 
     def rms(self, model: Model) -> float:
         """Gap of a model on the readings, rms per axis [m]."""
@@ -257,6 +279,10 @@ def _second_act(demo: Demo) -> Section:
     ]  # fmt: skip
     ratios = "; ".join(f"{e.name} {number(e.value / (e.reference or 1), 3)}" for e in estimates)
     floor = demo.noise
+    alike = (
+        f"{demo.of_the_gain()} Force, springs and displacement enter as one product, so these "
+        "readings do not tell softer springs from a force sensor that reads too little."
+    )
     return Section(
         "2. Springs identified from these readings",
         [
@@ -268,6 +294,7 @@ def _second_act(demo: Demo) -> Section:
                 rows,
                 "Joint springs in N·m/rad.",
             ),
+            Note(alike, "caution", "Springs or force sensor"),
             Picture(
                 lambda: parameter_forest(estimates, reference_name="paper's value"),
                 alt=f"Identified springs as multiples of the paper's: {ratios}",
