@@ -34,7 +34,7 @@ from sk120stiff.robot.bundled import bundled_robots
 if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
     from sk120stiff.robot import Robot
-    from sk120stiff.show.stories.demo_report import Demo
+    from sk120stiff.show.stories.demo_facts import Demo
 
 ROBOT = "motoman_sk120"
 Told = Callable[[int, int], None]
@@ -63,7 +63,7 @@ def command(
 
 def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
     """Everything the demo computes."""
-    from sk120stiff.show.stories.demo_report import Demo
+    from sk120stiff.show.stories.demo_facts import Demo
 
     paper = base_model(robot)
     found = fit(paper, readings, method="trf")
@@ -86,7 +86,7 @@ def _write(
     """Verdict and model first; a page that cannot be made is a warning."""
     from sk120stiff.show import reproducibility, scene_html
     from sk120stiff.show.stories import demo_report, identify_scene
-    from sk120stiff.show.stories.demo_report import OURS, PAPER
+    from sk120stiff.show.stories.demo_facts import OURS, PAPER
 
     where = provenance(data, readings)
     following = None if made.answer.next_poses is None else "next_poses.csv"
