@@ -12,7 +12,6 @@ from sk120stiff import load_robot, read_model
 from sk120stiff.robot.anatomy import sample_poses
 from tests.corpus.robots import example
 
-pytestmark = pytest.mark.filterwarnings("ignore::sk120stiff.errors.ToolkitWarning")
 
 # URDF of example-robot-data, base and tool frame where the arm is a part of a larger robot, axes.
 ARMS = {
