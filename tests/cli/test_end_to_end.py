@@ -12,7 +12,6 @@ from sk120stiff import load_robot, read_model
 from sk120stiff.robot.anatomy import sample_poses
 from tests.corpus.robots import example
 
-
 # URDF of example-robot-data, base and tool frame where the arm is a part of a larger robot, axes.
 ARMS = {
     "Universal Robots UR3": ("ur3_robot.urdf", (), 6),
