@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from sk120stiff.measurements.branches import branches_by_order
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.whitening import Whitener
 
@@ -105,12 +106,20 @@ def repeated(
 
 
 def cells_of(m: Measurements) -> NDArray[np.int64]:
-    """(N,) equal numbers for rows with the same joint values, wrench and branch."""
+    """(N,) equal numbers for rows with the same joint values, wrench and branch.
+
+    Where no branch is written, loads that rise and then fall tell it.
+    """
     _, place = np.unique(np.round(m.joints, 9), axis=0, return_inverse=True)
     branches = ("", "load", "unload")
     branch = np.zeros(m.n_readings)
-    if m.branch is not None:
-        branch = np.array([branches.index(b) for b in m.branch], dtype=np.float64)
+    words = m.branch
+    if words is None:
+        clock = next((c for c in (m.order, m.time) if c is not None), np.arange(float(len(branch))))
+        found = branches_by_order(m.pose_index, m.wrench, clock)
+        words = None if found is None else found[0]
+    if words is not None:
+        branch = np.array([branches.index(b) for b in words], dtype=np.float64)
     keys = np.column_stack([place, np.round(m.wrench, 9), branch])
     cells: NDArray[np.int64] = np.unique(keys, axis=0, return_inverse=True)[1]
     return cells

@@ -8,7 +8,7 @@ import pytest
 from sk120stiff.effects import effect
 from sk120stiff.identify import Problem, fit, fit_report, lack_of_fit, solve, yardstick
 from sk120stiff.identify.report import noise_sentence
-from sk120stiff.measurements import NoiseModel, NoiseStatement
+from sk120stiff.measurements import NoiseModel, NoiseStatement, pure_error
 from sk120stiff.plan import Schedule
 from tests.identify.conftest import readings_of, without_statement
 
@@ -82,6 +82,15 @@ def test_up_and_down_are_no_repeats(springs, robot) -> None:
     noise = yardstick(fit(springs, without_statement(up_and_down(springs, robot))))
     assert noise.source == "scatter"
     assert noise.sigma == pytest.approx(5e-6, rel=0.3)
+
+
+def test_up_and_down_without_a_branch_are_no_repeats_either(springs, robot) -> None:
+    readings = up_and_down(springs, robot)
+    bare = replace(readings, branch=None)
+    assert pure_error(bare) == pure_error(readings) is None
+    found = fit(springs, without_statement(bare))
+    assert found.problem.noise.freedom == 0
+    assert found.problem.noise.growth == 0.0
 
 
 def undescribed(readings):
