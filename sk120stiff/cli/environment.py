@@ -30,6 +30,8 @@ def prepare() -> None:
     # A warning is a message here, also where the surroundings make errors of them.
     warnings.filters = [each for each in warnings.filters if each[0] != "error"]
     os.environ["MPLBACKEND"] = "agg"  # figures go to files; no other backend is ever needed
+    if not os.environ.get("SOURCE_DATE_EPOCH", "0").strip().isdecimal():
+        del os.environ["SOURCE_DATE_EPOCH"]  # libraries read it as a number while they are imported
     text = os.environ.get("NUMBA_NUM_THREADS")
     if text is not None and not (text.strip().isdecimal() and 0 < int(text) <= MOST_THREADS):
         del os.environ["NUMBA_NUM_THREADS"]  # numba could not be imported

@@ -63,7 +63,13 @@ def test_help_on_a_full_disk_is_one_message(help_: tuple[str, ...]) -> None:
 
 def test_settings_that_no_library_can_use_are_ignored(tmp_path) -> None:
     done = started(
-        *STIFFNESS, NUMBA_NUM_THREADS="0", PYTHONWARNINGS="error", COLUMNS="1", TERM="dumb"
+        *STIFFNESS,
+        NUMBA_NUM_THREADS="0",
+        PYTHONWARNINGS="error",
+        COLUMNS="1",
+        TERM="dumb",
+        ROS_PACKAGE_PATH="x" * 5000,
+        SOURCE_DATE_EPOCH="x",
     )
     assert done.returncode == 0, done.stderr
     assert b"NUMBA_NUM_THREADS='0' is no count; it is ignored." in done.stderr

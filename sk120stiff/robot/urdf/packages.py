@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from urllib.parse import unquote
@@ -40,8 +41,9 @@ def workspaces() -> tuple[Path, ...]:
     ):
         entries = os.environ.get(variable, "").split(os.pathsep)
         for entry in filter(None, entries):
-            inside = Path(entry).expanduser() / below
-            folders.append(inside if inside.is_dir() else Path(entry).expanduser())
+            with suppress(OSError, RuntimeError):  # a name too long, no home: no such folder
+                inside = Path(entry).expanduser() / below
+                folders.append(inside if inside.is_dir() else Path(entry).expanduser())
     return tuple(dict.fromkeys(folders))
 
 
