@@ -196,10 +196,12 @@ def _point(xyz: ArrayLike, length: str) -> dict[str, Any]:
 
 def _robot(robot: str | None, folder: Path) -> str | None:
     """A path is written relative to the file, so that both can move together."""
-    if robot is None or not Path(robot).is_absolute():
-        return robot
+    if robot is None:
+        return None
     from sk120stiff.robot.naming import RobotName, robot_name  # Pinocchio comes with it
 
     name = robot_name(robot)
+    if not Path(name.place).is_absolute():
+        return str(name.seen_from(folder))
     seen = Path(os.path.relpath(name.place, folder.resolve())).as_posix()
     return str(RobotName(seen, name.arguments))

@@ -40,7 +40,7 @@ from sk120stiff.model.uncertainty_file import (
     uncertainty_of,
 )
 from sk120stiff.robot import Robot, find_robot, load_robot
-from sk120stiff.robot.naming import RobotName, robot_name
+from sk120stiff.robot.naming import robot_name
 
 
 class _Strict(BaseModel):
@@ -75,8 +75,9 @@ def model_text(model: Model, *, folder: Path | None = None) -> str:
 
     A robot that is named by a relative path is found from `folder` too, if that is given.
     """
+    named = robot_name(model.robot.source)
     document = {
-        "robot": _seen_from(folder, model.robot.source),
+        "robot": str(named if folder is None else named.seen_from(folder)),
         "base_frame": model.robot.base_frame,
         "tool_frame": model.robot.tool_frame,
         "effects": [
@@ -237,17 +238,6 @@ def base_model(robot: Robot) -> Model:
     """
     known = find_robot(robot.source).model_file
     return typical_model(robot) if known is None else read_model(known, robot)
-
-
-def _seen_from(folder: Path | None, source: str) -> str:
-    """A relative path to a robot as it reads from another folder; anything else as it is."""
-    if folder is None or source.lstrip().startswith("<") or Path(source).is_absolute():
-        return source
-    name = robot_name(source)
-    if not Path(name.place).exists():  # the name of a bundled robot
-        return source
-    seen = Path(os.path.relpath(name.place, folder)).as_posix()
-    return str(RobotName(seen, name.arguments))
 
 
 def _warn_of_another_robot(said: str, robot: Robot, folder: Path | None, where: str) -> None:

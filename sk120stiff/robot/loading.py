@@ -138,8 +138,9 @@ def load_robot(
     InputError
         The file cannot be read or describes no arm; the message names place and remedy.
     """
-    named = str(robot_name(os.fspath(source)).with_arguments(xacro or {}))
-    found = find_robot(named, relative_to=relative_to)
+    name = robot_name(os.fspath(source)).with_arguments(xacro or {})
+    named = str(name if relative_to is None else name.found_from(relative_to))
+    found = find_robot(named)
     document = read_urdf(found.urdf, xacro_arguments=found.xacro)
     return assemble(
         found, document, named=named, base=base, tool=tool, actuated=actuated, lock=lock
@@ -158,7 +159,7 @@ def assemble(
 ) -> Robot:
     """The second half of `load_robot`, for a document that was read already.
 
-    `named` is what the user called the robot; a model file will call it the same.
+    `named` finds the robot again from the working folder; files name it as seen from theirs.
     """
     description = found.description
     rest = {**description.lock, **(lock or {})}

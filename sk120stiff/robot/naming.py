@@ -6,9 +6,11 @@ model that was made with arguments finds the same robot again.
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 from sk120stiff.errors import InputError
@@ -29,6 +31,25 @@ class RobotName(NamedTuple):
     def with_arguments(self, arguments: Mapping[str, str]) -> RobotName:
         """The same robot with more arguments; a later value of one name holds."""
         return RobotName(self.place, {**self.arguments, **arguments})
+
+    def found_from(self, folder: Path) -> RobotName:
+        """A relative path that holds from `folder`, as it reads here; anything else as it is."""
+        there = folder / self.place
+        return RobotName(str(there), self.arguments) if self._is_file(there) else self
+
+    def seen_from(self, folder: Path) -> RobotName:
+        """A relative path that holds here, as it reads from `folder`; anything else as it is."""
+        if Path(self.place).is_absolute() or not self._is_file(Path(self.place)):
+            return self
+        return RobotName(Path(os.path.relpath(self.place, folder)).as_posix(), self.arguments)
+
+    def _is_file(self, path: Path) -> bool:
+        if not self.place.strip() or self.place.lstrip("\ufeff \t\r\n").startswith("<"):
+            return False
+        try:
+            return path.exists()
+        except (OSError, ValueError):  # names that are too long or hold zero bytes
+            return False
 
 
 def robot_name(text: str) -> RobotName:

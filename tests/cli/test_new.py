@@ -83,3 +83,26 @@ def test_a_relative_urdf_is_found_from_the_folder(run, here: Path) -> None:
     assert "urdf: ../../mine.urdf" in Path("deep/arm/robot.yaml").read_text(encoding="utf-8")
     assert load_robot("deep/arm").n == 6
     assert read_model("deep/arm/model.yaml").robot.n == 6
+
+
+def test_a_plan_written_beside_the_folder_finds_its_robot(run, here: Path) -> None:
+    assert run("new", str(example("ur5_robot.urdf")), "--out", "cell").code == 0
+    few = ("--count", "6", "--candidates", "20", "--directions", "2")
+    for plan in ("plan.csv", "cell/plan.csv"):
+        planned = run("plan", "--model", "cell/model.yaml", *few, "--out", plan)
+        assert planned.code == 0, planned.stderr
+        made = run("simulate", "cell/model.yaml", plan, "--out", f"made_{len(plan)}.csv")
+        assert made.code == 0, made.stderr
+
+
+def test_a_robot_named_from_here_is_found_from_the_folder_of_the_plan(
+    run, here: Path, monkeypatch
+) -> None:
+    assert run("new", str(example("ur5_robot.urdf")), "--out", "cell").code == 0
+    Path("cell/model.yaml").unlink()
+    few = ("--count", "6", "--candidates", "20", "--directions", "2")
+    Path("plans").mkdir()
+    assert run("plan", "--model", "cell", *few, "--out", "plans/plan.csv").code == 0
+    monkeypatch.chdir("plans")
+    made = run("simulate", "../cell", "plan.csv", "--out", "made.csv")
+    assert made.code == 0, made.stderr

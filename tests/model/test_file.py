@@ -137,3 +137,22 @@ def test_an_infinite_stiffness_is_an_absent_effect():
     model = model_from_text(GOOD.replace("1.4e6", ".inf").replace("std: 2.0e4, ", ""))
     assert model.values[0] == 0.0
     assert np.isinf(model_from_text(model_text(model)).parameters[0].public_value)
+
+
+def test_a_robot_named_from_the_models_folder_is_found_again_from_anywhere(tmp_path, monkeypatch):
+    """`robot: .`, which a new folder's model says, is the folder of the model, not the caller's."""
+    from sk120stiff.robot.bundled import bundled_robots
+
+    cell = tmp_path / "cell"
+    cell.mkdir()
+    urdf = bundled_robots()["motoman_sk120"] / "sk120.urdf"
+    (cell / "arm.urdf").write_bytes(urdf.read_bytes())
+    (cell / "robot.yaml").write_text("urdf: arm.urdf\n", encoding="utf-8")
+    (cell / "model.yaml").write_text(GOOD.replace("motoman_sk120", "."), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    model = read_model("cell/model.yaml")
+    assert load_robot(model.robot.source).actuated == model.robot.actuated
+    (tmp_path / "results").mkdir()
+    write_model(model, "results/model.yaml")
+    monkeypatch.chdir("/")
+    assert read_model(tmp_path / "results" / "model.yaml").robot.actuated == model.robot.actuated
