@@ -23,6 +23,7 @@ from sk120stiff.identify import (
     Fit,
     HeldOut,
     compare,
+    contradiction,
     fit,
     fit_report,
     held_out,
@@ -110,6 +111,9 @@ def command(
         warnings.warn(told, ToolkitWarning, stacklevel=2)
     with progress_bar("identify"):
         found = fit(start, readings, method=method.value, robust=robust)
+    wrong = contradiction(found)
+    if wrong is not None:
+        warnings.warn(wrong, ToolkitWarning, stacklevel=2)
     intervals: Sequence[Interval] | None = None
     if profile:
         with progress_bar("profile") as report:

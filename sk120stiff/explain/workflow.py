@@ -56,7 +56,8 @@ def explain(
     InputError
         No displacements, too few readings, one pose alone, or an effect that does not exist.
     Refusal
-        The data look written down wrongly, or the base model itself cannot be fitted.
+        The data look written down wrongly, they contradict their stated uncertainty, or the base
+        model itself cannot be fitted.
     """
     wish = options or Options()
     tell = progress or _silent
@@ -97,6 +98,8 @@ def explain(
             ),
             wish,
         )
+    if not findings:
+        left.refuse_contradicted(str(measurements.path or "the measurements"))
     tell("the gap step by step", 0.7)
     effects = [finding.effect for finding in findings]
     settled = all(finding.settled for finding in findings)

@@ -12,7 +12,7 @@ from sk120stiff.identify.solving import solve, solve_near
 from sk120stiff.identify.uncertainty import known_model
 from sk120stiff.identify.unseen import unseen_reasons, why_unseen
 from sk120stiff.identify.weak import weak_directions
-from sk120stiff.identify.yardstick import Yardstick, yardstick
+from sk120stiff.identify.yardstick import Yardstick, contradiction, yardstick
 
 __all__ = [
     "DOUBTFUL",
@@ -24,6 +24,7 @@ __all__ = [
     "Problem",
     "Yardstick",
     "compare",
+    "contradiction",
     "drawn_parts",
     "fit",
     "fit_report",

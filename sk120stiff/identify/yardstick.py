@@ -24,6 +24,7 @@ from sk120stiff.measurements.repeats import ENOUGH
 from sk120stiff.robot.coupling import Array
 
 Source = Literal["stated", "repeats", "scatter", "unknown"]
+CONTRADICTED = 3.0  # times a stated σ from where on it is no slight optimism but a wrong number
 ROUNDING = 1e-12  # share of the misfit that is rounding, not scatter
 
 NAMES: dict[Source, str] = {
@@ -104,6 +105,25 @@ def scatter(fit: Fit) -> Yardstick | None:
     if freedom < ENOUGH or square <= ROUNDING * fit.chi_square:
         return None  # readings that do not scatter at all are no yardstick
     return _yardstick(fit, "scatter", square / freedom, float(freedom))
+
+
+def contradiction(fit: Fit) -> str | None:
+    """What is to be said of a stated σ that single poses scatter far beyond, whatever the model.
+
+    No cause that is smooth in the load makes readings scatter so. What is left are a wrong
+    statement, spoilt readings, and branches that no column tells.
+    """
+    noise = yardstick(fit)
+    found = scatter(fit) if noise.source == "stated" else None
+    if found is None or found.sigma is None or found.scale < CONTRADICTED**2:
+        return None
+    return (
+        f"Readings of single poses scatter {found.scale**0.5:.2g} times as much about all that is "
+        "smooth in their loads as the stated uncertainty of one reading allows; standard errors "
+        "are inflated. Check noise: {sigma: ..., unit: ...} in the YAML file (σ = "
+        f"{found.sigma * 1e6:.3g} µm would fit), rows that do not belong together, single readings "
+        "far off ('identify --robust'), and unloading that no column branch tells."
+    )
 
 
 def left_within_poses(fit: Fit, white: Array, inside: Array) -> tuple[float, int, Array]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
+from sk120stiff.errors import Refusal
 from sk120stiff.explain import explain, verdict_document
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.measurements import NoiseStatement
@@ -36,6 +37,12 @@ def test_a_stated_uncertainty_that_is_merely_too_small_is_said_to_be(springs, fa
         assert "times too small; nothing structured is left" in " ".join(answer.noise_reasons)
         assert answer.noise.sigma == SIGMA / factor  # it stays the yardstick
         assert answer.noise_floor == pytest.approx(2**0.5 * SIGMA / factor)
+
+
+def test_a_statement_exceeded_three_times_is_no_agreement(springs):
+    with pytest.raises(Refusal, match=r"scatter 4\.2 times as much as their stated") as it:
+        explain(springs, understated(hidden(seed=101, loads=6), 4.0))
+    assert "noise: {sigma: ..., unit: ...}" in str(it.value.remedy)
 
 
 def test_a_statement_exceeded_eight_times_is_a_finding(springs):

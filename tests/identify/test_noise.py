@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import effect
-from sk120stiff.identify import Problem, fit, fit_report, lack_of_fit, solve, yardstick
+from sk120stiff.identify import (
+    Problem,
+    contradiction,
+    fit,
+    fit_report,
+    lack_of_fit,
+    solve,
+    yardstick,
+)
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import NoiseModel, NoiseStatement, pure_error
 from sk120stiff.plan import Schedule
@@ -50,6 +58,20 @@ def test_repeats_tell_the_size_whatever_the_model_lacks(springs, robot) -> None:
     assert noise.freedom == found.problem.noise.freedom < np.inf
     assert lack_of_fit(found).lacking  # the missing foundation is misfit, not noise
     assert any("repeats give" in reason for reason in found.reasons)
+
+
+def test_a_statement_that_the_scatter_denies_is_said_to_be_denied(springs, robot) -> None:
+    """Whatever the model lacks: a missing foundation alone is no contradiction."""
+    rocking = springs + effect(robot, "base_rocking")
+    truth = rocking.with_public(**dict.fromkeys(rocking.names[-2:], 4e6))
+    readings = readings_of(truth, poses=20, sigma=8e-6, schedule=Schedule("ascending", 5))
+    assert contradiction(fit(springs, readings)) is None
+    found = fit(springs, replace(readings, noise=NoiseStatement(sigma=2e-6)))
+    said = contradiction(found)
+    assert said is not None and "noise: {sigma: ..., unit: ...}" in said
+    assert 3.5 < float(said.split("scatter ")[1].split()[0]) < 4.5
+    assert yardstick(found).sigma == 2e-6  # the statement stays the yardstick
+    assert contradiction(fit(springs, without_statement(readings))) is None
 
 
 def up_and_down(springs, robot):
