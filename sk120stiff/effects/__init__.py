@@ -7,13 +7,14 @@ from sk120stiff.effects.base import (
     Elastic,
     Elongation,
     Geometric,
+    Imposed,
     LinearElastic,
     LoadError,
     Options,
     ReadingError,
     Switching,
 )
-from sk120stiff.effects.catalogue import BY_NAME, CATALOGUE, all_effects, effect
+from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.declared import declared_aliases
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.signatures import FirstOrder
@@ -21,16 +22,17 @@ from sk120stiff.effects.situation import Situation, situation_of, situation_of_l
 from sk120stiff.effects.words import EffectWords, catalogue_words, comment_lines, words_of
 
 __all__ = [
-    "BY_NAME",
     "CATALOGUE",
     "Alias",
     "AliasClasses",
+    "Catalogue",
     "Effect",
     "EffectWords",
     "Elastic",
     "Elongation",
     "FirstOrder",
     "Geometric",
+    "Imposed",
     "LinearElastic",
     "LoadError",
     "Options",

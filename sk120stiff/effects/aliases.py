@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.effects.base import SPRINGS, Effect, LinearElastic
-from sk120stiff.effects.catalogue import all_effects, effect
+from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.effects.situation import Situation, situation_of_load
 from sk120stiff.robot import Robot
@@ -87,6 +87,7 @@ def alias_classes(
     robot: Robot,
     *,
     effects: Sequence[Effect] | None = None,
+    catalogue: Catalogue = CATALOGUE,
     base: Sequence[str] | None = None,
     situation: Situation | None = None,
     tolerance: float = TOLERANCE,
@@ -99,6 +100,8 @@ def alias_classes(
         The robot.
     effects
         Candidates; all of the catalogue by default, offsets of single zero readings left out.
+    catalogue
+        The effects that there are.
     base
         Joints whose springs are in the base model; all actuated joints by default.
     situation
@@ -111,7 +114,7 @@ def alias_classes(
     held = tuple(robot.actuated if base is None else base)
     if effects is None:
         timed = readings.time is not None
-        effects = [e for e in all_effects(robot, timed=timed) if e.parameters]
+        effects = [e for e in all_effects(robot, timed=timed, catalogue=catalogue) if e.parameters]
     candidates = [e for e in effects if not (e.name == SPRINGS and e.where in held)]
     # springs of unequal softness, lest two of them add up to something by chance
     softness = np.random.default_rng(1).uniform(0.5, 2.0, len(held))

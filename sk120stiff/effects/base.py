@@ -1,18 +1,21 @@
 """The contract of an effect: one physical cause with a name, a place, parameters and a law.
 
-An effect enters in one of four ways, and each way is one base class:
+An effect enters in one of five ways, and each way is one base class:
 
 =============  ==========================================================  ======================
 class          what it changes                                             example
 =============  ==========================================================  ======================
 `Elastic`      elongation of coordinates under load, e(τ)                  joint springs, a beam
 `Geometric`    where the unloaded arm really is, z₀                        joint offset
+`Imposed`      where coordinates go between zero and reading by            creep, warming up
+               themselves, z₀ + S·p, whatever the load is
 `LoadError`    the load, W_true = W + (S·p) W + o·p in sensor axes         force bias
 `ReadingError` the displacement read, d_read = d + (S·p) d + o·p           tracker misalignment
 =============  ==========================================================  ======================
 
 So a misread force can never pose as a spring. Adding an effect is one new file and one line in
-`catalogue.py`.
+`catalogue.py`; from outside the package it is ``CATALOGUE + MyEffect``, or an entry point. What the
+program has to know of an effect beyond its law is a trait of it here, with a default.
 """
 
 from __future__ import annotations
@@ -99,6 +102,19 @@ class Effect(ABC):
         It changes the spring of the joint at which it acts, so there must be one (class attribute).
     inexact
         Share of what it explains by which real parts depart from its law (class attribute).
+    joint_spring
+        Its one parameter is the stiffness of the actuated joint at which it acts (class attribute).
+    of_gear
+        It is a law of a joint's gear: what one such law leaves over looks like another (class
+        attribute).
+    less_usual
+        By how much the score of a model gets worse because it is met less often than an effect that
+        explains as much (class attribute).
+    twins
+        Names of effects that some experiments make one with this one, at the same place and with
+        either sign (class attribute). It is tried whether the experiment at hand does.
+    needs
+        What readings must hold for its law, in words (class attribute).
     where
         URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
     scale
@@ -116,11 +132,21 @@ class Effect(ABC):
     exchangeable: ClassVar[bool] = False
     bends_a_spring: ClassVar[bool] = False
     inexact: ClassVar[float] = 0.0
+    joint_spring: ClassVar[bool] = False
+    of_gear: ClassVar[bool] = False
+    less_usual: ClassVar[float] = 0.0
+    twins: ClassVar[tuple[str, ...]] = ()
+    needs: ClassVar[str] = ""
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The effect at one place of a robot."""
         return cls(where, scale_of(robot))
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """What it was told when parameters of these names, and their units, were written."""
+        return Options()
 
     @classmethod
     def sample(cls) -> Self:
@@ -252,6 +278,29 @@ class Geometric(Effect):
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """Name of the coordinate that each parameter shifts."""
         return tuple(joint.name for joint in self.virtual_joints(robot))
+
+
+class Imposed(Effect):
+    """Coordinates move by themselves, whatever the load is: z₀ + Σ_p values[p] s_p.
+
+    They do so between the zero reading and the reading, so the unloaded arm stands where it should:
+    time passes, a link warms up, a clamp creeps.
+    """
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Rigid joints that move; none where actuated coordinates do."""
+        return ()
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """Names of the k coordinates that move: actuated joints or own virtual joints."""
+        return tuple(joint.name for joint in self.virtual_joints(robot))
+
+    @abstractmethod
+    def shifts(self, situation: Situation) -> Array:
+        """(N, k, P) movement of the coordinates since the zero reading, per unit of a parameter.
+
+        Zero where the readings do not hold what it goes with (a time, an order).
+        """
 
 
 class Misreading(Effect):

@@ -1,9 +1,23 @@
-"""The list of all effects. A new effect is one file beside this one and one line here."""
+"""The effects that a model may hold and a search considers: a value that adds.
+
+A new effect of the package is one file beside this one and one line here. One from outside is
+``CATALOGUE + MyEffect``, given to `explain` or `read_model`; a package that is installed with
+
+.. code-block:: toml
+
+    [project.entry-points."sk120stiff.effects"]
+    link_stretch = "my_package.effects:LinkStretch"
+
+has its effects in `CATALOGUE` from the start.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
+from functools import cached_property
+from importlib.metadata import EntryPoint, entry_points
 
 from sk120stiff.effects.base import Effect, Options
 from sk120stiff.effects.closure import ClosureCoupling, ClosureRod
@@ -17,10 +31,12 @@ from sk120stiff.effects.joint_tilt import JointTilt
 from sk120stiff.effects.link_beam import LinkBending, LinkTorsion
 from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingDrift, ReadingRotation, ReadingScale, ZeroOffset
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot import Robot
 
-CATALOGUE: tuple[type[Effect], ...] = (
+GROUP = "sk120stiff.effects"  # of the entry points by which packages bring effects
+
+OWN: tuple[type[Effect], ...] = (
     JointSprings,
     JointTilt,
     LinkBending,
@@ -47,7 +63,155 @@ CATALOGUE: tuple[type[Effect], ...] = (
     LinkLength,
 )
 
-BY_NAME: dict[str, type[Effect]] = {effect.name: effect for effect in CATALOGUE}
+
+class Catalogue:
+    """Effects by name, in a fixed order; adding to it makes a new one.
+
+    ``CATALOGUE + Mine`` and ``CATALOGUE + (Mine, Other)`` add effects; iteration gives the effects,
+    ``catalogue["base_rocking"]`` one of them, ``"base_rocking" in catalogue`` whether it is there.
+
+    Parameters
+    ----------
+    effects
+        Classes of effects.
+
+    Raises
+    ------
+    InputError
+        Something in it is no effect, or two effects have one name.
+    """
+
+    def __init__(self, effects: Iterable[type[Effect]] = ()) -> None:
+        self._given = tuple(effects)
+        _checked(self._given)
+
+    @cached_property
+    def _by_name(self) -> dict[str, type[Effect]]:
+        return {kind.name: kind for kind in self._given}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Public identifiers."""
+        return tuple(self._by_name)
+
+    def __iter__(self) -> Iterator[type[Effect]]:
+        return iter(self._by_name.values())
+
+    def __len__(self) -> int:
+        return len(self._by_name)
+
+    def __contains__(self, item: object) -> bool:
+        return item in self._by_name or item in self._by_name.values()
+
+    def __getitem__(self, name: str) -> type[Effect]:
+        if name not in self._by_name:
+            raise self.unknown(name)
+        return self._by_name[name]
+
+    def __add__(self, other: type[Effect] | Iterable[type[Effect]]) -> Catalogue:
+        return Catalogue((*self, *((other,) if isinstance(other, type) else other)))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Catalogue) and tuple(self) == tuple(other)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    def __repr__(self) -> str:
+        return f"Catalogue({', '.join(self.names)})"
+
+    def effect(
+        self, robot: Robot, name: str, where: str | None = None, options: Options | None = None
+    ) -> Effect:
+        """One of the effects at one place of a robot; see the function `effect`."""
+        kind = self[name]
+        places = kind.places(robot)
+        if where is None and len(places) == 1:
+            where = places[0]
+        if where not in places:
+            raise InputError(
+                f"the effect {name!r} cannot act at {where!r} on {robot.name}",
+                remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
+            )
+        return kind.at(robot, where, options or Options())
+
+    def unknown(self, name: str) -> InputError:
+        """What to say of a name that is no effect's."""
+        close = get_close_matches(name, self.names, n=1)
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        return InputError(
+            f"there is no effect {name!r}{hint}", remedy=f"Effects are: {', '.join(self.names)}."
+        )
+
+
+class _WithInstalled(Catalogue):
+    """The package's own effects and those of installed packages, looked up at the first use."""
+
+    @cached_property
+    def _by_name(self) -> dict[str, type[Effect]]:
+        return {kind.name: kind for kind in with_installed(self._given)}
+
+
+def with_installed(
+    own: Sequence[type[Effect]], points: Iterable[EntryPoint] | None = None
+) -> tuple[type[Effect], ...]:
+    """Effects with those that entry points bring; one that cannot be had is a warning.
+
+    Warns
+    -----
+    ToolkitWarning
+        An entry point cannot be loaded, brings no effect, or one whose name is taken.
+    """
+    found = tuple(own)
+    for point in entry_points(group=GROUP) if points is None else points:
+        try:
+            kind = point.load()
+            _checked((*found, kind))
+        except Exception as error:  # noqa: BLE001  what others install must not stop the program
+            whose = f" of {point.dist.name}" if point.dist else ""
+            warnings.warn(
+                f"the effect {point.name!r}{whose} ({point.value}) is left out: "
+                f"{type(error).__name__}: {error}",
+                ToolkitWarning,
+                stacklevel=2,
+            )
+        else:
+            found = (*found, kind)
+    return found
+
+
+def _checked(kinds: Sequence[type[Effect]]) -> None:
+    """Refuse what is no effect, and names that stand twice."""
+    seen: dict[str, type[Effect]] = {}
+    for kind in kinds:
+        if not (isinstance(kind, type) and issubclass(kind, Effect)):
+            raise InputError(
+                f"{kind!r} is no effect",
+                remedy="Give a class derived from Elastic, Geometric, Imposed, LoadError or "
+                "ReadingError of sk120stiff.effects.",
+            )
+        missing = sorted(kind.__abstractmethods__) + [
+            name for name in ("name",) if not isinstance(getattr(kind, name, None), str)
+        ]
+        if missing:
+            raise InputError(
+                f"the effect {kind.__name__} lacks {', '.join(missing)}",
+                remedy="See the contract in sk120stiff.effects.base.",
+            )
+        if kind.name in seen:
+            raise InputError(
+                f"two effects have the name {kind.name!r}: {_where(seen[kind.name])} and "
+                f"{_where(kind)}",
+                remedy="Give yours another name.",
+            )
+        seen[kind.name] = kind
+
+
+def _where(kind: type[Effect]) -> str:
+    return f"{kind.__module__}.{kind.__qualname__}"
+
+
+CATALOGUE: Catalogue = _WithInstalled(OWN)
 
 
 def effect(
@@ -58,6 +222,7 @@ def effect(
     poses: Sequence[str] = (),
     timed: bool = False,
     breaks: Sequence[float] = (),
+    catalogue: Catalogue = CATALOGUE,
 ) -> Effect:
     """One effect at one place of a robot.
 
@@ -75,41 +240,27 @@ def effect(
         The experiment has times, for `reading_drift`.
     breaks
         Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
+    catalogue
+        The effects that there are.
 
     Raises
     ------
     InputError
         No such effect, or it cannot act there; what exists is listed.
     """
-    if name not in BY_NAME:
-        raise unknown_effect(name)
-    kind = BY_NAME[name]
-    places = kind.places(robot)
-    if where is None and len(places) == 1:
-        where = places[0]
-    if where not in places:
-        raise InputError(
-            f"the effect {name!r} cannot act at {where!r} on {robot.name}",
-            remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
-        )
-    return kind.at(robot, where, Options(tuple(poses), timed, tuple(breaks)))
-
-
-def unknown_effect(name: str) -> InputError:
-    """What to say of a name that is no effect's."""
-    close = get_close_matches(name, BY_NAME, n=1)
-    hint = f" (did you mean {close[0]!r}?)" if close else ""
-    return InputError(
-        f"there is no effect {name!r}{hint}", remedy=f"Effects are: {', '.join(BY_NAME)}."
-    )
+    return catalogue.effect(robot, name, where, Options(tuple(poses), timed, tuple(breaks)))
 
 
 def all_effects(
-    robot: Robot, *, poses: Sequence[str] = (), timed: bool = False
+    robot: Robot,
+    *,
+    poses: Sequence[str] = (),
+    timed: bool = False,
+    catalogue: Catalogue = CATALOGUE,
 ) -> tuple[Effect, ...]:
     """Every effect of the catalogue at every place of a robot where it can act."""
     return tuple(
-        effect(robot, kind.name, where, poses=poses, timed=timed)
-        for kind in CATALOGUE
+        kind.at(robot, where, Options(tuple(poses), timed))
+        for kind in catalogue
         for where in kind.places(robot)
     )

@@ -7,21 +7,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.effects.base import Alias, Effect, Elastic, Geometric, LinearElastic
-from sk120stiff.effects.catalogue import all_effects
+from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
 
 SAME = 1e-6  # rad between two directions in the space of twists
 
 
-def declared_aliases(robot: Robot) -> tuple[Alias, ...]:
+def declared_aliases(robot: Robot, catalogue: Catalogue = CATALOGUE) -> tuple[Alias, ...]:
     """Aliases that follow from how the arm is built, without looking at any reading.
 
     Two compliances about one axis, or two errors along one slide, are one wherever they sit, if at
     every pose they move the tool alike. What effects know of themselves (`Effect.aliases`) comes on
     top. `alias_classes` computes the same from readings.
     """
-    effects = all_effects(robot)
+    effects = all_effects(robot, catalogue=catalogue)
     found = [
         Alias(group[0], other)
         for kind in (Elastic, Geometric)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -30,6 +30,8 @@ BELOW = "extra_below_"  # extra_below_150: softer by the value of this parameter
 @dataclass(frozen=True)
 class GearEffect(Elastic):
     """A law of the total torque of one turning actuated joint, its weight's share included."""
+
+    of_gear: ClassVar[bool] = True
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
@@ -77,6 +79,11 @@ class GearHardening(GearEffect):
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The gear of one joint, with the steps of its data sheet where they are known."""
         return cls(where, scale_of(robot), breaks=options.breaks)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The steps that the names of the parameters tell."""
+        return Options(breaks=_breaks_of(parameters))
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -152,6 +159,7 @@ class LostMotion(GearEffect, Switching):
         "q - q_0 = torque / K + b * (sign(torque) - sign(torque of the weight))"
     )
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
+    twins: ClassVar[tuple[str, ...]] = ("friction_hysteresis",)  # while loads only grow
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -188,6 +196,7 @@ class FrictionHysteresis(GearEffect, Switching):
         "q - q_0 = torque / K - h * sign(torque) while loading, + h * sign(torque) while unloading"
     )
     axes: ClassVar[str] = "the axis of the joint itself"
+    twins: ClassVar[tuple[str, ...]] = (LostMotion.name,)  # while loads only grow
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -223,7 +232,7 @@ class FrictionHysteresis(GearEffect, Switching):
         return _step(-situation.branch[:, None] * np.sign(torques), values)
 
 
-def breaks_of(names: Iterable[str]) -> tuple[float, ...]:
+def _breaks_of(names: Iterable[str]) -> tuple[float, ...]:
     """Break torques [N·m] that the names of parameters tell.
 
     Raises

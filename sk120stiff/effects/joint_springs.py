@@ -25,6 +25,7 @@ class JointSprings(LinearElastic):
 
     slides: bool = False
     name: ClassVar[str] = "joint_springs"
+    joint_spring: ClassVar[bool] = True
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "q - q_0 = torque / K"
     axes: ClassVar[str] = "the axis of the joint itself"

@@ -7,6 +7,7 @@ d = J C τ, and its derivatives are
 elastic effects     J ∂e/∂p(τ)
 load errors         J C J_Fᵀ ∂W/∂p
 geometric effects   (∂J/∂z_k) C τ + J C K_C[:, k], with ∂²x/∂z² in place of ∂J/∂z
+imposed movements   J s
 reading errors      ∂d_read/∂p(d)
 ==================  ====================================================================
 
@@ -21,7 +22,14 @@ from functools import cached_property
 
 import numpy as np
 
-from sk120stiff.effects.base import Effect, Elastic, Geometric, LoadError, ReadingError
+from sk120stiff.effects.base import (
+    Effect,
+    Elastic,
+    Geometric,
+    Imposed,
+    LoadError,
+    ReadingError,
+)
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Mechanism
 from sk120stiff.robot.coupling import Array
@@ -48,7 +56,7 @@ class FirstOrder:
         virtual = [
             joint
             for effect in effects
-            if isinstance(effect, Elastic | Geometric)
+            if isinstance(effect, Elastic | Geometric | Imposed)
             for joint in effect.virtual_joints(robot)
         ]
         rigid = robot.mechanism()
@@ -78,6 +86,9 @@ class FirstOrder:
             columns = self._elastic(effect)
         elif isinstance(effect, Geometric):
             columns = self._geometric(effect)
+        elif isinstance(effect, Imposed):
+            index = self._index(effect.coordinates(self.situation.robot))
+            columns = self._J[:, :, index] @ effect.shifts(self.situation)
         elif isinstance(effect, LoadError):
             columns = self._load_error(effect)
         elif isinstance(effect, ReadingError):

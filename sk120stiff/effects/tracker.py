@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Self
@@ -98,6 +99,7 @@ class ReadingDrift(TrackerEffect):
 
     per_second: bool = False
     name: ClassVar[str] = "reading_drift"
+    needs: ClassVar[str] = "a column order or time[s]"
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "d_read = d + r * (time or number of the reading since its zero)"
     axes: ClassVar[str] = "axes of the base frame"
@@ -106,6 +108,11 @@ class ReadingDrift(TrackerEffect):
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """Drift by the clock where there is one, else by the order of the readings."""
         return cls(where, scale_of(robot), per_second=options.timed)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The clock that the units of the parameters tell."""
+        return Options(timed="m/s" in parameters.values())
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -153,11 +160,17 @@ class ZeroOffset(TrackerEffect):
     equation: ClassVar[str] = "d_read = d + c of the pose"
     axes: ClassVar[str] = "axes of the base frame"
     exchangeable: ClassVar[bool] = True
+    needs: ClassVar[str] = "several readings of a pose"
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """Offsets of the poses of an experiment."""
         return cls(where, scale_of(robot), poses=options.poses)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The poses that the names of the parameters tell, `POSE.x`."""
+        return Options(poses=tuple(dict.fromkeys(name.rpartition(".")[0] for name in parameters)))
 
     @classmethod
     def sample(cls) -> Self:

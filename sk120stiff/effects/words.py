@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sk120stiff.effects.base import Effect
-from sk120stiff.effects.catalogue import BY_NAME, CATALOGUE, unknown_effect
+from sk120stiff.effects.catalogue import CATALOGUE, Catalogue
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,9 @@ def words_of(effect: Effect) -> EffectWords:
     )
 
 
-def catalogue_words(name: str | None = None) -> tuple[EffectWords, ...]:
+def catalogue_words(
+    name: str | None = None, catalogue: Catalogue = CATALOGUE
+) -> tuple[EffectWords, ...]:
     """Every effect of the catalogue in words, or the one of that name.
 
     Raises
@@ -69,10 +71,8 @@ def catalogue_words(name: str | None = None) -> tuple[EffectWords, ...]:
         There is no such effect.
     """
     if name is None:
-        return tuple(words_of(kind.sample()) for kind in CATALOGUE)
-    if name not in BY_NAME:
-        raise unknown_effect(name)
-    return (words_of(BY_NAME[name].sample()),)
+        return tuple(words_of(kind.sample()) for kind in catalogue)
+    return (words_of(catalogue[name].sample()),)
 
 
 def comment_lines(effect: Effect, *, most: int = 6) -> Iterator[str]:

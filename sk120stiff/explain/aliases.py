@@ -11,7 +11,6 @@ from sk120stiff.model import Model
 from sk120stiff.plan import random_pool
 from sk120stiff.robot.coupling import Array
 
-TWINS = {"lost_motion": "friction_hysteresis", "friction_hysteresis": "lost_motion"}
 SAME = 1e-3  # share of the signature that may differ
 
 
@@ -72,10 +71,9 @@ def aliases_by_design(
     columns
         (R, p) whitened columns of each contender.
     """
-    twin = TWINS.get(effect.name)
     found = []
     for other, own in zip(others, columns, strict=True):
-        if other.name != twin or other.where != effect.where:
+        if other.name not in effect.twins or other.where != effect.where:
             continue
         cosine = signature @ own[:, 0] / (np.linalg.norm(signature) * np.linalg.norm(own[:, 0]))
         if abs(cosine) > 1.0 - SAME:

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import effect
 from sk120stiff.explain.detectable import detectable
 from sk120stiff.explain.explanation import Explanation
 from sk120stiff.explain.localise import localise
@@ -56,8 +55,7 @@ def next_poses(
             seed=seed,
             region=Region(lowest=floor),
         )
-        name, _, where = rivals[0].partition(":")
-        rival = effect(model.robot, name, where, poses=situation.poses)
+        rival = answer.effect(rivals[0])
         choice = discriminating_readings(
             model,
             finding.effect,

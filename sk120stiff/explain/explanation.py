@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
-from sk120stiff.effects import Effect
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
 from sk120stiff.explain.adequacy import Adequacy
 from sk120stiff.explain.confirm import Confirmation
 from sk120stiff.explain.notebook import summary_html
@@ -136,6 +136,8 @@ class Explanation:
         For every parameter of the catalogue what would have shown.
     next_poses
         (K, n) coordinates and (K, 6) wrenches to measure next, or None.
+    catalogue
+        The effects that were considered.
     details
         Further figures for reports.
     """
@@ -156,6 +158,7 @@ class Explanation:
     not_observable: tuple[str, ...] = ()
     smallest_detectable: tuple[Detectable, ...] = ()
     next_poses: tuple[Array, Array] | None = None
+    catalogue: Catalogue = CATALOGUE
     details: Mapping[str, Any] = field(default_factory=dict)
 
     @cached_property
@@ -167,6 +170,13 @@ class Explanation:
     def noise_floor(self) -> float | None:
         """Rms per axis that noise alone would give the gap [m]; None where nothing tells it."""
         return self.yardstick.floor
+
+    def effect(self, name: str) -> Effect:
+        """The effect ``name:where`` of the catalogue, as it was considered."""
+        readings = self.base.problem.measurements
+        kind, _, where = name.partition(":")
+        told = Options(poses=readings.poses, timed=readings.time is not None)
+        return self.catalogue.effect(self.base.model.robot, kind, where, told)
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

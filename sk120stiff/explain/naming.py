@@ -8,7 +8,6 @@ import numpy as np
 
 from sk120stiff.effects import Effect
 from sk120stiff.effects.base import Elastic
-from sk120stiff.effects.gear import GearEffect
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.confirm import confirm
@@ -167,7 +166,7 @@ def _caster(found: Attempt, finding: Finding, before: list[Finding]) -> Finding 
 
 def _beside(found: Attempt, effect: Effect, link: Effect) -> bool:
     """Does this yield in proportion to its load, at the link or at a neighbour of it?"""
-    if not isinstance(effect, Elastic) or isinstance(effect, GearEffect):
+    if not isinstance(effect, Elastic) or effect.of_gear:
         return False
     place: dict[str, int] = {}
     for number, joint in enumerate(arm_joints(found.final.model.robot)):
@@ -188,7 +187,7 @@ def _length_alone(found: Attempt, effect: Effect) -> float:
 
 def _of_one_gear(finding: Finding, other: Finding) -> float:
     """`SHADOW` if both effects are laws of one gear."""
-    gears = isinstance(finding.effect, GearEffect) and isinstance(other.effect, GearEffect)
+    gears = finding.effect.of_gear and other.effect.of_gear
     return SHADOW if gears and finding.effect.where == other.effect.where else 0.0
 
 

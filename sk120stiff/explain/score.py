@@ -21,7 +21,6 @@ import numpy as np
 
 from sk120stiff.explain.regression import Index, Regression, Solved, Sums, solve_columns
 
-LESS_USUAL = {"joint_tilt": 1.0}  # breaks ties: an arm rocks on its floor more often than it tilts
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
 PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit
 DRAWN_SIZES = (0.7, 1.5, 3.0, 6.0)  # standard deviations tried, in typical sizes
@@ -90,7 +89,7 @@ def score_set(
 def _price_of_choice(regression: Regression, effect: int, *, tied: bool) -> float:
     """What an effect pays for the variants that are open to it, and for being less usual."""
     count = len(regression.variants[effect]) if tied else 1
-    return 2.0 * float(np.log(count)) + LESS_USUAL.get(regression.candidates[effect].name, 0.0)
+    return 2.0 * float(np.log(count)) + regression.candidates[effect].less_usual
 
 
 def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> tuple[Solved, float]:

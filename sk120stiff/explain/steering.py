@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.effects import BY_NAME, Effect, all_effects, situation_of
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, all_effects, situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -54,20 +54,23 @@ class Options:
         return tuple(said)
 
 
-def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Model:
+def with_assumed(
+    model: Model, used: Measurements, assumed: Sequence[str], catalogue: Catalogue = CATALOGUE
+) -> Model:
     """The model with the effects that the user takes for granted, to be fitted with it."""
-    everything = all_effects(model.robot, poses=used.poses, timed=used.time is not None)
+    everything = _everything(model, used, catalogue)
     situation = situation_of(model.robot, used)
     for wanted in assumed:
         found = [effect for effect in everything if _matches(effect, wanted)]
         if not found:
-            raise _unknown(wanted, model)
+            raise _unknown(wanted, model, catalogue)
+        needed = ", or ".join(dict.fromkeys(e.needs for e in found if e.needs))
         found = [effect for effect in found if effect.applies_to(situation)]
         if not found:
             raise InputError(
                 f"these readings do not hold what {wanted!r} needs",
                 where=str(used.path or "measurements"),
-                remedy="Drift needs a column order or time[s], hysteresis a column branch.",
+                remedy=f"It needs {needed}." if needed else "See what its law takes.",
             )
         for effect in found:
             if effect.id not in {present.id for present in model.effects}:
@@ -75,7 +78,9 @@ def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Mo
     return model
 
 
-def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Effect, ...]:
+def candidates_for(
+    model: Model, used: Measurements, wish: Options, catalogue: Catalogue = CATALOGUE
+) -> tuple[Effect, ...]:
     """Effects of the catalogue that the readings could show and the user does not exclude.
 
     Offsets of single poses are looked for among at most `POSES_WITH_OFFSETS` poses, unless the
@@ -85,10 +90,10 @@ def candidates_for(model: Model, used: Measurements, wish: Options) -> tuple[Eff
     """
     situation = situation_of(model.robot, used)
     present = {effect.id for effect in model.effects}
-    everything = all_effects(model.robot, poses=used.poses, timed=used.time is not None)
+    everything = _everything(model, used, catalogue)
     for wanted in (*wish.only, *wish.exclude):
         if not any(_matches(effect, wanted) for effect in everything):
-            raise _unknown(wanted, model)
+            raise _unknown(wanted, model, catalogue)
     springs = np.isfinite(model.joint_stiffness())
     soft = {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
 
@@ -118,14 +123,18 @@ def _matches(effect: Effect, wanted: str) -> bool:
     return wanted in (effect.name, effect.id)
 
 
-def _unknown(wanted: str, model: Model) -> InputError:
+def _everything(model: Model, used: Measurements, catalogue: Catalogue) -> tuple[Effect, ...]:
+    """Every effect of the catalogue wherever it can act."""
+    timed = used.time is not None
+    return all_effects(model.robot, poses=used.poses, timed=timed, catalogue=catalogue)
+
+
+def _unknown(wanted: str, model: Model, catalogue: Catalogue) -> InputError:
     name, _, where = wanted.partition(":")
-    if name in BY_NAME:
-        places = BY_NAME[name].places(model.robot)
+    if name in catalogue:
+        places = catalogue[name].places(model.robot)
         return InputError(
             f"the effect {name!r} cannot act at {where!r} on {model.robot.name}",
             remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
         )
-    return InputError(
-        f"there is no effect {wanted!r}", remedy=f"Effects are: {', '.join(BY_NAME)}."
-    )
+    return catalogue.unknown(wanted)

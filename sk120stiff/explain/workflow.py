@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sk120stiff.effects import CATALOGUE, Catalogue
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.adequacy import Adequacy, adequacy
 from sk120stiff.explain.best_attempt import best_attempt, held_against
@@ -34,6 +35,7 @@ def explain(
     *,
     holdout: Measurements | None = None,
     options: Options | None = None,
+    catalogue: Catalogue = CATALOGUE,
     progress: Progress | None = None,
 ) -> Explanation:
     """Find where model and readings disagree, name what is missing, add it, judge the rest.
@@ -48,6 +50,8 @@ def explain(
         Readings of other poses, kept out of everything; the gap on them is reported.
     options
         How the search is steered.
+    catalogue
+        The effects that may be missing, ``CATALOGUE + Mine`` with your own.
     progress
         Called with a phrase and a share of the work done.
 
@@ -65,7 +69,7 @@ def explain(
     sound = _sound(model, measurements)
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
-    found, noise = _best_attempt(model, used, wish)
+    found, noise = _best_attempt(model, used, wish, catalogue)
     left = _adequacy(found, noise)
     named = Named()
     allowed = LEFT_OVER
@@ -95,6 +99,7 @@ def explain(
                 unnamed=named.reasons,
                 limits=wish.limits,
                 suspects=tuple(dict.fromkeys([*nearest, *named.doubted])),
+                catalogue=catalogue,
             ),
             wish,
         )
@@ -115,6 +120,7 @@ def explain(
         adequacy=left,
         unnamed=named.reasons,
         limits=wish.limits,
+        catalogue=catalogue,
     )
     tell("what these readings cannot tell", 0.85)
     return _finished(found, answer, wish)
@@ -131,11 +137,11 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
 
 
 def _best_attempt(
-    model: Model, measurements: Measurements, wish: Options
+    model: Model, measurements: Measurements, wish: Options, catalogue: Catalogue
 ) -> tuple[Attempt, NoiseModel]:
     """The attempt that explains most, and the noise that it is held against."""
-    base_model = with_assumed(model, measurements, wish.assume)
-    candidates = candidates_for(base_model, measurements, wish)
+    base_model = with_assumed(model, measurements, wish.assume, catalogue)
+    candidates = candidates_for(base_model, measurements, wish, catalogue)
     plain = tuple(effect for effect in candidates if not effect.exchangeable)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 

@@ -39,9 +39,9 @@ def why_unseen(situation: Situation, parameter: Parameter) -> str | None:
     situation
         Poses (N, n), loads and points of the readings, taken or planned.
     parameter
-        The parameter; only those of `joint_springs` have a reason of this kind.
+        The parameter; only a joint's spring has a reason of this kind.
     """
-    if parameter.effect.name != "joint_springs" or not situation.count:
+    if not parameter.effect.joint_spring or not situation.count:
         return None
     robot, joint = situation.robot, parameter.effect.where
     k = robot.actuated.index(joint)

@@ -4,12 +4,13 @@ Coordinates are z = [a; v], actuated and virtual. A reading is made in five step
 
 1. the load errors turn the reported wrench into the true one, in sensor axes;
 2. the geometric effects shift the unloaded coordinates z₀;
-3. the elastic effects find their common equilibrium z = z₀ + e(J(z)ᵀ W);
+3. the imposed movements s go on top, and the elastic effects find their common equilibrium
+   z = z₀ + s + e(J(z)ᵀ W);
 4. the displacement is x(z) − x(z₀);
 5. the reading errors turn it into what the instrument says.
 
 Derivatives follow from one adjoint solve per reading: with N = I − C K_C at the equilibrium,
-∂x/∂p = (J N⁻¹) ∂e/∂p.
+∂x/∂p = (J N⁻¹) ∂(s + e)/∂p.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from sk120stiff.effects import (
     Effect,
     Elastic,
     Geometric,
+    Imposed,
     LinearElastic,
     LoadError,
     ReadingError,
@@ -66,7 +68,7 @@ class Assembly:
         virtual = [
             joint
             for effect in self.effects
-            if isinstance(effect, Elastic | Geometric)
+            if isinstance(effect, Elastic | Geometric | Imposed)
             for joint in effect.virtual_joints(self.robot)
         ]
         rigid = self.robot.mechanism()
@@ -93,6 +95,14 @@ class Assembly:
             if isinstance(effect, Geometric)
         )
 
+    @cached_property
+    def _imposed(self) -> tuple[tuple[Imposed, slice, Index], ...]:
+        return tuple(
+            (effect, part, self._indices(effect.coordinates(self.robot)))
+            for effect, part in zip(self.effects, self.slices, strict=True)
+            if isinstance(effect, Imposed)
+        )
+
     def _indices(self, names: Sequence[str]) -> Index:
         return np.array([self._coordinate[name] for name in names], dtype=np.intp)
 
@@ -103,6 +113,15 @@ class Assembly:
         for part, index in self._geometric:
             z_0[:, index] += values[part]
         return z_0
+
+    def _moved(self, z_0: Array, situation: Situation, values: Array) -> Array:
+        """(N, n_z) where the coordinates have gone by themselves since the zero reading."""
+        if not self._imposed:
+            return z_0
+        moved = z_0.copy()
+        for effect, part, index in self._imposed:
+            moved[:, index] += effect.shifts(situation) @ values[part]
+        return moved
 
     def solve(self, situation: Situation, values: Array) -> Solution:
         """Equilibrium and reading for N readings and parameter values (P,).
@@ -124,7 +143,7 @@ class Assembly:
         unloaded = self._sagging(z_0, situation, weight, soft)
         rest = equilibrium(
             self.mechanism,
-            z_0,
+            self._moved(z_0, situation, values),
             wrench,
             law,
             point=situation.point,
@@ -221,6 +240,8 @@ class Assembly:
             out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
         for part, index in self._geometric:
             out[:, :, part] += adjoint[:, :, index]
+        for moving, part, index in self._imposed:
+            out[:, :, part] += adjoint[:, :, index] @ moving.shifts(situation)
         return out
 
     def sensitivities(self, solution: Solution, values: Array) -> Array:

@@ -26,8 +26,7 @@ from typing import Any
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sk120stiff.effects import comment_lines, effect
-from sk120stiff.effects.gear import breaks_of
+from sk120stiff.effects import CATALOGUE, Catalogue, comment_lines
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import parse_yaml, read_text, write_atomically
 from sk120stiff.model.former import translated
@@ -126,6 +125,7 @@ def read_model(
     *,
     base: str | None = None,
     tool: str | None = None,
+    catalogue: Catalogue = CATALOGUE,
 ) -> Model:
     """Read a model file, and its robot unless one is given.
 
@@ -137,6 +137,8 @@ def read_model(
         The robot to use the model with.
     base, tool
         Frames in the place of those that the file names, where no robot is given.
+    catalogue
+        The effects that there are, ``CATALOGUE + Mine`` with your own.
 
     Raises
     ------
@@ -159,11 +161,16 @@ def read_model(
             tool=tool or content.tool_frame,
             relative_to=folder,
         )
-    return model_from_text(text, where=str(source), folder=folder, robot=robot)
+    return model_from_text(text, where=str(source), folder=folder, robot=robot, catalogue=catalogue)
 
 
 def model_from_text(
-    text: str, *, where: str = "model", folder: Path | None = None, robot: Robot | None = None
+    text: str,
+    *,
+    where: str = "model",
+    folder: Path | None = None,
+    robot: Robot | None = None,
+    catalogue: Catalogue = CATALOGUE,
 ) -> Model:
     """Read a model from YAML text; a relative robot path is tried from `folder` first."""
     content = _parsed(text, where)
@@ -177,16 +184,11 @@ def model_from_text(
     model = Model(arm, provenance=content.provenance)
     for entry in content.effects:
         place = f"{where}, effect {entry.name}:{entry.where}"
-        entry.parameters = translated(entry.name, entry.parameters, place)
         try:
-            found = effect(
-                arm,
-                entry.name,
-                entry.where,
-                poses=tuple(dict.fromkeys(key.rpartition(".")[0] for key in entry.parameters)),
-                timed=any(item.unit == "m/s" for item in entry.parameters.values()),
-                breaks=breaks_of(entry.parameters),
-            )
+            kind = catalogue[entry.name]
+            entry.parameters = translated(kind, entry.parameters, place)
+            told = kind.options_of({key: item.unit for key, item in entry.parameters.items()})
+            found = catalogue.effect(arm, entry.name, entry.where, told)
         except InputError as error:
             raise InputError(error.what, where=place, remedy=error.remedy) from error
         parameters = [_read(found, spec.name, entry, place) for spec in found.parameters]

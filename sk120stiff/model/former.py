@@ -7,13 +7,13 @@ from typing import TypeVar
 
 from pydantic import BaseModel
 
-from sk120stiff.effects import BY_NAME
+from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError, ToolkitWarning
 
 Value = TypeVar("Value", bound=BaseModel)
 
 
-def translated(name: str, parameters: dict[str, Value], place: str) -> dict[str, Value]:
+def translated(kind: type[Effect], parameters: dict[str, Value], place: str) -> dict[str, Value]:
     """The parameters of an effect under their names of today, former ones with the sign turned.
 
     An instrument's error was once stated as true minus reported, under the former name; today it is
@@ -30,7 +30,7 @@ def translated(name: str, parameters: dict[str, Value], place: str) -> dict[str,
     ToolkitWarning
         Something was translated.
     """
-    former = BY_NAME[name].former if name in BY_NAME else {}
+    former = kind.former
     found: dict[str, Value] = {}
     for key, item in parameters.items():
         now = former.get(key)
@@ -50,7 +50,7 @@ def translated(name: str, parameters: dict[str, Value], place: str) -> dict[str,
         warnings.warn(
             f"{place}: {old} was written by an earlier version, as true minus reported. It is read "
             f"as {', '.join(former[key] for key in parameters if key in former)}, reported minus "
-            f"true, with the other sign. 'sk120stiff effects {name}' says what it means.",
+            f"true, with the other sign. 'sk120stiff effects {kind.name}' says what it means.",
             ToolkitWarning,
             stacklevel=5,
         )

@@ -296,7 +296,7 @@ class Model:
         """(n,) springs of the actuated joints [N·m/rad or N/m]; infinite where rigid."""
         springs = np.full(self.robot.n, np.inf)
         for parameter in self.parameters:
-            if parameter.effect.name == "joint_springs":
+            if parameter.effect.joint_spring:
                 springs[self.robot.actuated.index(parameter.effect.where)] = parameter.public_value
         return springs
 

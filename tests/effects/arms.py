@@ -16,6 +16,7 @@ from sk120stiff.errors import ToolkitWarning
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.robot import Robot, load_robot
 from sk120stiff.robot.anatomy import sample_poses
+from tests.effects.outside import EVERYTHING
 from tests.oracles.sample_urdfs import six_axis_arm
 from tests.robot.loop_arms import four_bar, sk120_loop
 
@@ -74,8 +75,8 @@ LOOPED = ("loop", "four_bar")
 
 
 def every_effect(robot: Robot) -> tuple[Effect, ...]:
-    """All effects of the catalogue at all places, drift by the clock and gears in steps too."""
-    return all_effects(robot, poses=POSES, timed=True)
+    """All effects at all places, two from outside among them, drift by the clock."""
+    return all_effects(robot, poses=POSES, timed=True, catalogue=EVERYTHING)
 
 
 def some_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:

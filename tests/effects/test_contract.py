@@ -1,6 +1,6 @@
 """What every effect of the catalogue must keep to, at every place of several robots.
 
-A new effect is tried here without a line of its own.
+A new effect is tried here without a line of its own, and so are two from outside the package.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from tests.effects.arms import (
     sprung,
     with_every_effect,
 )
+from tests.effects.outside import EVERYTHING
 
 REGISTRY = pint.UnitRegistry()
 CASES = [
@@ -246,7 +247,14 @@ def test_words_and_place(name, found):
     assert found.id == f"{found.name}:{found.where}"
     sentence = found.sentence()
     assert sentence[0].isupper() and sentence.endswith(".") and len(sentence) > 20
-    again = effect(arm(name), found.name, found.where, poses=tuple("ABCDEF"), timed=True)
+    again = effect(
+        arm(name),
+        found.name,
+        found.where,
+        poses=tuple("ABCDEF"),
+        timed=True,
+        catalogue=EVERYTHING,
+    )
     assert again == found and hash(again) == hash(found)
 
 
@@ -268,7 +276,7 @@ def test_models_are_written_and_read_without_loss(name):
     frozen = replace(model.parameters[3], free=False, std=None)
     model = replace(model, parameters=(*model.parameters[:3], frozen, *model.parameters[4:]))
     model = replace(model, provenance={"command": "none", "data": "sha256:0"})
-    again = model_from_text(model_text(model), robot=arm(name))
+    again = model_from_text(model_text(model), robot=arm(name), catalogue=EVERYTHING)
     assert again.names == model.names and again.effects == model.effects
     assert again.provenance == model.provenance
     assert np.allclose(again.values, model.values, rtol=4e-16, atol=0)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import effect, situation_of_load
-from sk120stiff.effects.gear import breaks_of
+from sk120stiff.effects.gear import GearHardening
 from sk120stiff.effects.link_beam import TAPER, gauss_points
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model, Parameter, joint_spring_model
@@ -173,13 +173,17 @@ def test_gear_hardening_in_steps_of_a_data_sheet():
     close(steps(-100, extra_below_120=1e-6, extra_below_240=1e-7), -3 * (120e-6 + 24e-6))
 
 
+def breaks_of(*names):
+    return GearHardening.options_of(dict.fromkeys(names, "rad/(N*m)")).breaks
+
+
 def test_break_torques_are_read_from_names():
-    assert breaks_of(["extra_below_120", "extra_below_0.5"]) == (120.0, 0.5)
-    assert breaks_of(["quadratic", "cubic"]) == ()
+    assert breaks_of("extra_below_120", "extra_below_0.5") == (120.0, 0.5)
+    assert breaks_of("quadratic", "cubic") == ()
     for name in ("extra_below_", "extra_below_x", "extra_below_-3", "extra_below_1e1",
                  "extra_below_nan"):  # fmt: skip
         with pytest.raises(InputError, match="break torque"):
-            breaks_of([name])
+            breaks_of(name)
 
 
 def test_hardening_starts_from_the_weight():

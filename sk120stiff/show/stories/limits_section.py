@@ -91,7 +91,10 @@ def _grouped(names: Sequence[str]) -> list[str]:
 def _sizes(answer: Explanation, visible: Sequence[Detectable]) -> list[tuple[str, str]]:
     """One row for each effect, whatever dots its place and its parameters have in their names."""
     situation = answer.base.problem.situation
-    known = [e.id for e in all_effects(answer.base.model.robot, poses=situation.poses, timed=True)]
+    every = all_effects(
+        answer.base.model.robot, poses=situation.poses, timed=True, catalogue=answer.catalogue
+    )
+    known = [effect.id for effect in every]
     by_effect: dict[str, list[Detectable]] = defaultdict(list)
     for item in visible:
         ids = [name for name in known if item.name.startswith(f"{name}.")]

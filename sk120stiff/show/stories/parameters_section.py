@@ -112,4 +112,4 @@ def _table(
 
 def _short(p: Parameter) -> str:
     """The joint alone where it is a plain joint spring."""
-    return p.effect.where if p.effect.name == "joint_springs" else p.name
+    return p.effect.where if p.effect.joint_spring else p.name

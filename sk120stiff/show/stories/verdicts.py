@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from sk120stiff.effects import effect
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.show.wording import chance, counted, um
 
@@ -58,7 +57,7 @@ def _ambiguous(answer: Explanation) -> str:
     open_ = [f for f in answer.findings if not f.settled]
     said = " ".join(settled)
     for finding in open_:
-        rivals = [_said(answer, name) for name in near(finding)]
+        rivals = [sentence_of(answer, name) for name in near(finding)]
         said += f" {finding.effect.sentence()} Or: {' Or: '.join(rivals[:FEW])}"
         if len(rivals) > FEW:
             said += f" Or one of {counted(len(rivals) - FEW, 'other')}."
@@ -107,11 +106,4 @@ def near(finding: Finding) -> list[str]:
 
 def sentence_of(answer: Explanation, name: str) -> str:
     """What an effect ``name:where`` is, in its own words."""
-    return _said(answer, name)
-
-
-def _said(answer: Explanation, full: str) -> str:
-    name, _, where = full.partition(":")
-    situation = answer.base.problem.situation
-    found = effect(answer.base.model.robot, name, where, poses=situation.poses)
-    return found.sentence()
+    return answer.effect(name).sentence()
