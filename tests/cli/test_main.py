@@ -28,7 +28,7 @@ HEAVY = {
 }
 INFRASTRUCTURE = {
     "__init__", "document", "environment", "explain_output", "frame", "main", "opening", "options",
-    "plan_wishes", "tables", "uncertainty", "visible", "xacro_option",
+    "map_postures", "plan_wishes", "tables", "uncertainty", "visible", "xacro_option",
 }  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """Where the arm of every public robot ends. The table was looked at robot by robot, by hand.
 
-`scripts/10_where_arms_end.py` prints it; a line that changes is to be looked at again.
+`scripts/12_where_arms_end.py` prints it; a line that changes is to be looked at again.
 """
 
 import runpy
@@ -30,5 +30,5 @@ def test_the_table_has_a_line_for_every_robot() -> None:
 def test_the_arm_ends_where_the_table_says(path: Path) -> None:
     if label(path) in EMPTY:
         return
-    row = runpy.run_path(str(HERE.parents[1] / "scripts/10_where_arms_end.py"))["row"]
+    row = runpy.run_path(str(HERE.parents[1] / "scripts/12_where_arms_end.py"))["row"]
     assert row(default_frames(read_urdf(path))) == TABLE[label(path)]

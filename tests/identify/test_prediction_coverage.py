@@ -1,4 +1,4 @@
-"""A smaller run of scripts/08_prediction_coverage.py: the ± of predictions is what it says."""
+"""A smaller run of scripts/10_prediction_coverage.py: the ± of predictions is what it says."""
 
 import numpy as np
 import pytest

@@ -1,6 +1,6 @@
 """Sound readings are not doubted: other arms, missing effects, foreign causes, messy noise.
 
-The long table is scripts/10_slips.py.
+The long table is scripts/11_slips.py.
 """
 
 import pytest

@@ -1,6 +1,6 @@
 """Slips of the pen: how many are found, and how often sound readings are doubted.
 
-Run from the repository:  python scripts/10_slips.py --seeds 5 --blind 20
+Run from the repository:  python scripts/11_slips.py --seeds 5 --blind 20
 """
 
 import argparse

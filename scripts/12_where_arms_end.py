@@ -1,7 +1,7 @@
 """Where the arm ends and what moves it, for every robot of a folder: tool frame, joints, fingers.
 
-    python scripts/10_where_arms_end.py             the robots of the package example-robot-data
-    python scripts/10_where_arms_end.py FOLDER      every .urdf below a folder
+    python scripts/12_where_arms_end.py             the robots of the package example-robot-data
+    python scripts/12_where_arms_end.py FOLDER      every .urdf below a folder
 
 These are the defaults that a command takes when nobody gives --base and --tool. Other ends of the
 robot are other arms, legs or heads, with the joints before them; fingers are held still. The public

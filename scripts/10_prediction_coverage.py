@@ -1,7 +1,7 @@
 """Do 95 % intervals of predicted deflections hold the truth at new poses? Two arms, and each with
 structure that the fitted model lacks. The data come from a generator of their own.
 
-Run from the repository:  python scripts/08_prediction_coverage.py --count 200
+Run from the repository:  python scripts/10_prediction_coverage.py --count 200
 """
 
 import argparse
