@@ -44,6 +44,16 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class Remainder:
+    """What the answer says is left beyond the noise: rms per axis [um] with its 95 % interval."""
+
+    rms: float
+    low: float
+    high: float
+    significant: bool
+
+
+@dataclass(frozen=True)
 class Answer:
     """One verdict. Every named effect is the set of names between which it does not decide."""
 
@@ -51,6 +61,10 @@ class Answer:
     effects: list[frozenset[str]] = field(default_factory=list)
     parameters: dict[str, Parameter] = field(default_factory=dict)  # identity.short name -> value
     next_poses: bool = False
+    remainder: Remainder | None = None  # None: the answer says nothing of it
+    # (names of which one is at work, stated probability)
+    named: list[tuple[frozenset[str], float]] = field(default_factory=list)
+    listed: list[tuple[frozenset[str], float]] = field(default_factory=list)
     seconds: float = 0.0
 
     @property
@@ -73,8 +87,10 @@ def read_answer(folder: Path) -> Answer:
         return Answer("refused" if refused else "error", seconds=seconds)
     effects: list[frozenset[str]] = []
     parameters: dict[str, Parameter] = {}
+    named: list[tuple[frozenset[str], float]] = []
     for entry in document.get("effects", []):
         effects += _members(entry)
+        named += [(group, p) for group in _members(entry) for p in _probability(entry)]
         _collect(parameters, entry["name"], entry.get("where", ""), entry.get("parameters", []))
     _collect_model(parameters, folder / "model.yaml")
     return Answer(
@@ -82,8 +98,44 @@ def read_answer(folder: Path) -> Answer:
         effects=effects,
         parameters=parameters,
         next_poses=bool(document.get("next_poses")) and (folder / "next_poses.csv").exists(),
+        remainder=_remainder(document.get("remainder")),
+        named=named,
+        listed=_listed(document),
         seconds=seconds,
     )
+
+
+def _remainder(entry: object) -> Remainder | None:
+    """The remainder, if all of it is told."""
+    if not isinstance(entry, dict):
+        return None
+    try:
+        low, high = (float(end) for end in entry["interval_95"])
+        return Remainder(float(entry["rms_um"]), low, high, bool(entry["significant"]))
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def _probability(entry: dict) -> list[float]:  # type: ignore[type-arg]
+    """The stated probability, or nothing."""
+    value = entry.get("probability")
+    return [float(value)] if isinstance(value, (int, float)) else []
+
+
+# entries that speak of no single cause
+NO_CAUSE = {"none", "other", "outside", "something_else", "something else"}
+
+
+def _listed(document: dict) -> list[tuple[frozenset[str], float]]:  # type: ignore[type-arg]
+    """Every candidate of `probabilities` with what is said of it; `name:where`, or both keys."""
+    out = []
+    for entry in document.get("probabilities") or []:
+        text = str(entry["name"])
+        if text in NO_CAUSE:
+            continue
+        own = identity(text, str(entry["where"])) if entry.get("where") else identity_of(text)
+        out += [(frozenset({own}), p) for p in _probability(entry)]
+    return out
 
 
 def _json(path: Path) -> dict | None:  # type: ignore[type-arg]

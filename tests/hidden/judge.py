@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .answers import Answer, identity, identity_of
+from .families import GEAR, HYSTERETIC, REVERSIBLE, family
 
 TOLD_APART = 3.3  # sqrt(lambda) below which the data cannot tell two causes apart
 NEGLIGIBLE = 4.0  # a hidden cause this weak beyond the others need not be found
@@ -47,6 +48,10 @@ def mark(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
         return _pair(truth, answer)
     if level == "L5":
         return _class(truth, answer)
+    if level == "L10":
+        return _families(truth, answer)
+    if level == "L12":
+        return _beside(truth, answer)
     return _names(truth, answer)
 
 
@@ -87,6 +92,73 @@ def _names(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     if wrong or missed:
         return 0.0, wrong, f"{answer.verdict} {_spell(answer)}"
     return credit, 0, "" if credit == 1.0 else f"as one of a set: {_spell(answer)}"
+
+
+def kin(name: str) -> frozenset[str]:
+    """Identities of the whole family of an identity, at its place."""
+    own, _, where = name.partition(":")
+    return frozenset(identity(member, where) for member in family(own))
+
+
+def _families(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """Family and place of every cause. A set answer counts one by the number of families in it; a
+    second name for a gear's curve that is already named halves, and is wrong only if it speaks of
+    a loop where there is none or if the right family is not named at all."""
+    open_kin = {name: kin(name) for name in true_names(truth)}
+    left = {n: e["left"] >= NEGLIGIBLE for n, e in zip(open_kin, truth["effects"], strict=True)}
+    found: set[str] = set()
+    rest: list[frozenset[str]] = []
+    credit = 1.0
+    for group in sorted(answer.effects, key=len):
+        hit = sorted(n for n, members in open_kin.items() if group & members and n not in found)
+        if hit:
+            found.add(hit[0])
+            credit /= len({kin(member) for member in group})
+        else:
+            rest.append(group)
+    again = [group for group in rest if any(group & _curve(name) for name in found)]
+    wrong = len(rest) - len(again)
+    credit /= 2.0 ** len(again)
+    missed = [name for name in open_kin if left[name] and name not in found]
+    if wrong or missed:
+        return 0.0, wrong, f"{answer.verdict} {_spell(answer)}"
+    return credit, 0, "" if credit == 1.0 else f"not alone: {_spell(answer)}"
+
+
+def _curve(name: str) -> frozenset[str]:
+    """Names that describe the same gear's curve once more: a loop has a mean course too, a curve
+    without a loop has no friction."""
+    own, _, where = name.partition(":")
+    if own not in GEAR:
+        return frozenset()
+    again = GEAR if own in HYSTERETIC else REVERSIBLE
+    return frozenset(identity(member, where) for member in again)
+
+
+def _beside(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """The known cause named, and beside it a significant remainder whose interval holds."""
+    share, wrong, note = _names(truth, answer)
+    if share == 0.0:
+        return share, wrong, note
+    told, true = answer.remainder, truth["remainder_um"]
+    named = f"{_spell(answer)} named, remainder"
+    if told is None:
+        return 0.0, 0, f"{named} missing (true {true:.1f} um)"
+    if not told.significant:
+        return 0.0, 0, f"{named} not significant (true {true:.1f} um)"
+    if not told.low <= true <= told.high:
+        return 0.0, 0, f"{named} {told.low:.1f} to {told.high:.1f} um without {true:.1f}"
+    return share, 0, note
+
+
+def at_work(truth: dict[str, Any], group: frozenset[str]) -> bool:
+    """Whether one of these names is truly at work; at L10 the family counts, at L5 the class."""
+    names = true_names(truth)
+    if truth["level"] == "L5":
+        names += [identity_of(text) for text in truth["accepted"]]
+    if truth["level"] == "L10":
+        names = [member for name in names for member in kin(name)]
+    return bool(group & set(names))
 
 
 def _pair(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
@@ -132,7 +204,7 @@ def coverage(truth: dict[str, Any], answer: Answer, share: float) -> tuple[list[
 
     Only asked where the named set is exactly right: elsewhere the model is another one.
     """
-    if share < 1.0 or truth["level"] in {"L5", "L7"}:
+    if share < 1.0 or truth["level"] in {"L5", "L7", "L10"}:  # L10: no such parameter is exact
         return [], []
     effects, springs = [], []
     for entry in truth["effects"]:

@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from .answers import Answer, read_answer, read_predictions
-from .judge import Mark, coverage, heldout_ratio, mark
+from .answers import Answer, identity, read_answer, read_predictions
+from .calibration import calibration, reliability, stated
+from .judge import Mark, coverage, heldout_ratio, kin, mark
 from .run import digest
 from .settling import settles
 
@@ -35,6 +36,10 @@ GOALS: dict[str, tuple[str, float | None, float | None]] = {
     "L7": ("not in the catalogue", None, 0.20),
     "L8": ("clean, messy noise", 0.98, None),
     "L9": ("unknown robot, all at once", None, None),
+    "L10": ("right in kind, wrong in detail", 0.80, 0.03),
+    "L12": ("known and foreign together", 0.80, None),
+    "L1.plans": ("L1, other plans and noise", 0.95, None),
+    "L2.plans": ("L2, other plans and noise", 0.90, None),
 }
 
 
@@ -111,6 +116,25 @@ def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[s
     }
 
 
+STRENGTHS = ((0.0, 25.0), (25.0, 60.0), (60.0, float("inf")))
+
+
+def by_strength(cases: list[tuple[dict[str, Any], Answer, Mark]]) -> list[str]:
+    """How often a cause of L10 is named, by its visibility: a larger one never less often."""
+    found: list[tuple[float, bool]] = []
+    for truth, answer, _ in cases:
+        for entry in truth["effects"]:
+            members = kin(identity(entry["name"], entry["where"]))
+            found.append((entry["left"], any(group & members for group in answer.effects)))
+    out = []
+    for low, high in STRENGTHS:
+        hits = [hit for left, hit in found if low <= left < high]
+        if hits:
+            out.append(f"L10 causes that leave {low:.0f} to {high:.0f}: {sum(hits)} of {len(hits)} "
+                       "named with family and place")  # fmt: skip
+    return out
+
+
 def _percent(value: float | None) -> str:
     return "" if value is None else f"{100 * value:.0f}"
 
@@ -180,7 +204,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hits:
             held = 100.0 * sum(hits) / len(hits)
             print(f"over all levels 95 % intervals hold {held:.1f} % of {len(hits)} {what}")
+    calibrated = {
+        what: calibration(pairs)
+        for what, pairs in stated((truth, answer) for truth, answer, _ in judged.values()).items()
+    }
+    for what, found in calibrated.items():
+        print(reliability(what, found) if found else f"no probabilities of {what} are told")
+    for text in by_strength([entry for entry in judged.values() if entry[0]["level"] == "L10"]):
+        print(text)
     document = {
+        "calibration": {what: found and asdict(found) for what, found in calibrated.items()},
         "frozen": {key: frozen[key] for key in ("program", "when", "batched")},
         "levels": rows,
         "cases": {

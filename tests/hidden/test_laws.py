@@ -244,9 +244,9 @@ def test_turned_rocking_is_a_turned_compliance() -> None:
 
 def test_warm_up_ends() -> None:
     world, rows = world_rows("ascending", poses=20)
-    cause = WarmUp("tracker", {"x": 2e-5, "z": -1e-5}, {"time": 15.0})
+    cause = WarmUp("tracker", {"x": 2e-6, "z": -1e-6}, {"time": 15.0})
     change = world.with_causes(cause).displacement(rows) - world.displacement(rows)
-    whole = np.array([2e-5, 0.0, -1e-5])
+    whole = 15.0 * np.array([2e-6, 0.0, -1e-6])
     first = np.exp(-rows.zero_order[0] / 15.0) - np.exp(-rows.order[0] / 15.0)
     assert np.allclose(change[0], first * whole, atol=1e-17)
     assert np.abs(change[rows.order > 72]).max() < 0.02 * np.abs(change).max()

@@ -21,14 +21,15 @@ SEED = 20
 def scored(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[dict[str, Any]]]:
     """Level -> marks of its cases."""
     folder: Path = tmp_path_factory.mktemp("hidden")
-    make_cases.main(["--count", "2", "--seed", str(SEED), "--out", str(folder)])
+    levels = ",".join(f"L{number}" for number in range(10))
+    make_cases.main(["--levels", levels, "--count", "2", "--seed", str(SEED), "--out", str(folder)])
     run.main([str(folder), "--batch", "--jobs", "2", "--timeout", "120"])
     score.main([str(folder), "--failures"])
     document = json.loads((folder / "score.json").read_text(encoding="utf-8"))
-    levels: dict[str, list[dict[str, Any]]] = {}
+    marks: dict[str, list[dict[str, Any]]] = {}
     for entry in document["cases"].values():
-        levels.setdefault(entry["level"][:2], []).append(entry)
-    return levels
+        marks.setdefault(entry["level"][:2], []).append(entry)
+    return marks
 
 
 pytestmark = pytest.mark.timeout(1200)

@@ -8,6 +8,7 @@ from .case import Case
 from .equilibrium import NoEquilibrium
 from .levels import Builder, NotThisTime, clean, pair, several, single
 from .levels_hard import alias, clean_messy, outside, wild
+from .levels_real import beside, lifelike, otherwise
 
 BUILDERS: dict[str, Builder] = {
     "L0": clean,
@@ -20,6 +21,10 @@ BUILDERS: dict[str, Builder] = {
     "L7": outside,
     "L8": clean_messy,
     "L9": wild,
+    "L10": lifelike,
+    "L12": beside,
+    "L1.plans": otherwise,
+    "L2.plans": otherwise,
 }
 
 
@@ -29,7 +34,7 @@ def build(level: str, seed: int, number: int) -> Case:
     Draws that cannot show what the level asks for are thrown away; the number of throws is part
     of the seed, so a case stays the same.
     """
-    index = sorted(BUILDERS).index(level)
+    index = list(BUILDERS).index(level)  # new levels come last: seeds of old ones stay
     for attempt in range(200):
         key = (seed, index, number, attempt)
         rng = np.random.default_rng(key)

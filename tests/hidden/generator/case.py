@@ -79,6 +79,9 @@ class Case:
                 "outliers": self.noise.outliers,
                 "outlier_um": 1e6 * self.noise.outlier_size,
                 "wander_um": 1e6 * self.noise.wander,
+                "along": self.noise.along,
+                "warm_up_um": 1e6 * self.noise.warm_up,
+                "declared": dict(self.noise.declared),
             },
             # what the best possible model predicts: chance zeros of new poses are in nobody's model
             "oracle": np.round(self.foreseeable(self.sealed), 10).tolist(),

@@ -73,14 +73,14 @@ class TurnedRocking(Cause):
 
 @dataclass(frozen=True)
 class WarmUp(Cause):
-    """The tracker drifts while it warms up: fast at first, then no more. Sizes: x, y, z [m], the
-    whole way; option time, in readings."""
+    """The tracker drifts while it warms up: fast at first, then no more. Sizes: x, y, z
+    [m per reading], the rate at first; option time, in readings."""
 
     name: ClassVar[str] = "reading_drift"
 
     def reading(self, displacement: Array, scene: Scene, after: Rest) -> Array:
         time = float(self.options["time"])
         rows = scene.rows
-        gone = np.exp(-rows.zero_order / time) - np.exp(-rows.order / time)
-        whole = np.array([self.size("x"), self.size("y"), self.size("z")])
-        return displacement + gone[:, None] * whole
+        gone = time * (np.exp(-rows.zero_order / time) - np.exp(-rows.order / time))
+        rate = np.array([self.size("x"), self.size("y"), self.size("z")])
+        return displacement + gone[:, None] * rate

@@ -9,11 +9,20 @@ from .mechanism import Mechanism
 from .rotations import Array
 from .rows import Rows
 
-SCHEDULES = ("ascending", "scattered", "up_down", "repeated", "one_direction")
+SCHEDULES = ("ascending", "scattered", "up_down", "repeated", "one_direction", "single",
+             "three_axes", "ladder", "reloads")  # fmt: skip
 
 
-def random_poses(arm: Arm, count: int, rng: np.random.Generator) -> dict[str, Array]:
-    """Joint coordinates (count,) within limits, tool clear of the column, linkage not folded."""
+def random_poses(
+    arm: Arm, count: int, rng: np.random.Generator, clusters: int = 0
+) -> dict[str, Array]:
+    """Joint coordinates (count,) within limits, tool clear of the column, linkage not folded.
+
+    `clusters`: a technician goes to that many places and measures around each of them, all joints
+    within a twelfth of their range.
+    """
+    if clusters:
+        return _clustered(arm, count, rng, clusters)
     kept: dict[str, list[float]] = {name: [] for name in arm.actuated}
     mechanism = Mechanism(arm)
     while len(kept[arm.actuated[0]]) < count:
@@ -34,6 +43,17 @@ def random_poses(arm: Arm, count: int, rng: np.random.Generator) -> dict[str, Ar
     return {name: np.array(values) for name, values in kept.items()}
 
 
+def _clustered(arm: Arm, count: int, rng: np.random.Generator, clusters: int) -> dict[str, Array]:
+    centres = random_poses(arm, clusters, rng)
+    owner = np.arange(count) * clusters // count  # one place after the other
+    out = {}
+    for name in arm.actuated:
+        low, high = arm.limits[name]
+        near = centres[name][owner] + (high - low) / 12.0 * rng.uniform(-1.0, 1.0, count)
+        out[name] = np.clip(near, low, high)
+    return out
+
+
 def _direction(rng: np.random.Generator) -> Array:
     vector = rng.normal(size=3)
     return vector / np.linalg.norm(vector)
@@ -51,14 +71,17 @@ def plan(
     moments: bool = False,
     point: Array | None = None,
     force_point: Array | None = None,
+    clusters: int = 0,
 ) -> Rows:
     """Random poses, and for each of them a series of loads after its zero reading.
 
     `ascending`: one direction per pose, rising; `scattered`: a direction per row; `up_down`:
     rising and falling; `repeated`: rising, every reading twice; `one_direction`: the same
-    direction at all poses.
+    direction at all poses; `single`: one load at every pose; `three_axes`: the full load along each
+    axis of the base, either way; `ladder`: up, down, and the same as a pull; `reloads`: the whole
+    series rising, taken off, and rising again.
     """
-    chosen = random_poses(arm, poses, rng)
+    chosen = random_poses(arm, poses, rng, clusters)
     full = arm.typical.force
     everywhere = _direction(rng)
     index, force, branch, repeat, order, zero_order = [], [], [], [], [], []
@@ -73,6 +96,15 @@ def plan(
             steps += [(level, -1, 1) for level in levels[-2::-1]]
         if schedule == "repeated":
             steps = [(level, 1, number) for level in levels for number in (1, 2)]
+        if schedule == "single":
+            steps = [(full * rng.uniform(0.6, 1.0), 1, 1)]
+        if schedule == "three_axes":
+            steps = [(full * way, 1, 1) for way in rng.choice([-1.0, 1.0], 3)]
+        if schedule == "ladder":
+            steps += [(level, -1, 1) for level in levels[-2::-1]]
+            steps += [(-level, way, again) for level, way, again in steps]
+        if schedule == "reloads":
+            steps += [(level, 1, 2) for level in levels]
         for number, (level, way, again) in enumerate(steps):
             if number == 0 or not shared_zero:
                 zero = clock
@@ -80,6 +112,8 @@ def plan(
             if schedule == "scattered":
                 direction = _direction(rng)
                 level = full * rng.uniform(0.4, 1.0)
+            if schedule == "three_axes":
+                direction = np.eye(3)[number]
             index.append(pose)
             force.append(level * direction)
             branch.append(way)

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tests.hidden.families import GEAR, family
+
 from .arm import Arm
 from .case import Case, Hidden
 from .design import plan
@@ -19,6 +21,9 @@ from .sk120 import sk120
 from .world import Cause, World
 
 Rng = np.random.Generator
+# what a cause needs to show itself is listed with the plainer schedules
+SHOWN_BY = {"single": "scattered", "three_axes": "scattered", "ladder": "up_down",
+            "reloads": "repeated"}  # fmt: skip
 PAIR = 12.0  # degrees between two causes below which they are a near pair
 
 
@@ -42,6 +47,7 @@ class Setting:
     force_frame: str
     seed: tuple[int, ...]
     schedule: str
+    plan: str = "usual"
 
     def case(self, causes: Sequence[Cause], **keywords: object) -> Case:
         return Case(
@@ -72,6 +78,9 @@ def setting(
     noise: Noise | None = None,
     urdf: str | None = None,
     sigma: tuple[float, float] = (4e-6, 20e-6),
+    poses: int = 20,
+    loads: int = 5,
+    clusters: int = 0,
 ) -> Setting:
     """A random experiment; what is given stays fixed."""
     if arm is None:
@@ -99,9 +108,11 @@ def setting(
         "point": point,
         "force_point": force_point,
         "schedule": schedule,
+        "loads": loads,
     }
-    train = plan(arm, rng, poses=20, **keywords)  # type: ignore[arg-type]
-    holdout = plan(arm, rng, poses=10, first_pose=101, **keywords)  # type: ignore[arg-type]
+    half = (poses + 1) // 2
+    train = plan(arm, rng, poses=poses, clusters=clusters, **keywords)  # type: ignore[arg-type]
+    holdout = plan(arm, rng, poses=half, first_pose=101, **keywords)  # type: ignore[arg-type]
     sealed = plan(arm, rng, poses=10, first_pose=201, **keywords)  # type: ignore[arg-type]
     return Setting(
         level, arm, urdf, World(arm, varied(arm, rng)), train, holdout, sealed, noise, positions,
@@ -112,7 +123,7 @@ def setting(
 def shows(choice: Choice, at: Setting) -> bool:
     """Whether the experiment can show the cause at all."""
     ways = {
-        at.schedule,
+        SHOWN_BY.get(at.schedule, at.schedule),
         "positions" if at.positions else "",
         "" if at.noise.shared_zero else "separate",
     }
@@ -143,7 +154,11 @@ def hide(at: Setting, cause: Cause, seen: View, table: Blocks) -> Hidden:
 def single(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
     """L1 to L3: one cause of a given strength, told apart from all others at L1 and L2."""
     low, high = {"L1": (26.0, 80.0), "L2": (8.0, 25.0), "L3": (4.0, 8.0)}[level]
-    at = setting(level, seed, rng)
+    return one(setting(level, seed, rng), rng, low, high, apart=0.0 if level == "L3" else 4.0)
+
+
+def one(at: Setting, rng: Rng, low: float, high: float, *, apart: float) -> Case:
+    """One cause of a strength between the two; every other leaves `apart` of it or more."""
     chosen = pick([c for c in choices(at.arm) if shows(c, at)], rng)
     seen = view(at.world, at.train, at.noise)
     cause = tuned(seen, chosen.make(rng), float(np.exp(rng.uniform(np.log(low), np.log(high)))))
@@ -152,9 +167,9 @@ def single(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
     hidden = hide(at, cause, seen, blocks(seen, unit_causes(at.arm)))
     nearest = hidden.rivals[0]
     # pairs under 12 degrees and exact aliases are the business of L4 and L5
-    if nearest.angle < PAIR or (level != "L3" and nearest.separation < 4.0):
+    if nearest.angle < PAIR or nearest.separation < apart:
         raise NotThisTime(f"{cause.name} looks like {nearest.name}")
-    return at.case([cause], hidden=[hidden])
+    return at.case([cause], hidden=[hidden], note="" if at.plan == "usual" else at.plan)
 
 
 def clean(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
@@ -192,13 +207,26 @@ def several(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
 
 
 def together(
-    at: Setting, rng: Rng, count: int, *, low: float, high: float, least: float, apart: float
+    at: Setting,
+    rng: Rng,
+    count: int,
+    *,
+    low: float,
+    high: float,
+    least: float,
+    apart: float,
+    pool: Sequence[Choice] | None = None,
 ) -> tuple[list[Cause], list[Hidden]]:
     """Causes of given strengths, each with at least `least` left beyond all the others' columns,
-    and no single other candidate within `apart` of it."""
+    and no single other candidate within `apart` of it.
+
+    `pool`: causes whose laws are not the catalogue's; names of one family are then no rivals."""
     seen = view(at.world, at.train, at.noise)
     table = blocks(seen, unit_causes(at.arm))
-    options = [c for c in choices(at.arm) if shows(c, at)]
+    options = [c for c in (choices(at.arm) if pool is None else pool) if shows(c, at)]
+    if not options:
+        raise NotThisTime("nothing shows")
+    kin = pool is not None
     causes: list[Cause] = []
     for _ in range(40):
         if len(causes) == count:
@@ -206,20 +234,22 @@ def together(
         chosen = pick(options, rng)
         if any((chosen.name, chosen.where) == (c.name, c.where) for c in causes):
             continue
+        if kin and any(c.name in GEAR and chosen.where == c.where for c in causes):
+            continue  # one curve for each gear
         cause = tuned(seen, chosen.make(rng), float(np.exp(rng.uniform(*np.log((low, high))))))
         if cause is None:
             continue
         trial = [*causes, cause]
-        if min(entry.left for entry in _crowd(seen, trial, table)) >= least:
-            entries = _crowd(seen, trial, table)
+        if min(entry.left for entry in _crowd(seen, trial, table, kin)) >= least:
+            entries = _crowd(seen, trial, table, kin)
             if min(entry.rivals[0].separation for entry in entries) >= apart:
                 causes = trial
     if len(causes) < count:
         raise NotThisTime("no such set")
-    return causes, _crowd(seen, causes, table)
+    return causes, _crowd(seen, causes, table, kin)
 
 
-def _crowd(seen: View, causes: Sequence[Cause], table: Blocks) -> list[Hidden]:
+def _crowd(seen: View, causes: Sequence[Cause], table: Blocks, kin: bool = False) -> list[Hidden]:
     vectors = [signature(seen, cause) for cause in causes]
     own = {(c.name, c.where): k for k, c in enumerate(causes)}
     columns = dict(zip(table.names, table.columns, strict=True))
@@ -233,6 +263,8 @@ def _crowd(seen: View, causes: Sequence[Cause], table: Blocks) -> list[Hidden]:
         known = np.concatenate(others, axis=1) if others else np.zeros((len(vectors[k]), 0))
         found = rivals(vectors[k], (cause.name, cause.where), table, known)
         rest = [r for r in found if (r.name, r.where) not in own and not nested_in(cause.name, r)]
+        if kin:
+            rest = [r for r in rest if r.where != cause.where or r.name not in family(cause.name)]
         left = beyond(vectors[k], known)
         out.append(Hidden(cause, float(np.linalg.norm(vectors[k])), left, rest))
     return out

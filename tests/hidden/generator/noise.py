@@ -23,6 +23,8 @@ class Noise:
     outliers: float = 0.0  # share of readings
     outlier_size: float = 0.0  # [m]
     wander: float = 0.0  # [m] per root of reading, random walk of the tracker
+    warm_up: float = 0.0  # [m] whole way that the tracker drifts while it warms up
+    warm_time: float = 20.0  # readings after which a third of that way is left
     declared: dict[str, object] = field(default_factory=dict)  # the YAML's words, if not the truth
 
     def _own(self, displacement: Array, position: Array) -> tuple[Array, Array]:
@@ -38,7 +40,7 @@ class Noise:
         return zero + grown[:, None, None] * np.eye(3), zero
 
     def covariance(self, rows: Rows, displacement: Array, position: Array) -> Array:
-        """Covariance (3N, 3N) of the displacements, outliers and wander left out."""
+        """Covariance (3N, 3N) of the displacements, outliers, wander and warm-up left out."""
         loaded, zero = self._own(displacement, position)
         count = rows.count
         out = np.zeros((count, 3, count, 3))
@@ -78,4 +80,9 @@ class Noise:
             walk = np.cumsum(self.wander * rng.normal(size=(steps, 3)), axis=0)
             error = error + walk[rows.order.astype(int)]
             zero_error = zero_error + walk[rows.zero_order.astype(int)]
+        if self.warm_up > 0.0:
+            way = rng.normal(size=3)
+            way *= self.warm_up / np.linalg.norm(way)
+            error = error - np.exp(-rows.order / self.warm_time)[:, None] * way
+            zero_error = zero_error - np.exp(-rows.zero_order / self.warm_time)[:, None] * way
         return error, zero_error
