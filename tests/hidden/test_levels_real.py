@@ -109,7 +109,7 @@ def test_lifelike_causes_are_drawn_with_places_of_the_catalogue(make) -> None:  
         change = np.abs(world.with_causes(cause).displacement(rows) - still).max()
         assert 1e-8 < change < 5e-3
         none = world.with_causes(cause.scaled(0.0)).displacement(rows)
-        assert np.allclose(none, still, rtol=0, atol=1e-15)
+        assert np.allclose(none, still, rtol=0, atol=1e-12)
 
 
 @pytest.fixture(scope="module")
