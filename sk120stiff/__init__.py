@@ -1,29 +1,57 @@
-"""Stiffness of robot arms under load: predict it, identify it, find what the model is missing."""
+"""Stiffness of robot arms under load: predict it, identify it, find what the model is missing.
+
+>>> import sk120stiff as sk
+>>> robot = sk.load_robot("motoman_sk120")
+>>> model = sk.base_model(robot)
+>>> model.deflect([0, 0.2, -0.3, 0, -1, 0], [0, 0, -490, 0, 0, 0]).shape  # (N, 3) [m]
+(1, 3)
+
+`load_robot`, `read`, `read_model` open files; `stiffness`, `predict`, `simulate` compute what a
+model says; `fit`, `explain` hold it against measurements; `plan`, `compensate` use it.
+
+`explain`, `plan` and `stiffness` are folders of the package too. As names of the package they are
+always the functions, whatever was imported before; what is in the folders is had by
+``from sk120stiff.explain import localise``.
+"""
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from sk120stiff.effects import CATALOGUE, Catalogue, Effect, effect
     from sk120stiff.errors import InputError, Refusal, ToolkitError, ToolkitWarning
+    from sk120stiff.explain.explanation import Explanation
+    from sk120stiff.explain.workflow import explain
     from sk120stiff.identify.estimate import fit
     from sk120stiff.identify.fit import Fit
     from sk120stiff.measurements import Measurements, read_measurements, write_measurements
+    from sk120stiff.measurements import read_measurements as read
     from sk120stiff.model import (
         Model,
         base_model,
         joint_spring_model,
         loaded_stiffness,
+        predict,
         read_model,
         write_model,
     )
+    from sk120stiff.model import loaded_stiffness as stiffness
+    from sk120stiff.plan.planned import plan
+    from sk120stiff.plan.simulation import simulate
     from sk120stiff.robot import Robot, load_robot
+    from sk120stiff.robot.bundled import bundled_robots
+    from sk120stiff.workspace.compensate import compensate
 
 # Public name → the module that holds it. Nothing is imported before a name is asked for.
-# A name that is also a folder's (explain, plan) cannot stand here: importing the folder would
-# overwrite it.
 _HOME = {
+    "CATALOGUE": "sk120stiff.effects",
+    "Catalogue": "sk120stiff.effects",
+    "Effect": "sk120stiff.effects",
+    "Explanation": "sk120stiff.explain.explanation",
     "Fit": "sk120stiff.identify.fit",
     "InputError": "sk120stiff.errors",
     "Measurements": "sk120stiff.measurements",
@@ -33,17 +61,31 @@ _HOME = {
     "ToolkitError": "sk120stiff.errors",
     "ToolkitWarning": "sk120stiff.errors",
     "base_model": "sk120stiff.model",
+    "bundled_robots": "sk120stiff.robot.bundled",
+    "compensate": "sk120stiff.workspace.compensate",
+    "effect": "sk120stiff.effects",
+    "explain": "sk120stiff.explain.workflow",
     "fit": "sk120stiff.identify.estimate",
     "joint_spring_model": "sk120stiff.model",
     "load_robot": "sk120stiff.robot",
     "loaded_stiffness": "sk120stiff.model",
+    "plan": "sk120stiff.plan.planned",
+    "predict": "sk120stiff.model",
+    "read": "sk120stiff.measurements",
     "read_measurements": "sk120stiff.measurements",
     "read_model": "sk120stiff.model",
+    "simulate": "sk120stiff.plan.simulation",
+    "stiffness": "sk120stiff.model",
     "write_measurements": "sk120stiff.measurements",
     "write_model": "sk120stiff.model",
 }
+_CALLED_THERE = {"read": "read_measurements", "stiffness": "loaded_stiffness"}
 
 __all__ = [
+    "CATALOGUE",
+    "Catalogue",
+    "Effect",
+    "Explanation",
     "Fit",
     "InputError",
     "Measurements",
@@ -53,15 +95,28 @@ __all__ = [
     "ToolkitError",
     "ToolkitWarning",
     "base_model",
+    "bundled_robots",
+    "compensate",
+    "effect",
+    "explain",
     "fit",
     "joint_spring_model",
     "load_robot",
     "loaded_stiffness",
+    "plan",
+    "predict",
+    "read",
     "read_measurements",
     "read_model",
+    "simulate",
+    "stiffness",
     "write_measurements",
     "write_model",
 ]
+
+
+def _found(name: str) -> object:
+    return getattr(import_module(_HOME[name]), _CALLED_THERE.get(name, name))
 
 
 def __getattr__(name: str) -> object:
@@ -71,10 +126,34 @@ def __getattr__(name: str) -> object:
         return version("sk120stiff")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(_HOME[name]), name)
+    value = _found(name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__, "__version__"})
+
+
+class _Verb:
+    """A name that stays the function when Python hangs the folder of that name into the package."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, module: object, owner: type | None = None) -> object:
+        return _found(self._name)
+
+    def __set__(self, module: object, folder: object) -> None:
+        """Nothing: the folder is found by ``from sk120stiff.explain import ...`` all the same."""
+
+
+class _FrontDoor(ModuleType):
+    """This package, with the verbs that are folders too."""
+
+    explain = _Verb()
+    plan = _Verb()
+    stiffness = _Verb()
+
+
+sys.modules[__name__].__class__ = _FrontDoor

@@ -27,6 +27,7 @@ from sk120stiff.plan import (
     lowest_points,
     random_choice,
     rivalry,
+    to_be_taken,
     well_spread,
 )
 from sk120stiff.robot import Robot
@@ -338,33 +339,16 @@ def _plan(
     model: Model, pool: Pool, rows: Sequence[int], known: Measurements | None
 ) -> tuple[list[dict[str, object]], Measurements]:
     """The chosen readings, those of one pose together, as JSON and as measurements to be taken."""
-    situation = pool.situation.rows(np.array(sorted(rows), dtype=np.intp))
-    _, index = np.unique(situation.a, axis=0, return_inverse=True)
-    order = {pose: k for k, pose in enumerate(dict.fromkeys(index.tolist()))}
-    labels = tuple(f"p{order[pose] + 1}" for pose in index.tolist())
     robot = model.robot
-    plan = Measurements(
-        pose=labels,
-        joint_names=robot.actuated,
-        joint_kinds=tuple("length" if slides else "angle" for slides in robot.prismatic),
-        joints=situation.a,
-        wrench=situation.wrench,
-        displacement=None,
-        robot=robot.source,
-        base_frame=robot.base_frame,
-        tool_frame=robot.tool_frame,
-        point=situation.point,
-        force_point=situation.force_point,
-        zero="unknown" if known is None else known.zero,
-        source="poses and loads chosen by 'sk120stiff plan'",
-    )
+    zero = "unknown" if known is None else known.zero
+    plan = to_be_taken(robot, pool, rows, zero=zero)
     poses: list[dict[str, object]] = [
         {
             "pose": label,
             "joints": dict(zip(robot.actuated, a.tolist(), strict=True)),
             "wrench": wrench.tolist(),
         }
-        for label, a, wrench in zip(labels, situation.a, situation.wrench, strict=True)
+        for label, a, wrench in zip(plan.pose, plan.joints, plan.wrench, strict=True)
     ]
     return poses, plan
 

@@ -79,6 +79,14 @@ class Catalogue:
     ------
     InputError
         Something in it is no effect, or two effects have one name.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> "base_rocking" in sk.CATALOGUE
+    True
+    >>> sk.Catalogue([sk.CATALOGUE["joint_tilt"], sk.CATALOGUE["lost_motion"]])
+    Catalogue(joint_tilt, lost_motion)
     """
 
     def __init__(self, effects: Iterable[type[Effect]] = ()) -> None:
@@ -247,6 +255,13 @@ def effect(
     ------
     InputError
         No such effect, or it cannot act there; what exists is listed.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> robot = sk.load_robot("motoman_sk120")
+    >>> sk.effect(robot, "base_rocking").id
+    'base_rocking:base_link'
     """
     return catalogue.effect(robot, name, where, Options(tuple(poses), timed, tuple(breaks)))
 

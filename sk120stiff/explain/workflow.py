@@ -62,6 +62,14 @@ def explain(
     Refusal
         The data look written down wrongly, they contradict their stated uncertainty, or the base
         model itself cannot be fitted.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> readings = sk.read(sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv")
+    >>> answer = sk.explain(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+    >>> answer.verdict
+    'none'
     """
     wish = options or Options()
     tell = progress or _silent

@@ -67,6 +67,13 @@ def read_measurements(
     -----
     ToolkitWarning
         A number so large that its unit is in doubt.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> readings = sk.read(sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv")
+    >>> readings.n_readings, readings.poses
+    (15, ('1', '2', '3'))
     """
     from sk120stiff.measurements.settings import find_settings, read_settings
 

@@ -20,7 +20,7 @@ from sk120stiff.model.model import (
     Parameter,
     joint_spring_model,
 )
-from sk120stiff.model.predicted import Predicted, predict_with_uncertainty
+from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty
 from sk120stiff.model.typical import typical_model, typical_parameters
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
@@ -44,6 +44,7 @@ __all__ = [
     "loaded_uncertainty",
     "model_from_text",
     "model_text",
+    "predict",
     "predict_with_uncertainty",
     "read_model",
     "robot_of_model",

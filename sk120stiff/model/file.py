@@ -150,6 +150,17 @@ def read_model(
     -----
     ToolkitWarning
         The robot given is not the one that the model is of.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     again = sk.read_model(sk.write_model(model, Path(folder) / "model.yaml"))
+    >>> again.names == model.names
+    True
     """
     source = Path(path)
     text, folder = read_text(source), source.parent
@@ -237,6 +248,12 @@ def base_model(robot: Robot) -> Model:
     """The `model.yaml` beside a robot's `robot.yaml`; else springs typical of an arm of its size.
 
     The latter say so in their `origin`; see `typical_model`.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> sk.base_model(sk.load_robot("motoman_sk120")).names[0]
+    'joint_springs:joint_1_s.stiffness'
     """
     known = find_robot(robot.source).model_file
     return typical_model(robot) if known is None else read_model(known, robot)

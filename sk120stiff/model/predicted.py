@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.effects import Situation
+from sk120stiff.effects import Situation, situation_of
+from sk120stiff.measurements import Measurements
 from sk120stiff.model.model import Model
 from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
 from sk120stiff.robot.coupling import Array
@@ -66,6 +67,36 @@ class Predicted:
             None if self.std_remainder is None else placed(self.std_remainder),
             tuple(blame),
         )
+
+
+def predict(model: Model, measurements: Measurements) -> Predicted:
+    """What a model says of every row of measurements, or of a plan; ± where that is known.
+
+    Parameters
+    ----------
+    model
+        Robot, effects, and their uncertainty if it is known.
+    measurements
+        Rows with poses and loads; masked ones are predicted too, displacements are not looked at.
+
+    Raises
+    ------
+    InputError
+        The joints are not the robot's.
+    Refusal
+        The springs cannot hold a load.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+    >>> readings = sk.read(data)
+    >>> said = sk.predict(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+    >>> gap = readings.displacement - said.displacement  # (N, 3) [m]
+    >>> print(f"{1e6 * (gap**2).mean() ** 0.5:.1f} µm rms")
+    26.4 µm rms
+    """
+    return predict_with_uncertainty(model, situation_of(model.robot, measurements))
 
 
 def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:

@@ -9,6 +9,7 @@ from sk120stiff.plan.discriminate import (
     signature_columns,
 )
 from sk120stiff.plan.feasible import Column, base_column, lowest_points
+from sk120stiff.plan.planned import plan, to_be_taken
 from sk120stiff.plan.pool import Pool, Region, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
@@ -29,6 +30,7 @@ __all__ = [
     "discriminating_readings",
     "feasible_pool",
     "lowest_points",
+    "plan",
     "random_choice",
     "random_pool",
     "random_poses",
@@ -36,5 +38,6 @@ __all__ = [
     "scheduled",
     "signature_columns",
     "simulate",
+    "to_be_taken",
     "well_spread",
 ]

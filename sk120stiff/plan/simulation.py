@@ -78,6 +78,14 @@ def simulate(
         A plan without loads, or a share that is none.
     Refusal
         The springs cannot hold a load.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+    >>> made = sk.simulate(model, sk.plan(model, 6, point=[-0.06, 0.04, 0.15]))
+    >>> made.measurements.displacement.shape
+    (6, 3)
     """
     if not 0.0 <= outliers < 1.0:
         raise InputError(f"{outliers:g} is no share of outliers", remedy="Give 0 to 1, as 0.05.")

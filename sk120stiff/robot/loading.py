@@ -137,6 +137,13 @@ def load_robot(
     ------
     InputError
         The file cannot be read or describes no arm; the message names place and remedy.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> robot = sk.load_robot("motoman_sk120")
+    >>> robot.n, robot.tool_frame
+    (6, 'tool0')
     """
     name = robot_name(os.fspath(source)).with_arguments(xacro or {})
     named = str(name if relative_to is None else name.found_from(relative_to))

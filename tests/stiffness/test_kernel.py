@@ -21,6 +21,7 @@ from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot import Mechanism, Robot, VirtualJoint, load_robot
 from sk120stiff.stiffness import (
     CLASSES,
+    batch,
     cartesian_compliance,
     complementary_stiffness,
     critical_load,
@@ -286,7 +287,7 @@ def test_no_poses_give_empty_arrays() -> None:
 def test_a_long_start_is_announced(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sk120stiff.stiffness.batch.PATIENCE", 0.01)
+    monkeypatch.setattr(batch, "PATIENCE", 0.01)
     with caplog.at_level(logging.INFO, logger="sk120stiff"), announced():
         time.sleep(0.2)
     assert "Preparing" in caplog.text

@@ -1,0 +1,117 @@
+"""Chosen readings as measurements that are still to be taken."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.effects import Effect
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+from sk120stiff.plan.design import d_optimal
+from sk120stiff.plan.discriminate import rivalry
+from sk120stiff.plan.pool import Pool, Region, feasible_pool
+from sk120stiff.robot import Robot
+
+POSES = 400  # to choose from
+DIRECTIONS = 12  # of the load at each of them
+
+
+def plan(
+    model: Model,
+    count: int,
+    *,
+    between: tuple[Effect, Effect] | None = None,
+    parameters: Sequence[str] | None = None,
+    force: float = 400.0,
+    point: ArrayLike | None = None,
+    sigma: float = 1e-5,
+    region: Region | None = None,
+    seed: int = 0,
+) -> Measurements:
+    """The poses and loads to measure next, within limits, efforts and the region that is given.
+
+    D-optimal for the parameters that count, or T-optimal between two effects.
+
+    Parameters
+    ----------
+    model
+        Model with its values; its free parameters are to be known.
+    count
+        Number of readings, a pose and a load each.
+    between
+        Two effects that are to be told apart instead.
+    parameters
+        Full names of the parameters that count, all free ones by default.
+    force
+        Size of the loads [N], less where the motors cannot hold it.
+    point
+        (3,) measured and loaded point in the tool frame [m]; its origin by default.
+    sigma
+        Standard uncertainty of one reading per axis [m].
+    region
+        Where the arm may stand; anywhere by default.
+    seed
+        Of the poses that are chosen from.
+
+    Raises
+    ------
+    InputError
+        Nothing is free, a name is unknown, or no pose is left to choose from.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+    >>> next_readings = sk.plan(model, 6, point=[-0.06, 0.04, 0.15])
+    >>> next_readings.n_readings, next_readings.displacement is None
+    (6, True)
+    """
+    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    pool = feasible_pool(
+        model.robot,
+        poses=POSES,
+        directions=DIRECTIONS,
+        force=force,
+        point=at,
+        force_point=at,
+        seed=seed,
+        region=region or Region(),
+    )
+    rows: Sequence[int]
+    if between is None:
+        rows = d_optimal(model, pool, count=count, sigma=sigma, parameters=parameters).rows
+    else:
+        rows = rivalry(model, *between, pool, sigma=sigma).best(count).rows
+    return to_be_taken(model.robot, pool, rows)
+
+
+def to_be_taken(
+    robot: Robot,
+    pool: Pool,
+    rows: Sequence[int],
+    *,
+    zero: Literal["shared", "separate", "unknown"] = "unknown",
+) -> Measurements:
+    """Rows of a pool as measurements without displacements, those of one pose together."""
+    situation = pool.situation.rows(np.array(sorted(rows), dtype=np.intp))
+    _, index = np.unique(situation.a, axis=0, return_inverse=True)
+    order = {pose: k for k, pose in enumerate(dict.fromkeys(index.tolist()))}
+    return Measurements(
+        pose=tuple(f"p{order[pose] + 1}" for pose in index.tolist()),
+        joint_names=robot.actuated,
+        joint_kinds=tuple("length" if slides else "angle" for slides in robot.prismatic),
+        joints=situation.a,
+        wrench=situation.wrench,
+        displacement=None,
+        robot=robot.source,
+        base_frame=robot.base_frame,
+        tool_frame=robot.tool_frame,
+        point=situation.point,
+        force_point=situation.force_point,
+        zero=zero,
+        source="poses and loads chosen by 'sk120stiff plan'",
+    )
