@@ -142,6 +142,14 @@ def test_strength_is_counted_by_cause() -> None:
     ]  # fmt: skip
 
 
-def test_intervals_are_not_asked_of_other_laws(tmp_path: Path) -> None:
+def test_only_plain_gears_are_asked_for_their_springs(tmp_path: Path) -> None:
+    (tmp_path / "model.yaml").write_text(
+        "effects:\n- name: joint_springs\n  where: joint_2_l\n  parameters:\n"
+        "    stiffness: {value: 401000.0, unit: N*m/rad, std: 1000.0}\n"
+        "- name: joint_tilt\n  where: joint_2_l\n  parameters:\n"
+        "    stiffness_along: {value: 20000000.0, unit: N*m/rad, std: 1000.0}\n"
+    )
     answer = answered(tmp_path, "named", RIGHT)
-    assert coverage(truth("L10", TILT), answer, 1.0) == ([], [])
+    assert coverage(truth("L1", TILT), answer, 1.0) == ([False], [True])
+    assert coverage(truth("L10", TILT), answer, 1.0) == ([], [True])
+    assert coverage(truth("L10", PLAY), answer, 1.0) == ([], [])  # its gear has a curve
