@@ -1,4 +1,4 @@
-"""Where everything must run, nothing may be skipped."""
+"""The whole suite runs on several cores; where everything must run, nothing may be skipped."""
 
 import os
 from collections.abc import Generator
@@ -13,6 +13,21 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=os.environ.get("CI", "").lower() == "true",
         help="count a skipped test as failed (the default where CI=true)",
     )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """`pytest` alone takes a process per core, four at most; what is named runs in one process."""
+    asked = getattr(config.option, "numprocesses", 0)  # None: pytest-xdist is there, unasked
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    if asked is not None or not whole or hasattr(config, "workerinput"):
+        return
+    if config.option.usepdb or config.option.collectonly:
+        return
+    config.option.numprocesses = min(4, len(os.sched_getaffinity(0)))
+    config.option.dist = "worksteal"  # neighbours share a process, and with it their fixtures
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(name, "1")  # the cores are taken
 
 
 def _forbid(

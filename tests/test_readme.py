@@ -1,5 +1,6 @@
 """README and docs say what is so: their commands run, their numbers are those of the program."""
 
+import json
 import re
 import shlex
 import subprocess
@@ -126,15 +127,22 @@ def test_the_example_prints_what_is_shown(explained: str) -> None:
 
 
 def test_every_command_has_an_example_that_runs(
-    explained: str, desk: Path, monkeypatch: pytest.MonkeyPatch
+    explained: str, desk: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
+    """And docs/FILES.md names every key of its JSON."""
     examples = re.findall(r"`(sk120stiff [a-z]+ [^`]+)` \|", section("Commands"))
     assert sorted(line.split()[1] for line in examples) == sorted(COMMANDS)
+    page = FILES.partition("\n## JSON of the commands\n")[2].partition("\n## ")[0]
+    of_all, _, table = page.partition("\n| command |")
     monkeypatch.chdir(desk)
     for line in examples:
         command, *arguments = shlex.split(line)[1:]
         if command not in ("demo", "paper", "explain"):  # they have tests of their own
-            assert main([command, *arguments]) == 0, line
+            capfd.readouterr()
+            assert main([command, *arguments, "--json"]) == 0, line
+            (row,) = re.findall(rf"^\| `{command}` \| (.*) \|$", table, re.MULTILINE)
+            keys = set(json.loads(capfd.readouterr().out))
+            assert keys <= set(re.findall(r"`(\w+)`", row + of_all)), command
 
 
 def test_every_effect_is_listed() -> None:

@@ -149,12 +149,12 @@ def command(
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
-    """Stiffness over the workspace: extremes, directions, stability, and deflection under the load.
+    """Stiffness over the workspace: extremes, directions, stability.
 
-    With a model that 'identify' or 'explain' wrote the deflection has a ±. The map is a Zarr store
-    with units and labels. A run that was stopped in whatever way goes on where it was when the same
-    command is given again. A finished map is checked, every file, against the checksums of when it
-    was written; what is damaged is made again.
+    Under a load the deflection too, and its ± with a model that 'identify' or 'explain' wrote. The
+    map is a Zarr store with units and labels. A run that was stopped in whatever way goes on where
+    it was when the same command is given again. A finished map is checked, every file, against the
+    checksums of when it was written; what is damaged is made again.
 
     Example: sk120stiff map motoman_sk120 --grid 'joint_2_l=::2; joint_3_u=::2 deg'
     --wrench '0,0,-490 N' --out sk120.zarr --figures sk120_slices
