@@ -18,7 +18,6 @@ from sk120stiff.identify.yardstick import CONTRADICTED, scatter
 LEVEL = 1e-3
 FOUND = 8.0  # times a stated σ beyond which no statement is merely too small
 WITHOUT_SCATTER = 2.0  # the same where no scatter within poses bears it out
-TOO_LARGE = 0.8  # of a stated σ; what comes nearer is not worth a word
 OWN = {
     "proportional": "in proportion to the load at single poses",
     "constant": "constant at single poses",
@@ -104,9 +103,8 @@ class Adequacy:
                 "size was not stated, and repeats (same pose, load and branch) would show it. "
                 "The standard errors are inflated by as much.",
             )
-        if whole.probability > 1.0 - LEVEL and whole.factor < TOO_LARGE:
-            return (f"σ looks {1.0 / whole.factor:.2f} times too large; it stays the yardstick.",)
-        return ()
+        said = whole.too_large()
+        return (said,) if said else ()
 
 
 def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:

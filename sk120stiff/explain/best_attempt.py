@@ -4,6 +4,9 @@ What was stated of the noise, or found from repeats, stays the yardstick. But wh
 found leaves more than it allows, the law of something is not exact, and a search that takes every
 micrometre beyond the noise for a cause finds impostors. So it is made again with a scale that the
 misfit tells, and what it found is held against the yardstick afterwards.
+
+A gap that is rounding, because the readings were computed, has no cause: the search is made again
+with the finest noise that instruments have, and finds none.
 """
 
 from __future__ import annotations
@@ -11,10 +14,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from sk120stiff.explain.settling import Attempt
-from sk120stiff.identify import Fit, Problem, likelier, solve_near
+from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
 from sk120stiff.identify.fit import with_values
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
+from sk120stiff.measurements.noise import FINEST
 
 Try = Callable[[NoiseModel], Attempt]
 
@@ -34,6 +40,8 @@ def best_attempt(measurements: Measurements, under: Try) -> tuple[Attempt, Noise
     noise = found.base.problem.noise
     if noise.known and found.final.exceeds:
         found = under(replace(noise, freedom=0))
+    elif yardstick(found.base).source == "computed":
+        found = under(replace(noise, sigma=FINEST, freedom=np.inf))
     return found, noise
 
 

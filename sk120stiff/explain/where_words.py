@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from sk120stiff.explain.localisation import LEVEL, Localisation, Suspicion
+from sk120stiff.identify.lack_of_fit import chance
 
 CLOSE = 6.0  # evidence by which a suspect must lead, or others are named beside it
 WHOLE = 0.9  # share of the excess that leaves nothing worth a search
@@ -13,6 +14,7 @@ HARDLY = 0.02  # share of the excess that higher orders of the strongest suspect
 WORTH_SAYING = 0.1
 ORIGINS = {
     "scatter": ", as found from the scatter within poses",
+    "computed": ", the finest that instruments read",
     "repeats": ", as found from repeats",
 }
 MANY_POSES = 5  # more than this carry no longer a short list
@@ -31,13 +33,6 @@ def where_sentences(found: Localisation) -> tuple[str, ...]:
         *_postures(found),
         *_series(found),
     )
-
-
-def chance(probability: float) -> str:
-    """A probability in words."""
-    if probability < 1e-6:
-        return "p < 0.000001"
-    return f"p = {probability:.2g}" if probability >= 1e-4 else f"p = {probability:.0e}"
 
 
 def _size(found: Localisation) -> str:

@@ -11,6 +11,8 @@ from sk120stiff.identify.left_over import orthonormal
 from sk120stiff.identify.yardstick import Source, Yardstick, left_within_poses, yardstick
 
 DOUBTFUL = 0.05  # probability below which an agreement is said with a doubt
+TOO_LARGE = 0.8  # of a stated σ; what comes nearer is not worth a word
+SURELY = 1e-3  # probability below which a stated σ is said to be off
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class LackOfFit:
     against
         What the misfit is held against.
     statistic
-        χ² against a stated σ, else F (Fisher 1922).
+        χ² against a σ that is exact, else F (Fisher 1922).
     freedom
         Degrees of freedom of the misfit, and of the yardstick (None: known exactly).
     probability
@@ -55,8 +57,32 @@ class LackOfFit:
         against = Yardstick(self.against, 1.0, 0.0, None, None).name
         return (
             f"Held against {against}, model and readings {verdict}: {name} = "
-            f"{self.statistic:.4g} on {freedom} degrees of freedom, p = {self.probability:.2g}."
+            f"{self.statistic:.4g} on {freedom} degrees of freedom, {chance(self.probability)}."
         )
+
+    def of_the_statement(self) -> str:
+        """What the misfit says of a stated σ; empty where it bears σ out, or σ was not stated."""
+        if self.against != "stated":
+            return ""
+        if self.lacking and self.factor > 1.0:
+            return (
+                "σ is stated too small, or something is missing in the model: 'sk120stiff "
+                "explain' tells which."
+            )
+        return self.too_large()
+
+    def too_large(self) -> str:
+        """That a stated σ looks too large, or nothing."""
+        if self.probability > 1.0 - SURELY and self.factor < TOO_LARGE:
+            return f"σ looks {1.0 / self.factor:.2f} times too large; it stays the yardstick."
+        return ""
+
+
+def chance(probability: float) -> str:
+    """A probability in words."""
+    if probability < 1e-6:
+        return "p < 0.000001"
+    return f"p = {probability:.2g}" if probability >= 1e-4 else f"p = {probability:.0e}"
 
 
 def lack_of_fit(fit: Fit) -> LackOfFit | None:
@@ -78,6 +104,12 @@ def lack_of_fit(fit: Fit) -> LackOfFit | None:
     factor = fit.noise_factor / noise.scale**0.5
     if fit.misfit is not None:
         return LackOfFit(noise.source, *fit.misfit, factor)
+    if noise.source == "computed":
+        square = fit.chi_square / noise.scale
+        freedom = fit.degrees_of_freedom
+        return LackOfFit(
+            "computed", square, (freedom, None), noise.tail(fit.chi_square, freedom), factor
+        )
     if noise.source != "scatter":
         return None
     square, rank, _ = left_within_poses(fit, fit.residual, orthonormal(fit.jacobian))
@@ -86,5 +118,5 @@ def lack_of_fit(fit: Fit) -> LackOfFit | None:
     if taken < 1:
         return None
     ratio = max(fit.chi_square - square, 0.0) / taken / (square / freedom)
-    chance = float(stats.f.sf(ratio, taken, freedom))
-    return LackOfFit("scatter", ratio, (taken, freedom), chance, factor)
+    probability = float(stats.f.sf(ratio, taken, freedom))
+    return LackOfFit("scatter", ratio, (taken, freedom), probability, factor)

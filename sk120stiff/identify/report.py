@@ -82,6 +82,8 @@ def _statistics(fit: Fit) -> list[str]:
             f"The gap is {fit.noise_factor:.3g} times what the noise makes. The standard errors "
             "are inflated by as much."
         )
+    if test is not None and (said := test.of_the_statement()):
+        lines.append(said)
     return lines
 
 

@@ -6,6 +6,7 @@ The one answer that everything else is held against: identify, explain, and ever
 - repeats: the same pose, load and branch read again.
 - scatter: what single poses leave about lines through their loads, constants, curves and branches,
   which every elastic cause leaves alone, whatever the model lacks.
+- computed: nothing of these, and the gap is smaller than any instrument reads: it is rounding.
 - unknown: nothing tells. The gap itself is no yardstick of the gap.
 """
 
@@ -20,10 +21,11 @@ from scipy import stats
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.left_over import left_over, orthonormal
 from sk120stiff.identify.saturated import load_basis, pose_columns
+from sk120stiff.measurements.noise import FINEST
 from sk120stiff.measurements.repeats import ENOUGH
 from sk120stiff.robot.coupling import Array
 
-Source = Literal["stated", "repeats", "scatter", "unknown"]
+Source = Literal["stated", "repeats", "scatter", "computed", "unknown"]
 CONTRADICTED = 3.0  # times a stated σ from where on it is no slight optimism but a wrong number
 ROUNDING = 1e-12  # share of the misfit that is rounding, not scatter
 
@@ -31,6 +33,7 @@ NAMES: dict[Source, str] = {
     "stated": "the stated uncertainty",
     "repeats": "the pure error of repeats",
     "scatter": "the scatter within poses",
+    "computed": "the finest that instruments read",
     "unknown": "nothing",
 }
 
@@ -46,7 +49,7 @@ class Yardstick:
     scale
         Noise variance over the one that the fit assumed.
     freedom
-        Degrees of freedom behind it: infinite where stated, 0 where unknown.
+        Degrees of freedom behind it: infinite where it is exact, 0 where unknown.
     sigma
         Standard uncertainty of one reading per axis [m]; None where unknown.
     floor
@@ -80,6 +83,11 @@ class Yardstick:
         """What one reading is worth, and who says so."""
         if self.sigma is None:
             return "The noise of the readings is unknown: nobody stated it and nothing tells it."
+        if self.source == "computed":
+            return (
+                f"Readings and model agree to less than {FINEST * 1e6:.3g} µm, closer than any "
+                "instrument reads: the readings were computed, and what is left is rounding."
+            )
         told = f"{self.name} ({self.freedom:.0f} degrees of freedom)"
         if self.source == "stated":
             told = "the data's own statement"
@@ -91,6 +99,8 @@ def yardstick(fit: Fit) -> Yardstick:
     noise = fit.problem.noise
     if noise.known:
         return _yardstick(fit, "stated" if noise.stated else "repeats", 1.0, noise.freedom)
+    if fit.rms < FINEST:
+        return _yardstick(fit, "computed", (FINEST / noise.sigma) ** 2, np.inf)
     found = scatter(fit)
     if found is not None:
         return found

@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 
 # Where nothing says how large the noise is, a model needs a scale to start from: a laser tracker's.
 _START = 10e-6  # m
-_FINEST = 1e-9  # m; a smaller scatter is that of copied rows or computed data, of no instrument
+FINEST = 1e-9  # m; what is smaller is that of copied rows or computed data, of no instrument
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,7 @@ def _described(measurements: Measurements, zero: Literal["shared", "separate"]) 
 
 
 def _from_repeats(found: Repeated | None) -> tuple[float, float]:
-    if found is None or found.sigma <= _FINEST:
+    if found is None or found.sigma <= FINEST:
         return _START, 0
     return found.sigma, found.freedom
 

@@ -108,3 +108,15 @@ def test_errors_hold_what_is_left(springs):
         [p.std for p in honest.parameters], rel=0.1
     )
     assert np.isfinite(answer.final.unit)
+
+
+def test_a_gap_of_rounding_is_nothing(springs):
+    """Computed readings: a floor as stiff as this moves the point by picometres."""
+    floor = BaseRocking("base_link", {"x": 2e-15, "y": 2e-15})
+    readings = hidden(floor, sigma=1e-16, stated=False)
+    answer = explain(springs, readings)
+    assert answer.base.rms < 1e-10
+    assert answer.verdict == "none" and not answer.findings
+    document = verdict_document(answer, readings)
+    assert document["noise"]["source"] == "computed"
+    assert "the readings were computed" in answer.yardstick.sentence()

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from sk120stiff.effects import effect
-from sk120stiff.identify import Problem, fit, lack_of_fit, solve
+from sk120stiff.identify import LackOfFit, Problem, fit, lack_of_fit, solve
 from sk120stiff.identify.robust import solve_robustly
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.plan import Schedule
@@ -107,3 +107,16 @@ def test_counted_freedom(springs) -> None:
     found = solve(Problem(springs, readings, NOISE))
     assert found.degrees_of_freedom == 3 * readings.n_readings - 3
     assert np.isclose(found.noise_factor**2 * found.degrees_of_freedom, found.chi_square)
+
+
+def test_a_stated_uncertainty_that_is_exceeded_is_told() -> None:
+    test = LackOfFit("stated", 321.0 * 37.6**2, (321, None), 0.0, 37.6)
+    assert "too small, or something is missing in the model" in test.of_the_statement()
+    assert test.sentence().endswith("p < 0.000001.")  # no probability is zero
+    assert not replace(test, against="scatter").of_the_statement()
+
+
+def test_a_stated_uncertainty_that_is_too_large_is_told() -> None:
+    test = LackOfFit("stated", 80.0, (321, None), 1.0, 0.5)
+    assert test.of_the_statement() == "σ looks 2.00 times too large; it stays the yardstick."
+    assert not LackOfFit("stated", 321.0, (321, None), 0.5, 1.0).of_the_statement()
