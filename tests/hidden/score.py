@@ -38,6 +38,7 @@ GOALS: dict[str, tuple[str, float | None, float | None]] = {
     "L9": ("unknown robot, all at once", None, None),
     "L10": ("right in kind, wrong in detail", 0.80, 0.03),
     "L12": ("known and foreign together", 0.80, None),
+    "L0.plans": ("clean, other plans and noise", 0.98, None),
     "L1.plans": ("L1, other plans and noise", 0.95, None),
     "L2.plans": ("L2, other plans and noise", 0.90, None),
 }

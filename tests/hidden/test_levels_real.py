@@ -156,6 +156,7 @@ def test_remainder_is_what_the_best_exact_fit_leaves() -> None:
 
 
 def test_foreign_beside_known_stays_out_of_the_list() -> None:
+    assert not build("L0.plans", 21, 0).hidden
     truth = build("L12", 21, 0).truth()
     assert len(truth["effects"]) == 1  # type: ignore[arg-type]
     assert str(truth["foreign"]).startswith("foreign_")

@@ -8,7 +8,7 @@ from .case import Case
 from .equilibrium import NoEquilibrium
 from .levels import Builder, NotThisTime, clean, pair, several, single
 from .levels_hard import alias, clean_messy, outside, wild
-from .levels_real import beside, lifelike, otherwise
+from .levels_real import beside, lifelike, otherwise, still
 
 BUILDERS: dict[str, Builder] = {
     "L0": clean,
@@ -25,6 +25,7 @@ BUILDERS: dict[str, Builder] = {
     "L12": beside,
     "L1.plans": otherwise,
     "L2.plans": otherwise,
+    "L0.plans": still,
 }
 
 

@@ -81,3 +81,9 @@ def otherwise(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
     """L1 and L2 under other plans of measuring, with noise stated wrongly or not at all."""
     at = measured(level, seed, rng)
     return one(at, rng, *STRENGTHS[level], apart=4.0)
+
+
+def still(level: str, seed: tuple[int, ...], rng: Rng) -> Case:
+    """L0 under other plans of measuring, with noise stated wrongly or not at all."""
+    at = measured(level, seed, rng)
+    return at.case([], expected="none", note=at.plan)
