@@ -178,6 +178,12 @@ class Explanation:
         told = Options(poses=readings.poses, timed=readings.time is not None)
         return self.catalogue.effect(self.base.model.robot, kind, where, told)
 
+    def __repr__(self) -> str:
+        names = ", ".join(finding.effect.id for finding in self.findings)
+        first, last = self.steps[0].fit_rms * 1e6, self.steps[-1].fit_rms * 1e6
+        gap = f"{first:.3g} → {last:.3g}" if self.findings else f"{first:.3g}"
+        return f"<Explanation: {self.verdict}{' ' if names else ''}{names}; gap {gap} µm rms>"
+
     def _repr_html_(self) -> str:
         """What a notebook shows."""
         return summary_html(self)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +20,13 @@ from sk120stiff.identify.covariance import (
 from sk120stiff.identify.overlaid import Overlay, overlays
 from sk120stiff.identify.polish import FAINTEST, seen_directions
 from sk120stiff.identify.problem import Problem
-from sk120stiff.model import ON_BOUND, TOGETHER, UNSEEN, Model, Parameter
+from sk120stiff.model import ON_BOUND, TOGETHER, UNSEEN, Model, Parameter, parameter_frame
 from sk120stiff.robot.coupling import Array
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+SHOWN = 4  # parameters in one line
 LEVEL = 0.01  # probability below which model and readings are said to disagree
 
 
@@ -64,6 +69,32 @@ class Fit:
     spread: float | None = None
     inflation: float = 1.0
     doubt: Array | None = None
+
+    def __repr__(self) -> str:
+        values = ", ".join(
+            p.name if not seen else f"{p.name} {p.public_value:.4g} {p.spec.unit}"
+            for p, seen in zip(self.parameters[:SHOWN], self.identifiable, strict=False)
+        )
+        more = ", …" if len(self.parameters) > SHOWN else ""
+        return f"<Fit: {1e6 * self.rms:.3g} µm rms; {values}{more}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
+        return f"<div><p>Gap {1e6 * self.rms:.3g} µm rms per axis</p>{table}</div>"
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per estimated parameter in its public unit: value, std, 95 % interval, note.
+
+        What the readings do not tell has neither value nor error, and a note.
+        """
+        rows = parameter_frame(self.parameters)
+        low, high = np.array(self.intervals()).reshape(-1, 2).T
+        rows["low_95"], rows["high_95"] = low, high
+        unseen = ~self.identifiable
+        rows.loc[unseen, ["value", "std", "low_95", "high_95"]] = np.nan
+        rows.loc[unseen, "note"] = "not identifiable"
+        return rows
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:

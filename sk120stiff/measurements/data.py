@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.frame import Tabular
 from sk120stiff.measurements.poses import refuse_differing_joints, rows_by_label
 from sk120stiff.measurements.zero import since_zero
 
@@ -54,7 +55,7 @@ class NoiseStatement:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Measurements:
+class Measurements(Tabular):
     """N readings of one robot; arrays are read-only, SI throughout.
 
     Parameters

@@ -86,8 +86,19 @@ def read_measurements(
         )
     table = read_table(source)
     settings = read_settings(find_settings(source))
+    return assembled(table, settings, _hash(source, settings.path), actuated, prismatic)
+
+
+def assembled(
+    table: Table,
+    file: SettingsFile,
+    data_hash: str,
+    actuated: Sequence[str] | None = None,
+    prismatic: Sequence[str] | None = None,
+) -> Measurements:
+    """Measurements from a table and its settings; see `read_measurements`."""
     roles = columns.assign_roles(table, tuple(actuated or ()))
-    measurements = _assemble(table, roles, settings)
+    measurements = _assemble(table, roles, file, data_hash)
     if actuated is not None:
         kinds = None
         if prismatic is not None:
@@ -97,7 +108,7 @@ def read_measurements(
     return measurements
 
 
-def _assemble(table: Table, roles: Roles, file: SettingsFile) -> Measurements:
+def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) -> Measurements:
     settings = file.settings
     rows = read_rows(table, roles)
     refuse_differing_joints(
@@ -152,7 +163,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile) -> Measurements:
         zero_time=found.time,
         use=found.use,
         notes=(*_assumed_frames(settings), *found.notes, *told),
-        data_hash=_hash(table.path, file.path),
+        data_hash=data_hash,
     )
 
 

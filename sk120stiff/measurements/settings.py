@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -149,12 +149,26 @@ def read_settings(path: Path | None) -> SettingsFile:
             where=str(path),
             remedy=f"Write one 'key: value' per line. The keys are {_names('')}.",
         )
+    return settings_of(content, path, lines)
+
+
+def settings_of(
+    content: Mapping[str, Any], path: Path, lines: Mapping[str, int] | None = None
+) -> SettingsFile:
+    """Settings from their keys; `lines` tells where each stands in the file.
+
+    Raises
+    ------
+    InputError
+        An unknown or missing key, or a value that does not fit.
+    """
+    known = dict(lines or {})
+    keys: dict[object, object] = dict(content.items())
     try:
-        settings = Settings.model_validate(_without_empty(content))
+        settings = Settings.model_validate(_without_empty(keys))
     except ValidationError as error:
-        draft = SettingsFile(Settings(), path, lines)
-        raise _explain(error, draft) from None
-    return SettingsFile(settings, path, lines)
+        raise _explain(error, SettingsFile(Settings(), path, known)) from None
+    return SettingsFile(settings, path, known)
 
 
 def _keys(node: yaml.Node | None, path: str, above: str = "") -> Iterator[tuple[str, int]]:

@@ -136,12 +136,13 @@ def read_table(path: Path) -> Table:
             remedy="Its first line holds the headers, such as "
             "pose,joint_1_s[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm].",
         )
-    return _table(path, header, header_line, rows, lines)
+    return table_of(path, header, header_line, rows, lines)
 
 
-def _table(
+def table_of(
     path: Path, header: list[str], header_line: int, rows: list[list[str]], lines: list[int]
 ) -> Table:
+    """Rows of text under headers with units, as a table."""
     place = f"{path}, line {header_line}"
     headers: dict[str, str] = {}
     column_units: dict[str, str | None] = {}

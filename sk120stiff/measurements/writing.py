@@ -67,7 +67,7 @@ def write_measurements(
     target = Path(path)
     check_name(target)
     measured = POSITIONS if as_positions else DISPLACEMENTS
-    columns = list(_columns(measurements, angle, length, measured))
+    columns = list(columns_of(measurements, angle, length, measured))
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([files.guarded_cell(header) for header, _ in columns])
@@ -108,9 +108,10 @@ def check_name(target: Path) -> None:
         )
 
 
-def _columns(
+def columns_of(
     m: Measurements, angle: str, length: str, measured: tuple[str, ...]
 ) -> Iterable[_Column]:
+    """Headers with units, and cells, of the CSV file; `measured` names the displacements."""
     yield "pose", m.pose
     for k, name in enumerate(m.joint_names):
         kind = m.joint_kinds[k]

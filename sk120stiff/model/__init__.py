@@ -9,6 +9,7 @@ from sk120stiff.model.file import (
     robot_of_model,
     write_model,
 )
+from sk120stiff.model.frame import parameter_frame
 from sk120stiff.model.holding import held_loads, warn_of_far_bend
 from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
 from sk120stiff.model.loaded_uncertainty import LoadedUncertainty, loaded_uncertainty
@@ -44,6 +45,7 @@ __all__ = [
     "loaded_uncertainty",
     "model_from_text",
     "model_text",
+    "parameter_frame",
     "predict",
     "predict_with_uncertainty",
     "read_model",

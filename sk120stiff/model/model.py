@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from html import escape
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,9 +21,13 @@ from sk120stiff.effects import (
 )
 from sk120stiff.errors import InputError
 from sk120stiff.model.assembly import Assembly, Solution
+from sk120stiff.model.frame import parameter_frame
 from sk120stiff.model.uncertainty import Uncertainty
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 UNTRUSTED = "not to be trusted"  # in the origin of a value that no readings stand behind
 UNSEEN = f"not identifiable, {UNTRUSTED}"
@@ -116,6 +122,22 @@ class Model:
     parameters: tuple[Parameter, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
     uncertainty: Uncertainty | None = None
+
+    def __repr__(self) -> str:
+        places: dict[str, list[str]] = {}
+        for effect in self.effects:
+            places.setdefault(effect.name, []).append(effect.where)
+        held = "; ".join(f"{name} at {', '.join(where)}" for name, where in places.items())
+        return f"<Model of {self.robot.name}: {held or 'rigid'}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
+        return f"<div><p>Model of {escape(self.robot.name)}</p>{table}</div>"
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per parameter in its public unit: name, value, std, unit, free, note."""
+        return parameter_frame(self.parameters)
 
     @cached_property
     def effects(self) -> tuple[Effect, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
+from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,6 +90,18 @@ class Robot:
 
     def __repr__(self) -> str:
         return f"<Robot {self.name}: {', '.join(self.actuated)}; {self.tool_frame}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the actuated joints with their limits."""
+        lines = "".join(
+            f"<tr><td>{escape(name)}</td><td>{'slides' if slides else 'turns'}</td>"
+            f"<td>{low:.4g}</td><td>{high:.4g}</td><td>{'m' if slides else 'rad'}</td></tr>"
+            for name, slides, low, high in zip(
+                self.actuated, self.prismatic, self.lower, self.upper, strict=True
+            )
+        )
+        head = "<tr><th>joint</th><th></th><th>lower</th><th>upper</th><th>unit</th></tr>"
+        return f"<div><p>{escape(repr(self))}</p><table>{head}{lines}</table></div>"
 
     @property
     def n(self) -> int:

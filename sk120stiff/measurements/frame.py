@@ -1,0 +1,110 @@
+"""Measurements as a pandas table and back, with the headers of the CSV file."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from sk120stiff.measurements.data import Measurements
+
+SHOWN = 10  # rows in a notebook
+NOWHERE = Path("frame")  # what messages call a table that is no file
+WORDS = ("pose", "branch")  # columns that hold text; those with a unit hold numbers
+
+
+class Tabular:
+    """What `Measurements` can do with tables."""
+
+    def to_frame(self, *, angle: str = "deg", length: str = "mm") -> pd.DataFrame:
+        """One row per reading, with the headers and units of the CSV file.
+
+        Examples
+        --------
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+        >>> frame = sk.read(data).to_frame()
+        >>> list(frame.columns[:3]), len(frame)
+        (['pose', 'joint_1_s[deg]', 'joint_2_l[deg]'], 15)
+        """
+        import pandas as pd
+
+        from sk120stiff.measurements.columns import DISPLACEMENTS
+        from sk120stiff.measurements.writing import columns_of
+
+        readings = cast("Measurements", self)
+        own = {
+            name: list(cells) for name, cells in columns_of(readings, angle, length, DISPLACEMENTS)
+        }
+        frame = pd.DataFrame(own)
+        texts = {*WORDS, *readings.extra}
+        for name in frame.columns:
+            if name not in texts:
+                frame[name] = pd.to_numeric(frame[name])
+        return frame
+
+    @classmethod
+    def from_frame(
+        cls,
+        frame: pd.DataFrame,
+        actuated: Sequence[str] | None = None,
+        **settings: Any,
+    ) -> Measurements:
+        """Readings from a table with the headers of the CSV file, units in them.
+
+        Parameters
+        ----------
+        frame
+            One row per reading; an empty cell is NaN or None.
+        actuated
+            The robot's actuated joints, in whose order the joint columns are then put.
+        settings
+            The keys of the YAML file, such as ``robot="motoman_sk120"`` and
+            ``point={"xyz": [0, 0, 120], "unit": "mm"}``; each has the default that it has there.
+
+        Raises
+        ------
+        InputError
+            As `read_measurements`; a line is the row of the table plus two, as it would be in a
+            file.
+
+        Examples
+        --------
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+        >>> frame = sk.read(data).to_frame()
+        >>> sk.Measurements.from_frame(frame[frame["pose"] == "1"], robot="motoman_sk120").poses
+        ('1',)
+        """
+        from sk120stiff.measurements import reading
+        from sk120stiff.measurements.settings import settings_of
+        from sk120stiff.measurements.table import table_of
+
+        header = [str(name) for name in frame.columns]
+        given = frame.astype(object).where(frame.notna(), "")
+        rows = [[_text(cell) for cell in row] for row in given.itertuples(index=False, name=None)]
+        table = table_of(NOWHERE, header, 1, rows, list(range(2, len(rows) + 2)))
+        told = hashlib.sha256(repr((header, rows, sorted(settings.items()))).encode())
+        found = reading.assembled(table, settings_of(settings, NOWHERE), told.hexdigest(), actuated)
+        return replace(found, path=None)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the first rows."""
+        from html import escape
+
+        shown = self.to_frame().head(SHOWN).to_html(index=False, float_format="{:.6g}".format)
+        more = cast("Measurements", self).n_readings - SHOWN
+        rest = f"<p>… {more} more rows</p>" if more > 0 else ""
+        return f"<div><p>{escape(repr(self))}</p>{shown}{rest}</div>"
+
+
+def _text(cell: object) -> str:
+    """A cell as it would stand in a file; a number keeps all its digits."""
+    if isinstance(cell, bool):
+        return str(int(cell))
+    return repr(float(cell)) if isinstance(cell, float) else str(cell).strip()
