@@ -215,7 +215,12 @@ def plan_of(answer: Explanation, readings: Measurements) -> Measurements:
         tool_frame=readings.tool_frame,
         point=readings.point,
         force_point=readings.force_point,
-        source="poses and loads that tell the named alternatives apart",
+        source=" ".join(
+            [
+                "Poses and loads that tell the named alternatives apart.",
+                *answer.details.get("next_remarks", ()),
+            ]
+        ),
     )
 
 
@@ -247,6 +252,7 @@ def parts(
     ]
     if answer.next_poses is not None:
         shown.append(f"Measure next what stands in {out / 'next_poses.csv'}.")
+        shown += answer.details.get("next_remarks", ())
     if report is not None:
         shown.append(f"Report: {report}")
     shown.append(f"Results are in {out}.")

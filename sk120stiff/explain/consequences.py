@@ -20,20 +20,24 @@ def completed(answer: Explanation, regression: Regression, *, seed: int) -> Expl
     """The answer with where the gap lives, detectable sizes, what is hidden, the next poses."""
     smallest, invisible = detectable(answer, regression)
     found = localise(answer.base)
+    following = next_poses(answer, seed=seed)
+    told = {} if following is None else {"next_remarks": following[2]}
     return replace(
         answer,
         where=where_sentences(found),
-        details={**answer.details, "localisation": found},
+        details={**answer.details, "localisation": found, **told},
         smallest_detectable=smallest,
         not_observable=invisible,
-        next_poses=next_poses(answer, seed=seed),
+        next_poses=None if following is None else following[:2],
     )
 
 
 def next_poses(
     answer: Explanation, *, seed: int, count: int = READINGS_TO_MEASURE
-) -> tuple[np.ndarray, np.ndarray] | None:
+) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]] | None:
     """Poses (K, n) and wrenches (K, 6) that tell the first unsettled pair of names apart.
+
+    With them what is to be said of the loads: where motors limit them, and what was not checked.
 
     They go no lower than the poses that were measured: what was measured could be driven.
     """
@@ -65,5 +69,5 @@ def next_poses(
             sigma=answer.noise.sigma * answer.final.noise_factor,
         )
         rows = list(choice.rows)
-        return pool.situation.a[rows], pool.situation.wrench[rows]
+        return pool.situation.a[rows], pool.situation.wrench[rows], pool.remarks
     return None

@@ -9,6 +9,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SAME = 0.03  # share of the largest load within which a load is met again
+ONE_WAY = 0.999  # cosine of the angle between two loads of one direction, at least
 TOLD = "the loads rise and then fall again"
 
 
@@ -18,7 +19,8 @@ def branches_by_order(
     """``load`` and ``unload`` for every row, and a sentence; None where the order tells nothing.
 
     A pose tells branches if its loads, along one line, rise to a peak and fall from it, and at
-    least one on the way down was met on the way up. Most poses with three loads or more have to.
+    least one on the way down was met on the way up; so must the loads of every direction where a
+    pose was loaded in several, one after the other. Most poses with three loads or more have to.
 
     Parameters
     ----------
@@ -38,7 +40,7 @@ def branches_by_order(
         if len(rows) < 3:
             continue
         able += 1
-        down = _way_down(wrench[rows, :3], size[rows])
+        down = _ways_down(wrench[rows, :3], size[rows])
         told += down is not None
         if down is not None:
             falling[rows[down]] = True
@@ -49,6 +51,22 @@ def branches_by_order(
         f"At {told} of {able} poses {TOLD} in the order of the rows; they are taken as loading "
         "and unloading. Add a column 'branch' with load or unload to say it yourself."
     )
+
+
+def _ways_down(force: Floats, size: Floats) -> NDArray[np.bool_] | None:
+    """(k,) the rows of one pose that follow the peak of their direction; None without a way."""
+    alone = _way_down(force, size)
+    if alone is not None:
+        return alone
+    unit = force / size[:, None]
+    turns = np.flatnonzero((unit[1:] * unit[:-1]).sum(axis=1) < ONE_WAY) + 1
+    ways = [
+        None if len(rows) < 3 else _way_down(force[rows], size[rows])
+        for rows in np.split(np.arange(len(size)), turns)
+    ]
+    if any(way is None for way in ways):
+        return None
+    return np.concatenate([way for way in ways if way is not None])
 
 
 def _way_down(force: Floats, size: Floats) -> NDArray[np.bool_] | None:

@@ -180,7 +180,9 @@ def test_what_to_measure_next_is_a_plan(data, tmp_path) -> None:
     found = explain(model, readings)
     a = found.base.problem.situation.a[:2]
     wrench = np.array([[100.0, 0, -200.0, 0, 0, 0], [0, 50.0, 0, 0, 0, 0]])
-    open_ = replace(found, next_poses=(a, wrench))
+    said = "Of 400 N the motors hold 120 N."
+    details = {**found.details, "next_remarks": (said,)}
+    open_ = replace(found, next_poses=(a, wrench), details=details)
     document = write_answer(open_, Task(readings, data, [data]), tmp_path, report=False)
     assert document["next_poses"] == "next_poses.csv"
     plan = read_measurements(tmp_path / "next_poses.csv")
@@ -188,6 +190,7 @@ def test_what_to_measure_next_is_a_plan(data, tmp_path) -> None:
     assert np.allclose(plan.joints, a)
     assert np.allclose(plan.wrench, wrench)
     assert np.allclose(plan.point, readings.point)
+    assert said in plan.source
 
 
 def test_a_limited_search_says_so(data, tmp_path, run) -> None:

@@ -10,6 +10,7 @@ import pytest
 from sk120stiff.effects import effect, situation_of_load
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.explain.consequences import next_poses
+from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import Region, base_column, feasible_pool, lowest_points, random_poses
 from sk120stiff.robot import Robot, load_robot
@@ -128,12 +129,18 @@ def test_the_next_poses_of_an_explanation_are_feasible_too() -> None:
         exact=(),
     )
     final = SimpleNamespace(
-        problem=SimpleNamespace(situation=situation), model=model + finding.effect, sigma=1e-5
+        problem=SimpleNamespace(situation=situation), model=model + finding.effect, noise_factor=1.0
     )
-    answer = SimpleNamespace(findings=(finding,), final=final)
+    answer = SimpleNamespace(
+        findings=(finding,),
+        final=final,
+        noise=NoiseModel(1e-5),
+        effect=lambda _: effect(robot, "joint_tilt", robot.actuated[2]),
+    )
     found = next_poses(answer, seed=0)  # type: ignore[arg-type]
     assert found is not None
-    a, wrench = found
+    a, wrench, remarks = found
+    assert any("the motors hold" in said for said in remarks)
     assert lowest_points(robot, a, POINT).min() > 0.1
     column = base_column(robot)
     assert column is not None
