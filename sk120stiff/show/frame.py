@@ -15,6 +15,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.show.elastic import Elastic
 from sk120stiff.show.links import LinkTree, joint_motion
 from sk120stiff.stiffness import (
+    Definiteness,
     complementary_stiffness,
     definiteness_of,
     symmetric_part,
@@ -69,7 +70,8 @@ class Frame:
     translation, rotation_axes
         Formulation ("conventional", "enhanced") → principal compliances.
     deflection
-        Formula → displacement (3,) of the point [m]; "equilibrium" is missing where none exists.
+        Formula → displacement (3,) of the point [m]; "equilibrium" is missing where none exists,
+        "enhanced" where K_θ − K_C is not positive definite.
     K_C_class, stiffness_class
         Definiteness of K_C and of K_θ − K_C over the yielding coordinates.
     softening, stiffening
@@ -115,10 +117,7 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
     except np.linalg.LinAlgError as error:
         raise Refusal("this load is exactly critical: K_θ − K_C is singular") from error
     torques = start.torques(request.wrench)
-    deflection = {
-        "conventional": J[:3] @ C @ torques,
-        "enhanced": J[:3] @ loaded @ torques,
-    }
+    deflection = {"conventional": J[:3] @ C @ torques}
     links = place_elastic(tree, elastic, z)
     deflected: Array | None = None
     try:
@@ -137,6 +136,9 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
         shares = np.zeros(1)
         if len(c):
             shares = np.asarray(np.linalg.eigvalsh(root[:, None] * K_C_soft * root))
+    stable = definiteness_of(np.diag(1.0 / c) - K_C_soft)
+    if stable is Definiteness.POSITIVE_DEFINITE:  # else one step leads to a balance that never is
+        deflection["enhanced"] = J[:3] @ loaded @ torques
     return Frame(
         links=links,
         deflected=deflected,
@@ -152,7 +154,7 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
         },
         deflection=deflection,
         K_C_class=definiteness_of(K_C_soft).value if K_C_soft.any() else "zero",
-        stiffness_class=definiteness_of(np.diag(1.0 / c) - K_C_soft).value,
+        stiffness_class=stable.value,
         softening=None if shares is None else max(0.0, float(shares[-1])),
         stiffening=None if shares is None else max(0.0, -float(shares[0])),
     )

@@ -124,7 +124,7 @@ SK.makeEngine = (constants, onState = () => {}) => {
     const K_C = complementary(screws, wrench), loaded = loadedCompliance(K_C);
     const torques = torquesOf(J, wrench), top = J.slice(0, 3), bottom = J.slice(3);
     if (!loaded) return null;
-    const deflection = { conventional: m.apply(top, m.apply(C, torques)), enhanced: m.apply(top, m.apply(loaded, torques)) };
+    const deflection = { conventional: m.apply(top, m.apply(C, torques)) };
     const rest = equilibrium(z, wrench, point);
     if (rest) deflection.equilibrium = m.minus(rest.position, screws.position);
     const { c, V } = yielding;
@@ -133,6 +133,9 @@ SK.makeEngine = (constants, onState = () => {}) => {
     const shares = c.every((value) => value > 0)
       ? m.eigen(K_Csoft.map((row, i) => row.map((value, j) => value * Math.sqrt(c[i] * c[j])))).values : null;
     const K_theta = c.map((value, i) => c.map((_, j) => (i === j ? 1 / value : 0)));
+    const stable = definiteness(m.difference(K_theta, K_Csoft));
+    // Else one step leads to a balance that never is.
+    if (stable === "positive definite") deflection.enhanced = m.apply(top, m.apply(loaded, torques));
     return {
       links: placeElastic(z, point),
       deflected: rest && placeElastic(m.add(z, m.scaled(m.minus(rest.z, z), exaggeration)), point),
@@ -143,7 +146,7 @@ SK.makeEngine = (constants, onState = () => {}) => {
       deflection,
       classes: {
         K_C: K_Csoft.some((row) => row.some((v) => v !== 0)) ? definiteness(K_Csoft) : "zero",
-        stiffness: definiteness(m.difference(K_theta, K_Csoft)),
+        stiffness: stable,
       },
       softening: shares && Math.max(0, shares[0]),
       stiffening: shares && Math.max(0, -shares[shares.length - 1]),
