@@ -13,10 +13,11 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument
 from sk120stiff.cli.tables import progress_bar, table
-from sk120stiff.cli.uncertainty import NO_REMAINDER, blame_reason, sentences, uncertainty_keys
+from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, joint_spring_model
+from sk120stiff.model.prediction_table import blame_reason
 from sk120stiff.robot import Robot
 from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values

@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sk120stiff.cli.document import SCHEMA, as_json_text
 from sk120stiff.cli.explain_output import (
     check_folder,
     findings,
     page_or_warning,
-    plan_of,
-    replacing_results,
     said,
 )
 from sk120stiff.cli.frame import Answer
@@ -24,8 +21,10 @@ from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import all_effects, situation_of
 from sk120stiff.explain import explain, verdict_document
+from sk120stiff.explain.saving import plan_of, replacing_results
 from sk120stiff.explain.swallowed import swallowed
 from sk120stiff.files import write_atomically
+from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import fit
 from sk120stiff.measurements import write_measurements
 from sk120stiff.model import base_model, write_model

@@ -4,41 +4,27 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.cli.document import SCHEMA, as_json_text
 from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
-from sk120stiff.cli.predict import csv_text, predict_what_holds, prediction_table
 from sk120stiff.cli.tables import table
-from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
-from sk120stiff.explain import DOUBTFUL, Explanation, verdict_document
+from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.adequacy import Adequacy
-from sk120stiff.files import together, will_write, write_atomically
-from sk120stiff.identify import known_model, unseen_reasons
+from sk120stiff.explain.saving import NEXT_POSES, RESULTS, VERDICT
+from sk120stiff.files import will_write, write_atomically
+from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
-from sk120stiff.measurements import Measurements, write_measurements
-from sk120stiff.model import Model, write_model
+from sk120stiff.measurements import Measurements
 from sk120stiff.show.wording import with_error
 
 FEW_POSES = 8  # below this other poses confirm little
 STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
-VERDICT = "verdict.json"
-RESULTS = (
-    VERDICT,
-    "model.yaml",
-    "gaps.csv",
-    "next_poses.csv",
-    "next_poses.yaml",
-    "report.html",
-    "scene.html",
-)
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
 
@@ -116,34 +102,11 @@ def write_answer(
         The content of `verdict.json`, and where the files are that were written.
     """
     tell = progress or (lambda _done, _total: None)
-    following = None if answer.next_poses is None else "next_poses.csv"
-    document = {"schema": SCHEMA, **verdict_document(answer, task.readings, following)}
-    fitted = replace(known_model(answer.final), provenance=provenance(task.data, task.readings))
-    gaps = page_or_warning("gaps.csv", lambda: _gaps(fitted, task.readings))
-    with replacing_results(out):
-        write_model(fitted, out / "model.yaml")
-        if gaps is not None:
-            write_atomically(out / "gaps.csv", gaps)
-        if following is not None:
-            write_measurements(plan_of(answer, task.readings), out / following)
-        write_atomically(out / VERDICT, as_json_text(document) + "\n")
+    document = answer.save(out, provenance=provenance(task.data, task.readings))
+    following = None if answer.next_poses is None else NEXT_POSES
     pages = _write_pages(answer, task, following, out, tell) if report else {}
     tell(100, 100)
     return {**document, "out": out, "model": out / "model.yaml", **pages}
-
-
-def replacing_results(out: Path) -> AbstractContextManager[None]:
-    """Let what is written inside replace the results of an earlier run, all in one moment.
-
-    An old verdict never stands beside new files, nor old proposals and pages beside a new one; and
-    until all is written, the earlier results stay.
-    """
-    return together(stale=[out / name for name in RESULTS], last=out / VERDICT)
-
-
-def _gaps(fitted: Model, readings: Measurements) -> str:
-    predicted = predict_what_holds(fitted, situation_of(fitted.robot, readings))
-    return csv_text(prediction_table(readings, predicted))
 
 
 def _write_pages(
@@ -196,32 +159,6 @@ def page_or_warning(name: str, make: Callable[[], str]) -> str | None:
 
 def _heldout(file: Path) -> str:
     return f"on the readings of `{file.name}`, which are of other poses"
-
-
-def plan_of(answer: Explanation, readings: Measurements) -> Measurements:
-    """The poses and loads to measure next, as measurements without displacements."""
-    if answer.next_poses is None:
-        raise ValueError("there is nothing to measure next")
-    a, wrench = answer.next_poses
-    return Measurements(
-        pose=tuple(f"next_{k + 1}" for k in range(len(a))),
-        joint_names=readings.joint_names,
-        joint_kinds=readings.joint_kinds,
-        joints=np.asarray(a),
-        wrench=np.asarray(wrench),
-        displacement=None,
-        robot=readings.robot,
-        base_frame=readings.base_frame,
-        tool_frame=readings.tool_frame,
-        point=readings.point,
-        force_point=readings.force_point,
-        source=" ".join(
-            [
-                "Poses and loads that tell the named alternatives apart.",
-                *answer.details.get("next_remarks", ()),
-            ]
-        ),
-    )
 
 
 def parts(

@@ -20,11 +20,11 @@ from typing import Annotated, NoReturn, TextIO
 
 import typer
 
-from sk120stiff.cli.document import SCHEMA, as_json_text
 from sk120stiff.cli.visible import visible
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
 from sk120stiff.errors import Refusal, ToolkitError
 from sk120stiff.files import running
+from sk120stiff.files.json_text import SCHEMA, as_json_text
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks and every log message.")]

@@ -147,8 +147,8 @@ def _misused(error: Any, *, as_json: bool) -> int:
     """Say what is wrong with the command line, on stderr and where wanted as JSON."""
     error.show()
     if as_json:
-        from sk120stiff.cli.document import as_json_text
         from sk120stiff.cli.frame import Failure
+        from sk120stiff.files.json_text import as_json_text
 
         where = error.ctx.command_path if error.ctx is not None else PROGRAM
         said = (error.format_message(), where, f"Try '{where} --help'.")

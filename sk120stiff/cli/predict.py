@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-import io
 import warnings
 from collections.abc import Sequence
 
 import numpy as np
-import pandas as pd
 
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
 from sk120stiff.cli.tables import table
-from sk120stiff.cli.uncertainty import blame_reason, plus_minus, sentences, uncertainty_keys
-from sk120stiff.effects import Situation, situation_of
-from sk120stiff.errors import Refusal, ToolkitWarning
-from sk120stiff.files import guarded_cell, will_write, write_atomically
+from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
+from sk120stiff.effects import situation_of
+from sk120stiff.errors import ToolkitWarning
+from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import (
-    Model,
     Predicted,
-    held_loads,
-    predict_with_uncertainty,
     warn_of_far_bend,
+)
+from sk120stiff.model.prediction_table import (
+    csv_text,
+    predict_what_holds,
+    prediction_table,
+    unknown_reasons,
 )
 from sk120stiff.robot.coupling import Array
 from sk120stiff.slips import look
 
-AXES = "xyz"
-UNHELD = "no static equilibrium: the springs cannot hold this load"
 LISTED = 40  # rows that people are shown
 
 
@@ -71,76 +70,10 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     parts = _parts(predicted, readings, rms, per_pose, int(used.sum()))
     parts += sentences(believed, predicted.std_parameters, predicted.std_remainder)
     warn_of_far_bend(believed, predicted.displacement)
-    lost = [reason for reason in _reasons(predicted) if reason]
+    lost = [reason for reason in unknown_reasons(predicted) if reason]
     if lost:
         parts.append(f"{len(lost)} of {len(frame)} rows have no known uncertainty: {lost[0]}.")
     return Answer(document, parts)
-
-
-def predict_what_holds(model: Model, situation: Situation) -> Predicted:
-    """Predictions ± uncertainty; NaN, with a warning, where no equilibrium exists.
-
-    Raises
-    ------
-    Refusal
-        None of the loads can be held.
-    """
-    try:
-        return predict_with_uncertainty(model, situation)
-    except Refusal:
-        held = held_loads(model, situation)
-        if not held.any():
-            raise
-    warnings.warn(
-        f"{int((~held).sum())} of {len(held)} loads are beyond what the springs can hold; their "
-        "rows are left empty and say so.",
-        ToolkitWarning,
-        stacklevel=2,
-    )
-    return predict_with_uncertainty(model, situation.rows(held)).among(held)
-
-
-def prediction_table(readings: Measurements, predicted: Predicted) -> pd.DataFrame:
-    """One row per reading: pose, prediction ± its uncertainty, measurement and gap if any [mm, µm].
-
-    A column `reason` says why a prediction is missing, `std_reason` why an uncertainty is unknown,
-    if any is.
-    """
-    columns: dict[str, object] = {"pose": readings.pose}
-    for k, axis in enumerate(AXES):
-        columns[f"predicted_d{axis}[mm]"] = predicted.displacement[:, k] * 1e3
-    for name, std in (
-        ("parameters", predicted.std_parameters),
-        ("remainder", predicted.std_remainder),
-    ):
-        if std is not None:
-            told = np.where(np.isfinite(std), std, np.nan) * 1e6
-            columns |= {f"std_{name}_{axis}[um]": told[:, k] for k, axis in enumerate(AXES)}
-    if readings.displacement is not None:
-        gap = readings.displacement - predicted.displacement
-        for k, axis in enumerate(AXES):
-            columns[f"d{axis}[mm]"] = readings.displacement[:, k] * 1e3
-        for k, axis in enumerate(AXES):
-            columns[f"gap_{axis}[um]"] = gap[:, k] * 1e6
-    columns["use"] = readings.use.astype(int)
-    missing = ~np.isfinite(predicted.displacement).all(axis=1)
-    if missing.any():
-        columns["reason"] = np.where(missing, UNHELD, "")
-    reasons = _reasons(predicted)
-    if any(reasons):
-        columns["std_reason"] = reasons
-    return pd.DataFrame(columns)
-
-
-def _reasons(predicted: Predicted) -> list[str]:
-    return [blame_reason(names) for names in predicted.blame]
-
-
-def csv_text(frame: pd.DataFrame) -> str:
-    """The table as CSV; labels that a spreadsheet would take for formulas are written as text."""
-    text = io.StringIO()
-    frame.assign(pose=[guarded_cell(label) for label in frame["pose"]]).to_csv(text, index=False)
-    return text.getvalue()
 
 
 def _rms(gap: Array) -> float:

@@ -16,7 +16,7 @@ from sk120stiff.cli.options import (
     WrenchOption,
 )
 from sk120stiff.cli.tables import table
-from sk120stiff.cli.uncertainty import blame_reason, plus_minus, sentences, uncertainty_keys
+from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.model import (
     LoadedStiffness,
     LoadedUncertainty,
@@ -24,6 +24,7 @@ from sk120stiff.model import (
     loaded_stiffness,
     loaded_uncertainty,
 )
+from sk120stiff.model.prediction_table import blame_reason
 from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import Definiteness
 

@@ -35,13 +35,6 @@ def uncertainty_keys(model: Model) -> dict[str, object]:
     }
 
 
-def blame_reason(names: tuple[str, ...]) -> str:
-    """Why a ± is unknown; empty if it is not."""
-    if not names:
-        return ""
-    return f"depends on {', '.join(names)}, of which the readings of the fit do not show enough"
-
-
 def plus_minus(value: float, std: float, digits: int = 5) -> str:
     """``649.36 ± 3.2``, the error with two digits; ``± ?`` where it is unknown."""
     if not np.isfinite(value):

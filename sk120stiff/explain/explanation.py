@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,7 +13,7 @@ from sk120stiff.explain.adequacy import Adequacy
 from sk120stiff.explain.confirm import Confirmation
 from sk120stiff.explain.notebook import summary_html
 from sk120stiff.identify import Fit, Yardstick, yardstick
-from sk120stiff.measurements import NoiseModel
+from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.robot.coupling import Array
 
 Verdict = Literal["none", "named", "ambiguous", "outside"]
@@ -120,6 +121,8 @@ class Explanation:
         What was decided about it beyond the data's own words.
     set_aside
         Rows of the readings, masked ones counted, that were treated as outliers.
+    readings
+        What was explained, masked rows included.
     adequacy
         Tests of what the final model leaves over.
     unnamed
@@ -150,6 +153,7 @@ class Explanation:
     noise: NoiseModel
     noise_reasons: tuple[str, ...]
     set_aside: tuple[int, ...]
+    readings: Measurements
     adequacy: Adequacy
     unnamed: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()
@@ -177,6 +181,30 @@ class Explanation:
         kind, _, where = name.partition(":")
         told = Options(poses=readings.poses, timed=readings.time is not None)
         return self.catalogue.effect(self.base.model.robot, kind, where, told)
+
+    def save(
+        self, folder: str | os.PathLike[str], *, provenance: Mapping[str, str] | None = None
+    ) -> dict[str, object]:
+        """Write verdict.json, model.yaml, gaps.csv, and next_poses.csv where poses would tell more.
+
+        Files of an earlier answer in the folder are replaced, pages too, all in one moment. The
+        report and the scene are pages of `sk120stiff.show.stories`.
+
+        Parameters
+        ----------
+        folder
+            Made where it is missing.
+        provenance
+            Where the readings come from, for the model's file.
+
+        Returns
+        -------
+        dict
+            The content of verdict.json.
+        """
+        from sk120stiff.explain.saving import save
+
+        return save(self, folder, provenance=provenance)
 
     def __repr__(self) -> str:
         names = ", ".join(finding.effect.id for finding in self.findings)

@@ -90,3 +90,14 @@ def test_nothing_is_said_where_nothing_fails(answer, task, tmp_path) -> None:
         warnings.simplefilter("error", ToolkitWarning)
         write_answer(answer, task, tmp_path, report=True)
     assert names(tmp_path) == ANSWERS | {"report.html", "scene.html"}
+
+
+def test_an_answer_saves_itself_as_the_command_writes_it(answer, task, tmp_path) -> None:
+    by_command = write_answer(answer, task, tmp_path / "command", report=False)
+    by_itself = answer.save(tmp_path / "itself")
+    assert by_itself == {key: by_command[key] for key in by_itself}
+    assert names(tmp_path / "itself") == ANSWERS == names(tmp_path / "command")
+    for name in ("verdict.json", "gaps.csv"):
+        one, other = (tmp_path / folder / name for folder in ("itself", "command"))
+        assert one.read_bytes() == other.read_bytes()
+    assert repr(answer).startswith("<Explanation: none; gap ")

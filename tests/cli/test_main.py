@@ -27,7 +27,7 @@ HEAVY = {
     "yaml",
 }
 INFRASTRUCTURE = {
-    "__init__", "document", "environment", "explain_output", "frame", "main", "opening", "options",
+    "__init__", "environment", "explain_output", "frame", "main", "opening", "options",
     "map_postures", "plan_wishes", "tables", "uncertainty", "visible", "xacro_option",
 }  # fmt: skip
 

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 
-from sk120stiff.cli.document import as_json_text
+from sk120stiff.files.json_text import as_json_text
 from sk120stiff.paper.document import as_document
 from sk120stiff.paper.tables import Column, SideBySide, side_by_side
 

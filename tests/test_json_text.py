@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sk120stiff.cli.document import as_json_text
+from sk120stiff.files.json_text import as_json_text
 
 
 class Verdict(Enum):
