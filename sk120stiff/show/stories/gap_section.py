@@ -92,7 +92,9 @@ def _per_pose(fit: Fit, models: dict[str, Model], floor: float | None) -> Pictur
     gaps = {name: pose_rms(fit, model) for name, model in models.items()}
     if len(poses) > MANY:
         worst = {name: um(float(values.max())) for name, values in gaps.items()}
-        told = ", ".join(f"{value} µm {name}" for name, value in worst.items())
+        told = ", ".join(f"{size} µm {name}" for name, size in worst.items())
+        if len(worst) == 1:  # a page with one model has no other to tell it from
+            told = f"{next(iter(worst.values()))} µm"
         return f"There are {counted(len(poses), 'pose')}; the largest gap of one is {told}."
     told = "; ".join(
         f"{name} {um(float(values.min()))} to {um(float(values.max()))} µm"
