@@ -16,7 +16,8 @@ from tests.hidden.generator.causes_foreign import RubberMount
 from tests.hidden.generator.design import plan
 from tests.hidden.generator.draw import unit_causes
 from tests.hidden.generator.draw_real import real
-from tests.hidden.generator.levels_real import remainder
+from tests.hidden.generator.levels import setting, shows
+from tests.hidden.generator.levels_real import lifelike_pool, remainder
 from tests.hidden.generator.noise import Noise
 from tests.hidden.generator.plans import told, tracker
 from tests.hidden.generator.robots import six_axis, varied
@@ -125,6 +126,21 @@ def test_lifelike_case_keeps_its_promise(lifelike: Case) -> None:
         own = family(entry.cause.name)
         assert not any(r.name in own and r.where == entry.cause.where for r in entry.rivals)
     assert len(lifelike.truth()["laws"]) == len(lifelike.hidden)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("schedule", "shared", "shown"),
+    [("up_down", True, True), ("ladder", True, True), ("up_down", False, False),
+     ("ascending", True, False), ("single", True, False)],
+)  # fmt: skip
+def test_a_loop_is_hidden_where_the_loads_can_show_it(
+    schedule: str, shared: bool, shown: bool
+) -> None:
+    at = setting("L10", (1,), np.random.default_rng(1), arm=sk120(), schedule=schedule,
+                 shared=shared, positions=False, loads=3, poses=4)  # fmt: skip
+    names = {choice.name for choice in lifelike_pool(at) if shows(choice, at)}
+    assert ("friction_hysteresis" in names) is shown
+    assert {"gear_hardening", "link_bending", "base_rocking"} <= names
 
 
 def test_remainder_is_what_the_best_exact_fit_leaves() -> None:
