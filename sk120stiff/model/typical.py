@@ -30,9 +30,9 @@ RULE = (
 def typical_model(robot: Robot) -> Model:
     """A spring in every actuated joint, from the arm's size and its stated efforts (see `RULE`).
 
-    An order of magnitude to plan and to start an identification with. Catalogues of strain-wave
-    gears (CSG-25: 176 N·m, 3·10⁴ N·m/rad) and of cycloidal ones (RV-320: 7840 N·m,
-    3.4·10⁶ N·m/rad) wind up 2 to 6 mrad at their largest momentary torque.
+    An order of magnitude to plan and to start an identification with. A gear is dimensioned by the
+    stress in its teeth and bearings, so all wind up by a few milliradians at their largest torque,
+    whatever their size; which size a joint has goes with its torque.
     """
     model = joint_spring_model(robot, typical_stiffness(robot))
     parameters = tuple(replace(p, origin=TYPICAL) for p in model.parameters)

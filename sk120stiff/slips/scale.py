@@ -16,12 +16,11 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.robot.anatomy import arm_length
 
-#: Softest and stiffest usual drive of a base joint, by the arm's stretched length. A gear winds up
-#: by about 1 mrad at its rated torque (cycloidal reducers: data sheets give 108 N·m per arcmin at
-#: 412 N·m rated, 980 at 3.1 kN·m), a strain-wave gear with its joint by 2 to 7 mrad, and rated
-#: torque goes with payload times reach. Measured: 4.0e5, 9.4e5, 1.4e6 on 2.9 m and 120 kg (the 2005
-#: paper), 0.9e6 to 2.7e6 on 2.9 m and 210 kg (public readings), 1e4 to 3e4 on light arms of 1 to
-#: 1.4 m, whence the wide range there: light arms and industrial ones share these lengths.
+#: Softest and stiffest usual drive of a base joint, by the arm's stretched length. Orders of
+#: magnitude: a gear winds up by one to a few mrad at its rated torque, and rated torque goes with
+#: payload times reach. Measured: 4.0e5, 9.4e5, 1.4e6 on 2.9 m and 120 kg (the 2005 paper), 0.9e6 to
+#: 2.7e6 on 2.9 m and 210 kg (public readings). Wide, for light arms and industrial ones share
+#: lengths, and only a doubt follows from it.
 USUAL = (
     (0.5, 1e3, 2e4),  # payload 1 kg
     (1.0, 4e3, 1e5),  # 3 to 7 kg
@@ -89,7 +88,7 @@ def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
         times = yields_times(model, measurements)
         if times is None:
             return None
-        said = _times(times, "the model's springs let it")
+        said = _times(times, "the model's springs let it (if they are of this arm)")
         return _doubt(said, times, 1.0 / KNOWN, KNOWN)
     length = arm_length(robot)
     if any(robot.prismatic) or not USUAL[0][0] <= length <= USUAL[-1][0]:
