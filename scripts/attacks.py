@@ -62,6 +62,9 @@ def main() -> int:
                 found.append(each)
                 if each.loss:  # told at once: a line may take minutes
                     print(f"    LOST  {each.attack}\n          {each.loss}", flush=True)
+        if not found:
+            print(f"{name:26}{0:7}   could not be tried here", flush=True)
+            continue
         held = sum(not each.loss for each in found)
         slowest = max((each.seconds for each in found), default=0.0)
         took = time.perf_counter() - begin

@@ -13,7 +13,6 @@ from sk120stiff.slips.correction import Correction
 from sk120stiff.slips.sheet import Sheet
 
 TURN = 2.0 * np.pi
-DEGREE = np.pi / 180.0  # rad
 PARALLEL = 0.999  # cosine between the axes of joints that turn in one plane
 
 
