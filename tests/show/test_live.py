@@ -313,5 +313,6 @@ def test_the_command_writes_a_file_instead(tmp_path) -> None:
     running = _view("--static", str(target), "--data", str(DATA), "--before", paper)
     out, err = running.communicate(timeout=60)
     assert running.returncode == 0, err
-    assert json.loads(out) == {"url": target.as_uri(), "scene": str(target)}
+    told = {"url": target.as_uri(), "scene": str(target)}
+    assert json.loads(out) == {"schema": 2, "warnings": [], **told}
     assert '"models":["before","model"]' in target.read_text()

@@ -155,7 +155,7 @@ def test_written_whole_or_not_at_all(tmp_path, monkeypatch) -> None:
     def fail(*_: object) -> None:
         raise OSError("disk full")
 
-    monkeypatch.setattr("sk120stiff.files.os.replace", fail)
+    monkeypatch.setattr("sk120stiff.files.writing.os.replace", fail)
     with pytest.raises(OSError, match="disk full"):
         Report("New").write(target)
     assert target.read_text() == "old"

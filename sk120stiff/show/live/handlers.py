@@ -98,9 +98,12 @@ class SocketHandler(WebSocketHandler):
         self.work: asyncio.Task[None] | None = None
 
     def prepare(self) -> None:
-        """Refuse requests that name another host."""
+        """Refuse requests that name another host, or an origin that tornado cannot read."""
         if self.request.host not in self.server.hosts:
             raise HTTPError(403, reason="Unknown host")
+        origin = self.request.headers.get("Origin")
+        if origin is not None and not self.check_origin(origin):
+            raise HTTPError(403, reason="Unknown origin")
 
     def check_origin(self, origin: str) -> bool:
         """Only pages that this server has served may talk to it."""
