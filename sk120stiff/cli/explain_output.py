@@ -15,6 +15,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
 from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.adequacy import Adequacy
+from sk120stiff.explain.document import BEST_GUESS
 from sk120stiff.explain.saving import NEXT_POSES, RESULTS, VERDICT
 from sk120stiff.files import will_write, write_atomically
 from sk120stiff.identify import unseen_reasons
@@ -171,13 +172,16 @@ def parts(
     shown += answer.where[:TOLD]
     if answer.suspects:
         lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
-        shown.append(f"{lead}: {', '.join(answer.suspects)}.")
+        shown.append(f"{lead}: {', '.join(suspect.id for suspect in answer.suspects)}.")
     shown += answer.unnamed
     shown += [
         f"{name} cannot be seen: {why}." for name, why in unseen_reasons(answer.final).items()
     ]
     if answer.findings and answer.adequacy.lacking:
         shown.append("That is not all: more is left than the noise makes.")
+    shown += [answer.remainder.sentence(), *answer.remainder.where]
+    if answer.guess is not None:
+        shown.append(f"The best guess stands in {out / BEST_GUESS}; it is not confirmed.")
     shown.append(noise_sentence(answer.final))
     if answer.adequacy.whole is not None:
         shown.append(answer.adequacy.whole.sentence())
@@ -239,7 +243,8 @@ def findings(answer: Explanation) -> list[str]:
     """Every named effect, its alternatives and its size."""
     lines = []
     for finding in answer.findings:
-        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}]")
+        sure = f"P = {finding.probability:.2f}"
+        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}] ({sure})")
         for other in finding.alternatives:
             kind = "always the same" if other in finding.exact else "not told apart here"
             lines.append(f"  or {other} ({kind})")

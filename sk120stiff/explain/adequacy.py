@@ -141,6 +141,13 @@ def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
     return _judged(tests, explained, whole)
 
 
+def structure(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+    """As `adequacy`, of structure alone: beside model-form error the whole misfit says nothing."""
+    noise = yardstick(fit)
+    explained = _explained(regression, columns) / float(np.sqrt(noise.scale))
+    return _judged(dict(_structure(fit, noise)), explained, None)
+
+
 def _judged(
     tests: Tests, explained: float, whole: LackOfFit | None, understated: float | None = None
 ) -> Adequacy:

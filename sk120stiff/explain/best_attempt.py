@@ -1,9 +1,7 @@
-"""The attempt that explains most: how the zero was shared, and a search at the misfit's own scale.
+"""The attempt that explains most, and what it is held against.
 
-What was stated of the noise, or found from repeats, stays the yardstick. But where all that is
-found leaves more than it allows, the law of something is not exact, and a search that takes every
-micrometre beyond the noise for a cause finds impostors. So it is made again with a scale that the
-misfit tells, and what it found is held against the yardstick afterwards.
+What was stated of the noise, or found from repeats, stays the yardstick of every fit, whatever
+else a search took into account (`beside_form.py`).
 
 A gap that is rounding, because the readings were computed, has no cause: the search is made again
 with the finest noise that instruments have, and finds none.
@@ -38,9 +36,7 @@ def best_attempt(measurements: Measurements, under: Try) -> tuple[Attempt, Noise
     tried = [under(noise) for noise in candidates(measurements)]
     found = tried[likelier([-each.total for each in tried])]
     noise = found.base.problem.noise
-    if noise.known and found.final.exceeds:
-        found = under(replace(noise, freedom=0))
-    elif yardstick(found.base).source == "computed":
+    if yardstick(found.base).source == "computed":
         found = under(replace(noise, sigma=FINEST, freedom=np.inf))
     return found, noise
 

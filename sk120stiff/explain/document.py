@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from sk120stiff.explain.explanation import Explanation, Finding
+from sk120stiff.explain.posterior import LISTED
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Parameter
 
+BEST_GUESS = "best_guess.yaml"
 RIGID = "it lies on its bound: rigid fits best"
 
 
@@ -31,6 +34,8 @@ def verdict_document(
     """
     return {
         "verdict": answer.verdict,
+        "remainder": remainder_document(answer),
+        "probabilities": probabilities(answer),
         "effects": [_effect(answer, finding) for finding in answer.findings],
         "parameters": parameters_before_and_after(answer),
         "gap": {
@@ -47,7 +52,11 @@ def verdict_document(
             ],
         },
         "where": list(answer.where),
-        "suspects": list(answer.suspects),
+        "suspects": [
+            {"name": suspect.id, "heldout_gain_um": _um(suspect.heldout_gain)}
+            for suspect in answer.suspects
+        ],
+        "best_guess": BEST_GUESS if answer.guess is not None else None,
         "not_named": list(answer.unnamed),
         "limits": list(answer.limits),
         "noise": {
@@ -77,8 +86,40 @@ def verdict_document(
     }
 
 
+def remainder_document(answer: Explanation) -> dict[str, Any]:
+    """What is left beyond the noise."""
+    left = answer.remainder
+    return {
+        "rms_um": _um(left.rms),
+        "interval_95": [_um(end) for end in left.interval],
+        "p": left.probability,
+        "significant": left.significant,
+        "proportional": left.form.proportional,
+        "constant_um": _um(left.form.constant),
+        "where": list(left.where),
+    }
+
+
+def probabilities(answer: Explanation) -> list[dict[str, Any]]:
+    """Every candidate above a hundredth, the likeliest first."""
+    found: dict[str, float] = dict(answer.odds)
+    for finding in answer.findings:
+        for name, share in finding.evidence.odds.items():
+            found[name] = max(share, found.get(name, 0.0))
+    ranked = sorted(found.items(), key=lambda item: -item[1])
+    return [{"name": name, "probability": share} for name, share in ranked if share > LISTED]
+
+
+def share_of(answer: Explanation, finding: Finding) -> float | None:
+    """By how much the held-out gap fell when an effect joined alone [m]; None where it did not."""
+    for before, step in pairwise(answer.steps):
+        if step.label == f"+ {finding.effect.id}":
+            return before.heldout_rms - step.heldout_rms
+    return None
+
+
 def _um(metres: float | None) -> float | None:
-    return None if metres is None else metres * 1e6
+    return None if metres is None or not np.isfinite(metres) else metres * 1e6
 
 
 def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
@@ -106,6 +147,8 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "where": finding.effect.where,
         "alternatives": list(finding.alternatives),
         "exact_aliases": list(finding.exact),
+        "probability": finding.probability,
+        "share_um": _um(share_of(answer, finding)),
         "parameters": [_parameter(p, unseen.get(p.name)) for p in found],
         "sentence": finding.effect.sentence(),
         "equation": finding.effect.equation,

@@ -12,6 +12,7 @@ from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
 from sk120stiff.explain.adequacy import Adequacy
 from sk120stiff.explain.confirm import Confirmation
 from sk120stiff.explain.notebook import summary_html
+from sk120stiff.explain.remainder import Remainder
 from sk120stiff.identify import Fit, Yardstick, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.robot.coupling import Array
@@ -33,6 +34,9 @@ class Evidence:
         The best effect that is no alternative (``name:where``), and by how much it loses.
     confirmation
         Cross-validation and resampling of the poses.
+    odds
+        Probability of each candidate (``name:where``) in this effect's place beside the other
+        effects, as far as the catalogue goes; what is missing to one is that of none.
     """
 
     score_gain: float
@@ -40,6 +44,7 @@ class Evidence:
     runner_up: str | None
     runner_up_gap: float
     confirmation: Confirmation
+    odds: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,13 @@ class Finding:
     evidence: Evidence
 
     @property
+    def probability(self) -> float:
+        """Probability that the effect or one of its alternatives is at work."""
+        return sum(
+            self.evidence.odds.get(name, 0.0) for name in {self.effect.id, *self.alternatives}
+        )
+
+    @property
     def settled(self) -> bool:
         """No further poses could tell more."""
         return set(self.alternatives) <= set(self.exact)
@@ -86,6 +98,23 @@ class Step:
     label: str
     fit_rms: float
     heldout_rms: float
+
+
+@dataclass(frozen=True)
+class Contender:
+    """What comes nearest to an explanation where none is confirmed.
+
+    Attributes
+    ----------
+    id
+        ``name:where``.
+    heldout_gain
+        By how much the held-out gap falls with it in the model, rms per axis [m]; NaN if poses that
+        are left do not hold it.
+    """
+
+    id: str
+    heldout_gain: float
 
 
 @dataclass(frozen=True)
@@ -125,6 +154,8 @@ class Explanation:
         What was explained, masked rows included.
     adequacy
         Tests of what the final model leaves over.
+    remainder
+        Its size, as model-form error beside the noise.
     unnamed
         What fitted but is not named, and why, in sentences.
     limits
@@ -132,7 +163,12 @@ class Explanation:
     where
         Plain statements on where the gap of the base model lives.
     suspects
-        For verdict ``outside``: what comes nearest, as ``name:where``.
+        For verdict ``outside``: what comes nearest.
+    guess
+        For verdict ``outside``: the fit with what foretells other poses best, confirmed or not;
+        None if nothing does.
+    odds
+        Probability of one effect more, for each candidate above a hundredth.
     not_observable
         Effects that these readings cannot show at any plausible size.
     smallest_detectable
@@ -155,10 +191,13 @@ class Explanation:
     set_aside: tuple[int, ...]
     readings: Measurements
     adequacy: Adequacy
+    remainder: Remainder
     unnamed: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()
     where: tuple[str, ...] = ()
-    suspects: tuple[str, ...] = ()
+    suspects: tuple[Contender, ...] = ()
+    guess: Fit | None = None
+    odds: Mapping[str, float] = field(default_factory=dict)
     not_observable: tuple[str, ...] = ()
     smallest_detectable: tuple[Detectable, ...] = ()
     next_poses: tuple[Array, Array] | None = None

@@ -14,6 +14,7 @@ from sk120stiff.explain.confirm import confirm
 from sk120stiff.explain.explanation import Evidence, Finding
 from sk120stiff.explain.localisation import OwnAtPoses
 from sk120stiff.explain.localise import localise
+from sk120stiff.explain.posterior import posterior
 from sk120stiff.explain.regression import Regression
 from sk120stiff.explain.score import Scored, price_of_sizes, score_set
 from sk120stiff.explain.search import gains
@@ -28,6 +29,25 @@ CONTENDERS = 24  # rivals looked at for every effect
 
 
 @dataclass(frozen=True)
+class Fallen:
+    """An effect that fits and may not be named.
+
+    Attributes
+    ----------
+    id
+        ``name:where``.
+    reason
+        Why, in a sentence.
+    shadow
+        It only mends the law of a stronger effect; else other poses do not confirm it.
+    """
+
+    id: str
+    reason: str
+    shadow: bool = False
+
+
+@dataclass(frozen=True)
 class Named:
     """What came of the chosen effects.
 
@@ -35,38 +55,57 @@ class Named:
     ----------
     findings
         Effects that may be named, in the order of their weight.
-    doubted
-        Ids of effects that other poses do not confirm.
-    shadows
-        Ids of effects that only mend the law of a stronger one.
-    reasons
-        Why these are not named, in sentences.
+    fallen
+        Those that may not, the weakest last.
     """
 
     findings: tuple[Finding, ...] = ()
-    doubted: tuple[str, ...] = ()
-    shadows: tuple[str, ...] = ()
-    reasons: tuple[str, ...] = ()
+    fallen: tuple[Fallen, ...] = ()
+
+    @property
+    def doubted(self) -> tuple[str, ...]:
+        """Ids of effects that other poses do not confirm."""
+        return tuple(each.id for each in self.fallen if not each.shadow)
+
+    @property
+    def shadows(self) -> tuple[str, ...]:
+        """Ids of effects that only mend the law of a stronger one."""
+        return tuple(each.id for each in self.fallen if each.shadow)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why these are not named, in sentences."""
+        return tuple(each.reason for each in self.fallen)
 
 
-def judged(found: Attempt, *, seed: int) -> tuple[Attempt, Named]:
+def judged(found: Attempt, *, seed: int, least: float = -np.inf) -> tuple[Attempt, Named]:
     """The attempt with those effects alone that may be named, and what was said of each.
 
-    Where some may not, the others are judged anew without them: their evidence is that of the model
-    that is written.
+    Where some may not, the weakest of them falls, and the others are judged anew without it: names
+    that overlap spoil each other's evidence, and theirs is that of the model that is written.
+
+    Parameters
+    ----------
+    found
+        The attempt.
+    seed
+        Of folds and resampling.
+    least
+        Gain of score that an effect has to bring.
     """
-    named = findings_of(found, seed=seed)
-    said = named
-    while named.doubted or named.shadows:
-        found = _without_the_weakest(found, [finding.effect for finding in named.findings])
-        named = findings_of(found, seed=seed)
-        said = Named(
-            named.findings,
-            (*said.doubted, *named.doubted),
-            (*said.shadows, *named.shadows),
-            (*said.reasons, *named.reasons),
-        )
-    return found, said
+    fallen: list[Fallen] = []
+    named = findings_of(found, seed=seed, least=least)
+    while named.fallen:
+        fallen.append(named.fallen[-1])
+        kept = [e for e in _in_order(found) if e.id != fallen[-1].id]
+        found = _without_the_weakest(found, kept)
+        named = findings_of(found, seed=seed, least=least)
+    return found, Named(named.findings, tuple(fallen))
+
+
+def _in_order(found: Attempt) -> list[Effect]:
+    """The chosen effects, the strongest first."""
+    return [found.regression.candidates[e] for e in by_weight(found.regression, found.chosen)]
 
 
 def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
@@ -78,33 +117,49 @@ def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
             effects = effects[:-1]
 
 
-def findings_of(found: Attempt, *, seed: int) -> Named:
+def findings_of(found: Attempt, *, seed: int, least: float = -np.inf) -> Named:
     """Judge every chosen effect, beside all the others."""
     findings: list[Finding] = []
-    doubted: list[str] = []
-    shadows: list[str] = []
-    reasons: list[str] = []
+    fallen: list[Fallen] = []
     for effect in by_weight(found.regression, found.chosen):
         finding = _finding(found, effect, seed)
-        caster = _caster(found, finding, findings)
-        if caster is not None:
-            shadows.append(finding.effect.id)
-            reasons.append(
-                f"{finding.effect.id} would take away a little more of the gap, but no more than "
-                f"the law of {caster.effect.id} leaves over; it is not named."
-            )
-        elif finding.effect.exchangeable and not _constant(found, finding.effect):
-            doubted.append(finding.effect.id)
-            reasons.append(
-                f"{finding.effect.id} fits, but something in proportion to the load at every pose "
-                "would fit as well; it is not named."
-            )
-        elif finding.evidence.confirmation.holds:
+        objection = _objection(found, finding, findings, least)
+        if objection is None:
             findings.append(finding)
         else:
-            doubted.append(finding.effect.id)
-            reasons.append(_unconfirmed(finding))
-    return Named(tuple(findings), tuple(doubted), tuple(shadows), tuple(reasons))
+            fallen.append(objection)
+    return Named(tuple(findings), tuple(fallen))
+
+
+def _objection(
+    found: Attempt, finding: Finding, before: list[Finding], least: float
+) -> Fallen | None:
+    """Why an effect may not be named beside the stronger ones; None if it may."""
+    name = finding.effect.id
+    caster = _caster(found, finding, before)
+    if caster is not None:
+        return Fallen(
+            name,
+            f"{name} would take away a little more of the gap, but no more than the law of "
+            f"{caster.effect.id} leaves over; it is not named.",
+            shadow=True,
+        )
+    if finding.effect.exchangeable and not _constant(found, finding.effect):
+        return Fallen(
+            name,
+            f"{name} fits, but something in proportion to the load at every pose would fit as "
+            "well; it is not named.",
+        )
+    if not finding.evidence.confirmation.holds:
+        return Fallen(name, _unconfirmed(finding))
+    if finding.evidence.score_gain < least:
+        return Fallen(
+            name,
+            f"{name} fits a little better, but beside what the laws of real arms leave over its "
+            f"evidence is weak ({finding.evidence.score_gain:.1f} where {least:.0f} is strong); it "
+            "is not named.",
+        )
+    return None
 
 
 def unit(regression: Regression, model: Scored) -> float:
@@ -221,6 +276,11 @@ def _finding(found: Attempt, effect: int, seed: int) -> Finding:
             runner_up=None if runner_up is None else regression.candidates[runner_up[0]].id,
             runner_up_gap=np.inf if runner_up is None else runner_up[1] - with_it.score,
             confirmation=confirm(regression, found.chosen, effect, same, seed=seed),
+            odds=posterior(
+                {chosen.id: with_it.score}
+                | {regression.candidates[e].id: model.score for e, model in rivals},
+                none=without.score,
+            ),
         ),
     )
 

@@ -35,7 +35,8 @@ def summary_html(answer: Explanation) -> str:
             )
         )
     elif answer.suspects:
-        parts.append(f"<p>Nearest, but no explanation: {escape(', '.join(answer.suspects))}</p>")
+        names = ", ".join(suspect.id for suspect in answer.suspects)
+        parts.append(f"<p>Nearest, but not confirmed: {escape(names)}</p>")
     parts.append(
         _table(
             ("model", "gap fitted [µm rms]", "on other poses [µm rms]", ""),

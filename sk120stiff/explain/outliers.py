@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.explain.regression import Regression
-from sk120stiff.measurements import Whitener
+from sk120stiff.measurements import FormWhitener, Whitener
 from sk120stiff.robot.coupling import Array
 
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
@@ -15,7 +15,7 @@ LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to te
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
 
 
-def outlying_rows(regression: Regression, whitener: Whitener) -> NDArray[np.intp]:
+def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> NDArray[np.intp]:
     """Rows (readings) whose own shift would be significant beyond the whole catalogue together.
 
     The catalogue is fitted with every parameter drawn towards zero by its plausible range, which is
@@ -61,7 +61,7 @@ def outlying_rows(regression: Regression, whitener: Whitener) -> NDArray[np.intp
 
 
 def _shift_columns(
-    whitener: Whitener, count: int, pose: NDArray[np.intp]
+    whitener: Whitener | FormWhitener, count: int, pose: NDArray[np.intp]
 ) -> list[tuple[NDArray[np.intp], Array]]:
     """For each reading the rows of its pose and their whitened shifts (rows, 3).
 

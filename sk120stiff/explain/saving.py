@@ -14,7 +14,7 @@ import numpy as np
 
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import ToolkitWarning
-from sk120stiff.explain.document import verdict_document
+from sk120stiff.explain.document import BEST_GUESS, verdict_document
 from sk120stiff.files import together, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import known_model
@@ -30,6 +30,7 @@ NEXT_POSES = "next_poses.csv"
 RESULTS = (
     VERDICT,
     "model.yaml",
+    BEST_GUESS,
     "gaps.csv",
     NEXT_POSES,
     "next_poses.yaml",
@@ -54,6 +55,9 @@ def save(
         write_model(fitted, out / "model.yaml")
         if gaps is not None:
             write_atomically(out / "gaps.csv", gaps)
+        if answer.guess is not None:
+            guess = replace(known_model(answer.guess), provenance=fitted.provenance)
+            write_model(guess, out / BEST_GUESS)
         if following is not None:
             write_measurements(plan_of(answer, answer.readings), out / following)
         write_atomically(out / VERDICT, as_json_text(document) + "\n")

@@ -98,7 +98,8 @@ def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> t
     solved = solve_columns(sums, columns, regression.lower, regression.plausible)
     n = max(sums.count, 2.0)
     price = len(parts) * price_of_looking(regression, n) + _sizes(regression, sums, solved, parts)
-    price += regression.in_base[solved.columns].sum() * np.log(n)
+    # A spring of the base model is there whether it moves or not: none is cheaper for being rigid.
+    price += len(regression.base) * np.log(n)
     return solved, float(_misfit(regression, n, solved.rss) + price)
 
 

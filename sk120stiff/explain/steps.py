@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError, Refusal
+from sk120stiff.explain.beside_form import with_model_form
 from sk120stiff.explain.explanation import Step
 from sk120stiff.explain.regression import regression_at
 from sk120stiff.explain.search import beam_search
@@ -71,11 +71,12 @@ def nested(found: Attempt, counts: Sequence[int]) -> Learn:
     """
     start, alpha = found.base.problem.model, found.regression.alpha
     ids = [effect.id for effect in start.effects]
+    whole = found.base.problem.noise
 
     def learn(readings: Measurements) -> list[Fit]:
         base = fit(start, readings)
-        if base.sigma_known and not found.base.sigma_known:  # a search at the misfit's own scale
-            base = fit(start, readings, noise=replace(base.problem.noise, freedom=0))
+        if whole.form or (base.sigma_known and not whole.known):  # laws that are not exact
+            base = fit(start, readings, noise=with_model_form(base))
         if not any(counts):
             return [base for _ in counts]
         regression = regression_at(base, found.candidates, ids, alpha=alpha)

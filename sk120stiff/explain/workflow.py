@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.effects import CATALOGUE, Catalogue
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.adequacy import Adequacy, adequacy
+from sk120stiff.explain.beside_form import beside_model_form
 from sk120stiff.explain.best_attempt import best_attempt, held_against
 from sk120stiff.explain.consequences import completed
 from sk120stiff.explain.doubt import with_doubt
-from sk120stiff.explain.explanation import Explanation
-from sk120stiff.explain.naming import SHADOW, Named, judged
-from sk120stiff.explain.settling import Attempt, attempt, with_effects
+from sk120stiff.explain.explanation import Explanation, Finding, Verdict
+from sk120stiff.explain.guess import contenders
+from sk120stiff.explain.localise import localise
+from sk120stiff.explain.naming import SHADOW, judged
+from sk120stiff.explain.posterior import one_more
+from sk120stiff.explain.remainder import remainder_of
+from sk120stiff.explain.settling import Attempt, attempt
 from sk120stiff.explain.steering import Options, candidates_for, with_assumed
 from sk120stiff.explain.steps import gap_steps
+from sk120stiff.explain.where_words import where_sentences
 from sk120stiff.identify import refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
@@ -25,6 +32,8 @@ from sk120stiff.model import Model
 from sk120stiff.slips import look, refuse_unbelievable, without_copies
 
 LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
+
+TOLD = 2  # sentences on where the remainder lives
 
 Progress = Callable[[str, float], None]
 
@@ -77,63 +86,58 @@ def explain(
     sound = _sound(model, measurements)
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
-    found, noise = _best_attempt(model, used, wish, catalogue)
-    left = _adequacy(found, noise)
-    named = Named()
-    allowed = LEFT_OVER
-    if not _too_much(left, allowed):
-        tell("confirming on other poses", 0.5)
-        found, named = judged(found, seed=wish.seed)
-        left = _adequacy(found, noise)
-        if named.shadows:
-            allowed = SHADOW
-    findings = named.findings
-    reasons = (*decided(noise, used), *left.of_the_statement())
+    under = _attempts(model, used, wish, catalogue)
+    found, noise = best_attempt(used, under)
     base = held_against(noise, found.base)
-    if _too_much(left, allowed):
-        nearest = [effect.id for effect in found.effects]
-        return _finished(
-            with_effects(found, []),
-            Explanation(
-                verdict="outside",
-                findings=(),
-                base=base,
-                final=base,
-                steps=gap_steps(found, (), holdout, seed=wish.seed),
-                noise=noise,
-                noise_reasons=reasons,
-                set_aside=tuple(rows[found.aside].tolist()),
-                readings=measurements,
-                adequacy=left,
-                unnamed=named.reasons,
-                limits=wish.limits,
-                suspects=tuple(dict.fromkeys([*nearest, *named.doubted])),
-                catalogue=catalogue,
-            ),
-            wish,
-        )
-    if not findings:
-        left.refuse_contradicted(str(measurements.path or "the measurements"))
+    tell("confirming on other poses", 0.3)
+    exact = not found.final.exceeds
+    if exact:
+        exactly = judged(found, seed=wish.seed)
+        left = _adequacy(exactly[0], noise)
+        exact = not _too_much(left, SHADOW if exactly[1].shadows else LEFT_OVER)
+    found, named = exactly if exact else beside_model_form(base, under, seed=wish.seed)
+    left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
+    findings = named.findings
     effects = [finding.effect for finding in findings]
-    settled = all(finding.settled for finding in findings)
+    final = with_doubt(found, findings)
+    verdict = _verdict(findings, left)
+    if verdict == "none":
+        left.refuse_contradicted(str(measurements.path or "the measurements"))
+    remainder = remainder_of(held_against(noise, found.final))
+    if remainder.significant:
+        lives = where_sentences(localise(held_against(noise, found.final)))
+        remainder = replace(remainder, where=lives[1 : 1 + TOLD])
+    fallen = named.doubted if verdict == "outside" else ()
+    suspects, guess = contenders(found, fallen, seed=wish.seed)
     answer = Explanation(
-        verdict="none" if not findings else "named" if settled else "ambiguous",
+        verdict=verdict,
         findings=findings,
         base=base,
-        final=held_against(noise, with_doubt(found, findings)),
+        final=final if final.problem.noise.form else held_against(noise, final),
         steps=gap_steps(found, effects, holdout, seed=wish.seed),
         noise=noise,
-        noise_reasons=reasons,
+        noise_reasons=(*decided(noise, used), *left.of_the_statement()),
         set_aside=tuple(rows[found.aside].tolist()),
         readings=measurements,
         adequacy=left,
+        remainder=remainder,
         unnamed=named.reasons,
         limits=wish.limits,
+        suspects=suspects,
+        guess=guess,
+        odds=one_more(found.regression, found.chosen),
         catalogue=catalogue,
     )
     tell("what these readings cannot tell", 0.85)
-    return _finished(found, answer, wish)
+    return completed(answer, found.regression, seed=wish.seed)
+
+
+def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:
+    """What is confirmed is named, whatever is left beside it."""
+    if not findings:
+        return "outside" if left.lacking else "none"
+    return "named" if all(finding.settled for finding in findings) else "ambiguous"
 
 
 def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
@@ -146,10 +150,10 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
         )
 
 
-def _best_attempt(
+def _attempts(
     model: Model, measurements: Measurements, wish: Options, catalogue: Catalogue
-) -> tuple[Attempt, NoiseModel]:
-    """The attempt that explains most, and the noise that it is held against."""
+) -> Callable[[NoiseModel], Attempt]:
+    """Attempts at an answer, as a function of the noise."""
     base_model = with_assumed(model, measurements, wish.assume, catalogue)
     candidates = candidates_for(base_model, measurements, wish, catalogue)
     plain = tuple(effect for effect in candidates if not effect.exchangeable)
@@ -157,16 +161,17 @@ def _best_attempt(
 
     def under(chosen: NoiseModel) -> Attempt:
         # Constants of single poses are what a shared zero brings; it need not have been separate.
+        # Beside model-form error they are part of it.
         return attempt(
             base_model,
             measurements,
             chosen,
-            plain if undescribed and chosen.zero == "separate" else candidates,
+            plain if chosen.form or (undescribed and chosen.zero == "separate") else candidates,
             max_effects=wish.max_effects,
             alpha=wish.alpha,
         )
 
-    return best_attempt(measurements, under)
+    return under
 
 
 def _sound(model: Model, measurements: Measurements) -> Measurements:
@@ -195,7 +200,3 @@ def _adequacy(found: Attempt, noise: NoiseModel) -> Adequacy:
 def _too_much(left: Adequacy, allowed: float) -> bool:
     """Is more left over than a name may leave?"""
     return left.lacking and left.excess > allowed * left.explained
-
-
-def _finished(found: Attempt, answer: Explanation, wish: Options) -> Explanation:
-    return completed(answer, found.regression, seed=wish.seed)

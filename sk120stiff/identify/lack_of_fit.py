@@ -8,6 +8,7 @@ from scipy import stats
 
 from sk120stiff.identify.fit import LEVEL, Fit
 from sk120stiff.identify.left_over import orthonormal
+from sk120stiff.identify.solving import against_noise_alone
 from sk120stiff.identify.yardstick import Source, Yardstick, left_within_poses, yardstick
 
 DOUBTFUL = 0.05  # probability below which an agreement is said with a doubt
@@ -88,6 +89,8 @@ def chance(probability: float) -> str:
 def lack_of_fit(fit: Fit) -> LackOfFit | None:
     """Test the whole misfit against the yardstick of the readings' noise.
 
+    Model-form error that a fit took into account is no noise: it is what this test looks for.
+
     Parameters
     ----------
     fit
@@ -100,6 +103,7 @@ def lack_of_fit(fit: Fit) -> LackOfFit | None:
     """
     if fit.problem.weights is not None or fit.degrees_of_freedom < 1:
         return None
+    fit = against_noise_alone(fit)
     noise = yardstick(fit)
     factor = fit.noise_factor / noise.scale**0.5
     if fit.misfit is not None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.effects import Situation, situation_of
 from sk120stiff.errors import InputError
-from sk120stiff.measurements import Measurements, NoiseModel, Whitener
+from sk120stiff.measurements import FormWhitener, Measurements, NoiseModel, Whitener
 from sk120stiff.model import Model
 from sk120stiff.robot.coupling import Array
 
@@ -68,15 +68,9 @@ class Problem:
         return np.asarray(np.linalg.norm(self.measured, axis=1))
 
     @cached_property
-    def whitener(self) -> Whitener:
+    def whitener(self) -> Whitener | FormWhitener:
         """V^(-1/2), with V from the noise, the measured sizes and the weights."""
-        if self.weights is None:
-            return self.noise.whitener(self.measurements, self.sizes)
-        own, zero = self.noise.variances(self.measurements, self.sizes)
-        keep = self.weights[:, None]
-        if self.noise.zero == "separate":
-            return Whitener((own + zero) / keep, np.zeros_like(own), np.arange(len(own)))
-        return Whitener(own / keep, zero, self.measurements.zero_group)
+        return self.noise.whitener(self.measurements, self.sizes, self.weights)
 
     @cached_property
     def free(self) -> NDArray[np.intp]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from sk120stiff.errors import Refusal
@@ -9,6 +11,7 @@ from sk120stiff.identify.fit import Fit, with_values
 from sk120stiff.identify.polish import Minimum, polish
 from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.solvers import Method, minimise
+from sk120stiff.measurements import EXACT
 from sk120stiff.robot.coupling import Array
 
 HALVINGS = 12
@@ -40,6 +43,16 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
 def solve_near(problem: Problem, x: Array) -> Fit:
     """Solve a problem whose answer lies near scaled values `x` that are known."""
     return as_fit(problem, polish(problem.evaluate, x, problem.bounds, problem.span))
+
+
+def against_noise_alone(fit: Fit) -> Fit:
+    """The same model fitted under the noise of the instrument alone, without model-form error."""
+    problem = fit.problem
+    if not problem.noise.form:
+        return fit
+    exact = replace(problem.noise, form=EXACT)
+    found = solve_near(Problem(problem.model, problem.measurements, exact, problem.weights), fit.x)
+    return with_values(replace(found, doubt=fit.doubt))
 
 
 def as_fit(problem: Problem, found: Minimum) -> Fit:

@@ -3,6 +3,7 @@
 from sk120stiff.measurements.data import Measurements, NoiseStatement
 from sk120stiff.measurements.importing import Imported, read_figaroh
 from sk120stiff.measurements.joining import join_measurements
+from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.noise import NoiseModel, candidates, decided
 from sk120stiff.measurements.reading import read_measurements
 from sk120stiff.measurements.repeats import pure_error
@@ -10,8 +11,11 @@ from sk120stiff.measurements.whitening import Whitener
 from sk120stiff.measurements.writing import write_measurements
 
 __all__ = [
+    "EXACT",
+    "FormWhitener",
     "Imported",
     "Measurements",
+    "ModelForm",
     "NoiseModel",
     "NoiseStatement",
     "Whitener",

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.branches import TOLD
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.repeats import ENOUGH, Repeated, repeated
 from sk120stiff.measurements.whitening import Whitener
 
@@ -47,6 +48,8 @@ class NoiseModel:
     freedom
         Degrees of freedom behind sigma: infinite where it was stated, those of the repeats that
         tell it, 0 where it is only a scale to start from and the fit has to tell.
+    form
+        Model-form error beside the noise of the instrument.
 
     Raises
     ------
@@ -58,6 +61,7 @@ class NoiseModel:
     growth: float = 0.0
     zero: Literal["shared", "separate"] = "shared"
     freedom: float = np.inf
+    form: ModelForm = EXACT
 
     def __post_init__(self) -> None:
         if not 0 < self.sigma < np.inf:
@@ -84,7 +88,12 @@ class NoiseModel:
 
         V is multiplied by factor², except for what rows state of their own (sx, sy, sz).
         """
-        return dataclasses.replace(self, sigma=self.sigma * factor, growth=self.growth * factor)
+        return dataclasses.replace(
+            self,
+            sigma=self.sigma * factor,
+            growth=self.growth * factor,
+            form=self.form.scaled(factor),
+        )
 
     def variances(
         self, measurements: Measurements, sizes: ArrayLike | None = None
@@ -113,12 +122,24 @@ class NoiseModel:
         zero = np.repeat(self.sigma**2 / measurements.zero_count[:, None], 3, axis=1)
         return own, zero
 
-    def whitener(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Whitener:
-        """The whitener of these readings; parameters and errors as in `variances`."""
+    def whitener(
+        self,
+        measurements: Measurements,
+        sizes: ArrayLike | None = None,
+        weights: Floats | None = None,
+    ) -> Whitener | FormWhitener:
+        """The whitener of these readings; parameters and errors as in `variances`.
+
+        `weights` (N,) is the share of its information that each reading keeps; None: all of it.
+        """
         own, zero = self.variances(measurements, sizes)
+        group = measurements.zero_group
         if self.zero == "separate":
-            return Whitener(own + zero, np.zeros_like(own), np.arange(len(own)))
-        return Whitener(own, zero, measurements.zero_group)
+            own, zero, group = own + zero, np.zeros_like(own), np.arange(len(own))
+        if weights is not None:
+            own = own / weights[:, None]
+        noise = Whitener(own, zero, group)
+        return FormWhitener(noise, self.form, measurements) if self.form else noise
 
     def covariance(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Floats:
         """Dense covariance (3, N, N) per axis, m²: for a look at few readings, not for fits."""

@@ -168,10 +168,12 @@ def _outside(answer: Explanation) -> list[Block]:
         f"explain amounts to {left.explained:.1f}).",
     ]
     if answer.suspects:
-        rows = [(name, sentence_of(answer, name)) for name in answer.suspects]
-        blocks.append(
-            Table(["effect", "what it would mean"], rows, "Nearest, but not it: none of these.")
-        )
+        rows = [
+            (each.id, sentence_of(answer, each.id), f"{1e6 * each.heldout_gain:.3g}")
+            for each in answer.suspects
+        ]
+        heads = ["effect", "what it would mean", "held-out gap falls by [µm]"]
+        blocks.append(Table(heads, rows, "Nearest, and not confirmed."))
     blocks.append(
         f"The section before tells where the gap lives. {counted(len(answer.suspects), 'name')} "
         "stood nearest; take them as hints at the place, not as causes."

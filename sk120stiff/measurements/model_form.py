@@ -1,0 +1,149 @@
+"""Model-form error: what every real arm has beyond any model of it, as a covariance.
+
+No arm follows a law to the micrometre. What is left behaves, pose by pose, like an error of the
+compliance matrix (in proportion to the load) and like a displacement that the pose has of its own
+(constant in the load). Both count as random effects with one size each (Kennedy & O'Hagan 2001;
+Searle, Casella & McCulloch, *Variance Components*):
+
+    d = model + D_p f + b_p + noise,   D_p ~ N(0, (τ₁ c_p)²),   b_p ~ N(0, τ₀²)
+
+with f the load and c_p the measured displacement per unit of load at pose p. So V = V_noise + Z Zᵀ
+with a handful of columns Z for every pose; whitening by it costs a small matrix per pose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.whitening import Whitener
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class ModelForm:
+    """Sizes of the model-form error.
+
+    Attributes
+    ----------
+    proportional
+        Standard deviation τ₁ of the compliance error, relative to the pose's own compliance.
+    constant
+        Standard deviation τ₀ of what a pose has of its own, per axis [m].
+
+    Raises
+    ------
+    InputError
+        A size that is negative or not finite.
+    """
+
+    proportional: float = 0.0
+    constant: float = 0.0
+
+    def __post_init__(self) -> None:
+        for size in (self.proportional, self.constant):
+            if not 0.0 <= size < np.inf:
+                raise InputError(f"a model-form error of size {size} is not zero or positive")
+
+    def __bool__(self) -> bool:
+        return self.proportional > 0.0 or self.constant > 0.0
+
+    def scaled(self, factor: float) -> ModelForm:
+        """Both sizes times a factor."""
+        return ModelForm(self.proportional * factor, self.constant * factor)
+
+    def rms(self, measurements: Measurements) -> float:
+        """Root mean square over readings and axes of what such an error brings [m]."""
+        proportional, constant = form_columns(measurements)
+        square = (self.proportional * proportional) ** 2
+        offsets = (self.constant * constant) ** 2
+        return float(np.sqrt((square.sum() + offsets.sum()) / max(3 * len(square), 1)))
+
+
+EXACT = ModelForm()
+
+
+def form_columns(measurements: Measurements) -> tuple[Floats, Floats]:
+    """Columns of the two random effects at every pose, for sizes of one.
+
+    Returns
+    -------
+    tuple
+        Proportional (N, 3, 3k) [m], k the kinds of load that occur, and constant (N, 3, 3) [1].
+        Every pose has columns of its own: these, in its rows alone.
+
+    Raises
+    ------
+    InputError
+        There are no displacements.
+    """
+    if measurements.displacement is None:
+        raise InputError("model-form error needs displacements, and a plan has none")
+    pose = measurements.pose_index
+    kinds = [measurements.wrench[:, :3], measurements.wrench[:, 3:]]
+    size = _rms_of_pose(measurements.displacement, pose)
+    features = []
+    for load in kinds:
+        strength = _rms_of_pose(load, pose)
+        if strength.any():
+            features.append(load * (size / np.where(strength > 0.0, strength, np.inf))[:, None])
+    load = np.concatenate(features, axis=1) if features else np.zeros((len(pose), 0))
+    proportional = np.einsum("ij,nk->nijk", np.eye(3), load).reshape(len(pose), 3, -1)
+    constant = np.broadcast_to(np.eye(3), (len(pose), 3, 3))
+    return proportional, constant
+
+
+def _rms_of_pose(vectors: Floats, pose: Integers) -> Floats:
+    """(N,) root mean square length of the vectors (N, 3) at each row's pose."""
+    square = (vectors**2).sum(axis=1)
+    return np.asarray(np.sqrt(np.bincount(pose, square) / np.bincount(pose))[pose])
+
+
+class FormWhitener:
+    """V^(-1/2) for V = V_noise + Z Zᵀ: the noise's whitener, then a shrinkage along few directions.
+
+    Parameters
+    ----------
+    noise
+        Whitener of the noise alone.
+    form
+        Sizes of the model-form error.
+    measurements
+        The readings, with displacements.
+    """
+
+    def __init__(self, noise: Whitener, form: ModelForm, measurements: Measurements) -> None:
+        self._noise = noise
+        self.n_readings = noise.n_readings
+        proportional, constant = form_columns(measurements)
+        columns = [form.proportional * proportional, form.constant * constant]
+        white = noise.apply(np.concatenate(columns, axis=2))
+        self._poses: list[tuple[Integers, Floats, Floats]] = []
+        logdet = noise.logdet
+        for rows in rows_of_poses(measurements):
+            U, singular, _ = np.linalg.svd(white[rows], full_matrices=False)
+            self._poses.append((rows, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
+            logdet += float(np.log1p(singular**2).sum())
+        self.logdet = logdet
+        """Natural logarithm of det V, over all 3N readings; V in m²."""
+
+    def apply(self, x: ArrayLike) -> Floats:
+        """As `Whitener.apply`."""
+        white = self._noise.apply(x)
+        flat = white.reshape(len(white), -1)
+        for rows, U, shrink in self._poses:
+            flat[rows] -= U @ (shrink[:, None] * (U.T @ flat[rows]))
+        return flat.reshape(white.shape)
+
+
+def rows_of_poses(measurements: Measurements) -> list[Integers]:
+    """Of each pose its rows among the 3N whitened readings; a zero reading belongs to one pose."""
+    pose = np.repeat(measurements.pose_index, 3)
+    order = np.argsort(pose, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(pose[order])) + 1)

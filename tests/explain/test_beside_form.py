@@ -1,0 +1,91 @@
+"""Names beside what every real arm has beyond its model, and how large that is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff import base_model, load_robot
+from sk120stiff.explain import Options, explain
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import joint_spring_model
+from tests.explain.readings import hidden
+from tests.hidden.generator.causes_elastic import JointTilt
+from tests.real_arms import fanuc
+
+KINDS = Options(only=("joint_tilt", "link_bending", "base_rocking", "tool_compliance"))
+
+
+def roughened(data: Measurements, share: float, seed: int = 5) -> Measurements:
+    """The readings of an arm whose compliance is off by a share of itself, anew at every pose."""
+    rng = np.random.default_rng(seed)
+    d = data.displacement.copy()
+    f = data.wrench[:, :3]
+    for pose in data.poses:
+        rows = np.array([label == pose for label in data.pose])
+        size = np.sqrt(np.mean(d[rows] ** 2) / np.mean(f[rows] ** 2))
+        d[rows] += f[rows] @ (share * size * rng.normal(size=(3, 3))).T
+    return replace(data, displacement=d)
+
+
+@pytest.fixture(scope="module")
+def springs():
+    return base_model(load_robot("motoman_sk120"))
+
+
+def test_a_strong_cause_is_named_though_no_law_is_exact(springs):
+    """Left over are 4 % of every pose's compliance, ten times the noise."""
+    tilt = JointTilt("joint_2_l", {"first": 4e-7, "second": 0.0})
+    rough = roughened(hidden(tilt), 0.04)
+    answer = explain(springs, rough, options=KINDS)
+    assert answer.verdict in ("named", "ambiguous")
+    assert [finding.effect.id for finding in answer.findings] == ["joint_tilt:joint_2_l"]
+    left = answer.remainder
+    assert left.significant
+    true = np.sqrt(np.mean((rough.displacement - hidden(tilt).displacement) ** 2))
+    assert left.interval[0] < true < left.interval[1]
+    assert left.form.proportional == pytest.approx(0.04, rel=0.3)
+
+
+def test_roughness_alone_has_no_name(springs):
+    answer = explain(springs, roughened(hidden(), 0.04), options=KINDS)
+    assert answer.verdict == "outside"
+    assert not answer.findings
+    assert answer.remainder.significant
+    assert answer.remainder.probability < 1e-6
+
+
+def test_exact_laws_leave_no_remainder(springs):
+    answer = explain(springs, hidden(), options=KINDS)
+    assert answer.verdict == "none"
+    assert not answer.remainder.significant
+    assert answer.remainder.interval[0] == 0.0
+    assert answer.remainder.interval[1] < 8e-6
+
+
+def test_standard_errors_hold_the_roughness(springs):
+    """Beside model-form error a spring is known less well than the noise alone would say."""
+    tilt = JointTilt("joint_2_l", {"first": 4e-7, "second": 0.0})
+    rough = roughened(hidden(tilt), 0.04)
+    exact = explain(springs, hidden(tilt), options=KINDS).final
+    found = explain(springs, rough, options=KINDS).final
+    ratio = np.array([p.std for p in found.parameters[:3]]) / [p.std for p in exact.parameters[:3]]
+    assert (ratio > 2.0).all()
+
+
+if fanuc.FOLDER.is_dir():
+
+    @pytest.mark.parametrize("sigma", [30e-6, None])
+    def test_a_real_arm_yields_sideways_at_its_third_joint(tmp_path, sigma):
+        """43 cable pulls at a FANUC R-2000iC; with the tracker's noise stated and without."""
+        arm = fanuc.robot(tmp_path, 1, 1, 1, 1, 1, 1)
+        data = fanuc.readings(fanuc.MAPPED, sigma)
+        answer = explain(joint_spring_model(arm), data)
+        assert answer.verdict == "ambiguous"
+        first = answer.findings[0]
+        pair = {"joint_tilt:joint_3", "link_bending:link_3"}
+        assert {first.effect.id, *first.alternatives} == pair
+        assert all(np.isfinite(p.public_value) for p in answer.final.parameters[:3])
+        if sigma is not None:
+            assert answer.remainder.significant
+            assert 100e-6 < answer.remainder.rms < 200e-6
