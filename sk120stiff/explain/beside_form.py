@@ -15,7 +15,7 @@ from dataclasses import replace
 from sk120stiff.explain.adequacy import structure
 from sk120stiff.explain.naming import MARGIN, Fallen, Named, judged
 from sk120stiff.explain.settling import Attempt, with_effects
-from sk120stiff.identify import Fit
+from sk120stiff.identify import Fit, yardstick
 from sk120stiff.identify.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
 
@@ -55,6 +55,8 @@ def _unless_imitating(found: Attempt, named: Named) -> tuple[Attempt, Named]:
     What no arm is free of is as irregular as draws, pose by pose. A cause that the catalogue lacks
     leaves more than that beside whatever comes nearest to it.
     """
+    if not yardstick(found.final).freedom:
+        return found, named  # nothing tells noise from structure
     left = structure(found.final, found.regression, found.scored.solved.columns)
     large = left.excess > IMITATED * left.explained
     if not (named.findings and left.probability < DECISIVE and large):
