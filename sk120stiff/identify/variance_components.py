@@ -28,7 +28,8 @@ from sk120stiff.measurements.model_form import (
 from sk120stiff.robot.coupling import Array
 
 PROPORTIONS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)  # of a pose's compliance, where the search starts
-FAR = 7.0  # ln of the factor by which a size is sought away from its start
+ROUNDING = 1e-13  # of the largest random effect, so that none outweighs the noise by rounding
+FAR = 4.0  # ln of the factor by which a size is sought away from its start
 CONSTANTS = (0.0, 0.3, 1.0, 3.0, 10.0, 30.0)  # of the noise of one reading
 
 
@@ -94,7 +95,7 @@ def _refined(sums: Deviance, start: ModelForm) -> tuple[ModelForm, float]:
 
     def form_at(logarithms: Array) -> ModelForm:
         found = np.zeros(2)
-        # Beyond a thousandfold of where the search began, only rounding changes.
+        # Farther from where the search began lies another point of the grid.
         found[free] = sizes[free] * np.exp(np.clip(logarithms, -FAR, FAR))
         return ModelForm(*map(float, found))
 
@@ -163,7 +164,9 @@ class Deviance:
         """ln|V| beyond the noise, ln|XᵀV⁻¹X| and rᵀPr."""
         size = np.full(self.zz.shape[1], form.constant)
         size[: self.proportional] = form.proportional
-        inner = np.eye(len(size)) + self.zz * np.outer(size, size)
+        spread = self.zz * np.outer(size, size)
+        largest = np.trace(spread, axis1=1, axis2=2)[:, None, None]
+        inner = spread + np.eye(len(size)) * (1.0 + ROUNDING * largest)
         factor = np.linalg.cholesky(inner)
         half = np.linalg.solve(factor, self.zx * size[:, None])
         left = self.xx - np.einsum("gqi,gqj->ij", half, half)

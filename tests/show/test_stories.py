@@ -10,6 +10,7 @@ import pytest
 
 from sk120stiff.effects import effect
 from sk120stiff.explain import Explanation, Finding, explain
+from sk120stiff.explain.explanation import Contender
 from sk120stiff.explain.swallowed import swallowed
 from sk120stiff.identify import LackOfFit
 from sk120stiff.model import base_model
@@ -48,7 +49,11 @@ def answer(verdict: str) -> Explanation:
             found, verdict="ambiguous", findings=(rival,), next_poses=(a, np.full((3, 6), 10.0))
         )
     plain = replace(found, verdict=verdict, findings=(), final=found.base, steps=found.steps[:1])
-    return replace(plain, suspects=("joint_tilt:joint_1_s",)) if verdict == "outside" else plain
+    return (
+        replace(plain, suspects=(Contender("joint_tilt:joint_1_s", 2e-6),))
+        if verdict == "outside"
+        else plain
+    )
 
 
 @cache
@@ -159,7 +164,7 @@ def test_a_crowd_of_rivals_does_not_flood_the_first_lines() -> None:
 def test_outside_gives_no_name() -> None:
     found, text = answer("outside"), plain(page("outside"))
     assert "no effect of the catalogue explains it" in text
-    assert "Nearest, but not it" in text
+    assert "Nearest, and not confirmed" in text
     assert "falls from" not in text
     assert found.where[0] in text
 
