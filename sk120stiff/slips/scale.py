@@ -14,6 +14,7 @@ import numpy as np
 from sk120stiff.effects import situation_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, joint_spring_model
+from sk120stiff.model.typical import TYPICAL
 from sk120stiff.robot.anatomy import arm_length
 
 #: Softest and stiffest usual drive of a base joint, by the arm's stretched length. Orders of
@@ -30,6 +31,7 @@ USUAL = (
     (4.0, 7e5, 1e7),  # 300 to 700 kg
 )  # (m, N·m/rad, N·m/rad)
 WRIST = 0.25  # a wrist drive's stiffness over that of a base joint
+GUESSED = ("starting value", TYPICAL)  # origins of springs that nobody measured or stated
 KNOWN = 3.0  # no arm is so many times softer or stiffer than the springs identified for it
 CERTAIN = 200.0  # no arm is so much softer or stiffer than another; a unit is
 BEYOND = 1.3  # times softer or stiffer than usual for its size, from where on it is told
@@ -84,7 +86,7 @@ class Scale:
 def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
     """Are the springs that follow implausible for this arm, or for one of its size?"""
     robot = model.robot
-    if any(p.spec.reciprocal and p.origin != "starting value" for p in model.parameters):
+    if any(p.spec.reciprocal and p.origin not in GUESSED for p in model.parameters):
         times = yields_times(model, measurements)
         if times is None:
             return None
