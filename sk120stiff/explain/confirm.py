@@ -65,6 +65,10 @@ class Confirmation:
         return gains and (wins or alone)
 
 
+#: Of an effect that other poses were not asked about; it does not hold.
+UNTRIED = Confirmation(0, 1, 0.0, np.inf, 0.0, 0.0)
+
+
 def confirm(
     regression: Regression,
     model: tuple[int, ...],

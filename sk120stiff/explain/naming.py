@@ -10,7 +10,7 @@ from sk120stiff.effects import Effect
 from sk120stiff.effects.base import Elastic
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.aliases import aliases_by_design, exact_aliases
-from sk120stiff.explain.confirm import confirm
+from sk120stiff.explain.confirm import UNTRIED, confirm
 from sk120stiff.explain.explanation import Evidence, Finding
 from sk120stiff.explain.localisation import OwnAtPoses
 from sk120stiff.explain.localise import localise
@@ -122,7 +122,7 @@ def findings_of(found: Attempt, *, seed: int, least: float = -np.inf) -> Named:
     findings: list[Finding] = []
     fallen: list[Fallen] = []
     for effect in by_weight(found.regression, found.chosen):
-        finding = _finding(found, effect, seed)
+        finding = _finding(found, effect, seed, least)
         objection = _objection(found, finding, findings, least)
         if objection is None:
             findings.append(finding)
@@ -150,8 +150,6 @@ def _objection(
             f"{name} fits, but something in proportion to the load at every pose would fit as "
             "well; it is not named.",
         )
-    if not finding.evidence.confirmation.holds:
-        return Fallen(name, _unconfirmed(finding))
     if finding.evidence.score_gain < least:
         return Fallen(
             name,
@@ -159,6 +157,8 @@ def _objection(
             f"evidence is weak ({finding.evidence.score_gain:.1f} where {least:.0f} is strong); it "
             "is not named.",
         )
+    if not finding.evidence.confirmation.holds:
+        return Fallen(name, _unconfirmed(finding))
     return None
 
 
@@ -246,7 +246,8 @@ def _of_one_gear(finding: Finding, other: Finding) -> float:
     return SHADOW if gears and finding.effect.where == other.effect.where else 0.0
 
 
-def _finding(found: Attempt, effect: int, seed: int) -> Finding:
+def _finding(found: Attempt, effect: int, seed: int, least: float) -> Finding:
+    """An effect with its evidence; where that is weak, other poses need not be asked."""
     regression = found.regression
     with_it = found.scored
     rest = tuple(e for e in found.chosen if e != effect)
@@ -266,16 +267,19 @@ def _finding(found: Attempt, effect: int, seed: int) -> Finding:
     others = [(e, model.score) for e, model in rivals if e not in same]
     runner_up = min(others, key=lambda pair: pair[1], default=None)
     names = [regression.candidates[e].id for e in same]
+    gain = without.score - with_it.score
     return Finding(
         effect=chosen,
         alternatives=tuple(dict.fromkeys([*names, *exact])),
         exact=exact,
         evidence=Evidence(
-            score_gain=without.score - with_it.score,
+            score_gain=gain,
             misfit_gain=(without.solved.rss - with_it.solved.rss) / unit(regression, with_it),
             runner_up=None if runner_up is None else regression.candidates[runner_up[0]].id,
             runner_up_gap=np.inf if runner_up is None else runner_up[1] - with_it.score,
-            confirmation=confirm(regression, found.chosen, effect, same, seed=seed),
+            confirmation=confirm(regression, found.chosen, effect, same, seed=seed)
+            if gain >= least
+            else UNTRIED,
             odds=posterior(
                 {chosen.id: with_it.score}
                 | {regression.candidates[e].id: model.score for e, model in rivals},
