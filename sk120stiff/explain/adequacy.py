@@ -101,7 +101,7 @@ class Adequacy:
             return (
                 f"What is left is {whole.factor:.3g} times the stated uncertainty. Noise of that "
                 "size was not stated, and repeats (same pose, load and branch) would show it. "
-                "The standard errors are inflated by as much.",
+                "The standard errors account for it.",
             )
         said = whole.too_large()
         return (said,) if said else ()

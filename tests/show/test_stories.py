@@ -252,3 +252,9 @@ def test_numbers_are_written_as_people_do() -> None:
 def test_a_finding_is_settled_only_by_exact_aliases() -> None:
     finding: Finding = answer("ambiguous").findings[0]
     assert not finding.settled
+
+
+def test_what_is_left_stands_in_the_report_with_its_size() -> None:
+    for verdict in ("none", "named", "outside"):
+        found, text = answer(verdict), plain(page(verdict))
+        assert found.remainder.sentence() in text

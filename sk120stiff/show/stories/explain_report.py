@@ -136,10 +136,14 @@ def key_figures(answer: Explanation) -> KeyFigures:
 
 
 def _left(answer: Explanation) -> tuple[str, str, str]:
-    """Is anything left beyond noise: word, unit, and the probability that noise makes it."""
+    """What is left beyond noise: word or size, unit, and the probability that noise makes it."""
     left = answer.adequacy
     if left.chance is None:
         return "?", "", "the noise is unknown"
     if left.understated is not None:
         return f"{left.understated:.2f}", "σ", "as stated, which looks too small"
-    return "yes" if left.lacking else "no", "", f"p = {chance(left.chance)}"
+    said = chance(left.chance)
+    said = f"p {said}" if said.startswith("<") else f"p = {said}"
+    if left.lacking and answer.remainder.significant:
+        return f"{um(answer.remainder.rms)}", "µm", f"rms per axis; noise alone: {said}"
+    return "yes" if left.lacking else "no", "", said

@@ -24,6 +24,7 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
         f"The final model leaves {um(answer.final.rms)} µm rms per axis on the fitted readings; "
         f"{noise_makes(answer)}.",
         *([] if left.whole is None else [left.whole.sentence()]),
+        " ".join([answer.remainder.sentence(), *answer.remainder.where]),
     ]
     if rows:
         blocks.append(
