@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sk120stiff.effects import CATALOGUE, Catalogue, Effect, effect
     from sk120stiff.errors import InputError, Refusal, ToolkitError, ToolkitWarning
-    from sk120stiff.explain.explanation import Explanation
-    from sk120stiff.explain.workflow import explain
+    from sk120stiff.explain.answer.explanation import Explanation
+    from sk120stiff.explain.run import explain
     from sk120stiff.identify.estimate import fit
     from sk120stiff.identify.fit import Fit
     from sk120stiff.measurements import Measurements, read_measurements, write_measurements
@@ -51,7 +51,7 @@ _HOME = {
     "CATALOGUE": "sk120stiff.effects",
     "Catalogue": "sk120stiff.effects",
     "Effect": "sk120stiff.effects",
-    "Explanation": "sk120stiff.explain.explanation",
+    "Explanation": "sk120stiff.explain.answer.explanation",
     "Fit": "sk120stiff.identify.fit",
     "InputError": "sk120stiff.errors",
     "Measurements": "sk120stiff.measurements",
@@ -64,7 +64,7 @@ _HOME = {
     "bundled_robots": "sk120stiff.robot.bundled",
     "compensate": "sk120stiff.workspace.compensate",
     "effect": "sk120stiff.effects",
-    "explain": "sk120stiff.explain.workflow",
+    "explain": "sk120stiff.explain.run",
     "fit": "sk120stiff.identify.estimate",
     "joint_spring_model": "sk120stiff.model",
     "load_robot": "sk120stiff.robot",

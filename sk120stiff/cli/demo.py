@@ -21,8 +21,8 @@ from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import all_effects, situation_of
 from sk120stiff.explain import explain, verdict_document
-from sk120stiff.explain.saving import plan_of, replacing_results
-from sk120stiff.explain.swallowed import swallowed
+from sk120stiff.explain.answer.saving import plan_of, replacing_results
+from sk120stiff.explain.candidates.absorbed import swallowed
 from sk120stiff.files import write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import fit

@@ -14,9 +14,9 @@ from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
 from sk120stiff.explain import DOUBTFUL, Explanation
-from sk120stiff.explain.adequacy import Adequacy
-from sk120stiff.explain.document import BEST_GUESS
-from sk120stiff.explain.saving import NEXT_POSES, RESULTS, VERDICT
+from sk120stiff.explain.answer.document import BEST_GUESS
+from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
+from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.files import will_write, write_atomically
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence

@@ -1,18 +1,25 @@
 """Measurements + model become a `Fit`: least squares, uncertainty, what cannot be known."""
 
-from sk120stiff.identify.comparison import Compared, compare
+from sk120stiff.identify.checks.comparison import Compared, compare
+from sk120stiff.identify.checks.held_out import (
+    HeldOut,
+    Learn,
+    drawn_parts,
+    held_out,
+    pose_parts,
+    refitted,
+)
+from sk120stiff.identify.checks.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
+from sk120stiff.identify.checks.null_space import weak_directions
+from sk120stiff.identify.checks.unseen import unseen_reasons, why_unseen
+from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
 from sk120stiff.identify.estimate import fit, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.held_out import HeldOut, Learn, drawn_parts, held_out, pose_parts, refitted
-from sk120stiff.identify.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
-from sk120stiff.identify.problem import Problem
-from sk120stiff.identify.profile import profile_intervals
 from sk120stiff.identify.report import fit_report
+from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solving import solve, solve_near
-from sk120stiff.identify.uncertainty import known_model
-from sk120stiff.identify.unseen import unseen_reasons, why_unseen
-from sk120stiff.identify.weak import weak_directions
-from sk120stiff.identify.yardstick import Yardstick, contradiction, yardstick
+from sk120stiff.identify.uncertainty.known_model import known_model
+from sk120stiff.identify.uncertainty.profile import profile_intervals
 
 __all__ = [
     "DOUBTFUL",

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.problem import Problem
 from sk120stiff.identify.robust import solve_robustly
-from sk120stiff.identify.solvers import Method
+from sk120stiff.identify.solve.problem import Problem
+from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve
 from sk120stiff.measurements import Measurements, NoiseModel, candidates, decided
 from sk120stiff.model import Model

@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from sk120stiff.identify.covariance import (
+from sk120stiff.identify.solve.covariance import (
     condition_of,
     correlation_of,
     covariance_of,
     internal_intervals,
     public_interval,
 )
-from sk120stiff.identify.overlaid import Overlay, overlays
-from sk120stiff.identify.polish import FAINTEST, seen_directions
-from sk120stiff.identify.problem import Problem
+from sk120stiff.identify.solve.overlaid import Overlay, overlays
+from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
+from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.model import ON_BOUND, TOGETHER, UNSEEN, Model, Parameter, parameter_frame
 from sk120stiff.robot.coupling import Array
 

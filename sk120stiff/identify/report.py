@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from sk120stiff.identify.checks.lack_of_fit import lack_of_fit
+from sk120stiff.identify.checks.null_space import weak_directions
+from sk120stiff.identify.checks.yardstick import yardstick
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.lack_of_fit import lack_of_fit
-from sk120stiff.identify.weak import weak_directions
-from sk120stiff.identify.yardstick import yardstick
 from sk120stiff.measurements import Measurements
 
 LEAST_CORRELATION = 0.3

@@ -15,8 +15,8 @@ from scipy import stats
 
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit, with_values
-from sk120stiff.identify.problem import Problem
-from sk120stiff.identify.solvers import Method
+from sk120stiff.identify.solve.problem import Problem
+from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve, solve_near
 from sk120stiff.robot.coupling import Array
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit, with_values
-from sk120stiff.identify.polish import Minimum, polish
-from sk120stiff.identify.problem import Problem
-from sk120stiff.identify.solvers import Method, minimise
+from sk120stiff.identify.solve.polish import Minimum, polish
+from sk120stiff.identify.solve.problem import Problem
+from sk120stiff.identify.solve.solvers import Method, minimise
 from sk120stiff.measurements import EXACT
 from sk120stiff.robot.coupling import Array
 

@@ -7,11 +7,12 @@ import pytest
 
 from sk120stiff import InputError, Model, Refusal, ToolkitWarning, base_model, load_robot
 from sk120stiff.effects import effect
-from sk120stiff.explain import explain, steps
-from sk120stiff.explain.aliases import exact_aliases
-from sk120stiff.explain.settling import Attempt, attempt, refit
-from sk120stiff.explain.steering import with_assumed
-from sk120stiff.explain.steps import gap_steps
+from sk120stiff.explain import explain
+from sk120stiff.explain.candidates.aliases import exact_aliases
+from sk120stiff.explain.judge import steps
+from sk120stiff.explain.judge.steps import gap_steps
+from sk120stiff.explain.options import with_assumed
+from sk120stiff.explain.select.stepwise import Attempt, attempt, refit
 from tests.explain.readings import NOISE, POINT, hidden
 
 

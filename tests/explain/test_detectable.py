@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sk120stiff.explain.confirm import confirm
-from sk120stiff.explain.detectable import POWER, length_named
-from sk120stiff.explain.naming import MARGIN
-from sk120stiff.explain.regression import Regression, regression_at
-from sk120stiff.explain.score import entry_fall, score_set
-from sk120stiff.explain.search import beam_search
-from sk120stiff.explain.steering import Options, candidates_for
+from sk120stiff.explain.advise.detectable import POWER, length_named
+from sk120stiff.explain.candidates.regression import Regression, regression_at
+from sk120stiff.explain.judge.attribution import MARGIN
+from sk120stiff.explain.judge.confirm import confirm
+from sk120stiff.explain.options import Options, candidates_for
+from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.score import entry_fall, score_set
 from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import Model, base_model, joint_spring_model

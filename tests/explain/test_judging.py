@@ -10,11 +10,11 @@ from scipy import stats
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, situation_of
 from sk120stiff.explain import Options, explain
-from sk120stiff.explain.confirm import Confirmation
-from sk120stiff.explain.outliers import outlying_rows
-from sk120stiff.explain.regression import regression_at
-from sk120stiff.explain.score import price_of_sizes
-from sk120stiff.explain.steering import candidates_for
+from sk120stiff.explain.candidates.regression import regression_at
+from sk120stiff.explain.findings import Confirmation
+from sk120stiff.explain.options import candidates_for
+from sk120stiff.explain.select.outliers import outlying_rows
+from sk120stiff.explain.select.score import price_of_sizes
 from sk120stiff.identify import fit
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, LinkBending

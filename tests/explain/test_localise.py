@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from sk120stiff.explain import Localisation, localise, where_sentences
-from sk120stiff.explain.localise import holm
+from sk120stiff.explain.localise.places import holm
 from sk120stiff.measurements import Measurements, NoiseModel
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, ClosureCoupling, JointTilt

@@ -8,9 +8,9 @@ from scipy.optimize import nnls
 from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
-from sk120stiff.explain.regression import Regression, solve_columns
-from sk120stiff.explain.score import score_set
-from sk120stiff.explain.search import beam_search, gains
+from sk120stiff.explain.candidates.regression import Regression, solve_columns
+from sk120stiff.explain.select.beam import beam_search, gains
+from sk120stiff.explain.select.score import score_set
 from sk120stiff.robot import load_robot
 
 POSES, AXES = 12, 15

@@ -5,9 +5,9 @@ import pytest
 
 from sk120stiff.effects import all_effects, situation_of
 from sk120stiff.explain import Options, explain
-from sk120stiff.explain.settling import Attempt, attempt
-from sk120stiff.explain.steering import candidates_for
-from sk120stiff.explain.steps import gap_steps, nested
+from sk120stiff.explain.judge.steps import gap_steps, nested
+from sk120stiff.explain.options import candidates_for
+from sk120stiff.explain.select.stepwise import Attempt, attempt
 from sk120stiff.identify import fit, held_out, refitted
 from sk120stiff.measurements import NoiseModel
 from tests.explain.readings import NOISE, SIGMA, base_fit, hidden

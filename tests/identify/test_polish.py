@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 
 from sk120stiff.errors import Refusal
-from sk120stiff.identify.polish import polish, seen_directions
-from sk120stiff.identify.solvers import minimise
+from sk120stiff.identify.solve.polish import polish, seen_directions
+from sk120stiff.identify.solve.solvers import minimise
 
 FREE = np.inf
 

@@ -8,7 +8,7 @@ import yaml
 
 from sk120stiff.effects import effect, situation_of, situation_of_load
 from sk120stiff.identify import fit, known_model
-from sk120stiff.identify.uncertainty import _steps_without_each_pose
+from sk120stiff.identify.uncertainty.known_model import _steps_without_each_pose
 from sk120stiff.measurements import NoiseModel, NoiseStatement
 from sk120stiff.model import (
     Model,

@@ -7,7 +7,7 @@ import pytest
 
 from sk120stiff.effects import situation_of
 from sk120stiff.identify import Fit, fit
-from sk120stiff.identify.variance_components import variance_components
+from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import Measurements, ModelForm, NoiseModel
 from sk120stiff.model import Model
 from tests.identify.conftest import readings_of

@@ -9,7 +9,7 @@ import pytest
 
 from sk120stiff.effects import effect, situation_of_load
 from sk120stiff.errors import Refusal, ToolkitWarning
-from sk120stiff.explain.consequences import next_poses
+from sk120stiff.explain.advise.consequences import next_poses
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import Region, base_column, feasible_pool, lowest_points, random_poses

@@ -10,8 +10,8 @@ import pytest
 
 from sk120stiff.effects import effect
 from sk120stiff.explain import Explanation, Finding, explain
-from sk120stiff.explain.explanation import Contender
-from sk120stiff.explain.swallowed import swallowed
+from sk120stiff.explain.candidates.absorbed import swallowed
+from sk120stiff.explain.findings import Contender
 from sk120stiff.identify import LackOfFit
 from sk120stiff.model import base_model
 from sk120stiff.robot import load_robot

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.explain import Explanation
-from sk120stiff.explain.swallowed import Swallowed
+from sk120stiff.explain.candidates.absorbed import Swallowed
 from sk120stiff.identify import Fit, fit
-from sk120stiff.identify.one_gain import OneGain, one_gain
+from sk120stiff.identify.checks.one_gain import OneGain, one_gain
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.show.wording import um

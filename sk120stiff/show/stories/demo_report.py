@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sk120stiff.explain.swallowed import WHOLE
+from sk120stiff.explain.candidates.absorbed import WHOLE
 from sk120stiff.show.figures import (
     Estimate,
     LoadCurve,

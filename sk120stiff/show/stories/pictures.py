@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from sk120stiff.explain import Localisation
-from sk120stiff.explain.localisation import Suspicion
+from sk120stiff.explain.localise.localisation import Suspicion
 from sk120stiff.show import palette
 from sk120stiff.show.style import hide_spare, styled, subplots
 

@@ -1,0 +1,73 @@
+"""What follows from an answer: what the readings could not have shown, what to measure next."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.explain.advise.detectable import detectable
+from sk120stiff.explain.answer.explanation import Explanation
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.localise.places import localise
+from sk120stiff.explain.localise.words import where_sentences
+from sk120stiff.plan import Region, discriminating_readings, feasible_pool, lowest_points
+
+READINGS_TO_MEASURE = 10
+
+
+def completed(answer: Explanation, regression: Regression, *, seed: int) -> Explanation:
+    """The answer with where the gap lives, detectable sizes, what is hidden, the next poses."""
+    smallest, invisible = detectable(answer, regression)
+    found = localise(answer.base)
+    following = next_poses(answer, seed=seed)
+    told = {} if following is None else {"next_remarks": following[2]}
+    return replace(
+        answer,
+        where=where_sentences(found),
+        details={**answer.details, "localisation": found, **told},
+        smallest_detectable=smallest,
+        not_observable=invisible,
+        next_poses=None if following is None else following[:2],
+    )
+
+
+def next_poses(
+    answer: Explanation, *, seed: int, count: int = READINGS_TO_MEASURE
+) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]] | None:
+    """Poses (K, n) and wrenches (K, 6) that tell the first unsettled pair of names apart.
+
+    With them what is to be said of the loads: where motors limit them, and what was not checked.
+
+    They go no lower than the poses that were measured: what was measured could be driven.
+    """
+    for finding in answer.findings:
+        rivals = [name for name in finding.alternatives if name not in finding.exact]
+        if not rivals:
+            continue
+        situation = answer.final.problem.situation
+        model = answer.final.model
+        force = float(np.linalg.norm(situation.wrench[:, :3], axis=1).max())
+        floor = float(lowest_points(model.robot, situation.a, situation.point).min())
+        pool = feasible_pool(
+            model.robot,
+            poses=400,
+            directions=3,
+            force=max(force, 1.0),
+            point=situation.point,
+            force_point=situation.force_point,
+            seed=seed,
+            region=Region(lowest=floor),
+        )
+        rival = answer.effect(rivals[0])
+        choice = discriminating_readings(
+            model,
+            finding.effect,
+            rival,
+            pool,
+            count=count,
+            sigma=answer.noise.sigma * answer.final.noise_factor,
+        )
+        rows = list(choice.rows)
+        return pool.situation.a[rows], pool.situation.wrench[rows], pool.remarks
+    return None

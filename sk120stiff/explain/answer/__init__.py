@@ -1,0 +1,1 @@
+"""The answer: what was found, as frozen data, as a document, as files."""

@@ -1,0 +1,186 @@
+"""An explanation as the JSON document that callers rely on."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from sk120stiff.explain.answer.explanation import Explanation
+from sk120stiff.explain.findings import Finding
+from sk120stiff.explain.judge.posterior import LISTED
+from sk120stiff.identify import unseen_reasons
+from sk120stiff.identify.report import noise_sentence
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Parameter
+
+BEST_GUESS = "best_guess.yaml"
+RIGID = "it lies on its bound: rigid fits best"
+
+
+def verdict_document(
+    answer: Explanation, readings: Measurements, next_poses: str | None = None
+) -> dict[str, Any]:
+    """The content of `verdict.json`.
+
+    Parameters
+    ----------
+    answer
+        The explanation.
+    readings
+        What was explained.
+    next_poses
+        Name of the file that holds the poses to measure next.
+    """
+    return {
+        "verdict": answer.verdict,
+        "remainder": remainder_document(answer),
+        "probabilities": probabilities(answer),
+        "effects": [_effect(answer, finding) for finding in answer.findings],
+        "parameters": parameters_before_and_after(answer),
+        "gap": {
+            "unit": "um",
+            "noise_floor": _um(answer.noise_floor),
+            "p": answer.adequacy.chance,
+            "steps": [
+                {
+                    "model": step.label,
+                    "fit_rms": step.fit_rms * 1e6,
+                    "heldout_rms": step.heldout_rms * 1e6,
+                }
+                for step in answer.steps
+            ],
+        },
+        "where": list(answer.where),
+        "suspects": [
+            {"name": suspect.id, "heldout_gain_um": _um(suspect.heldout_gain)}
+            for suspect in answer.suspects
+        ],
+        "best_guess": BEST_GUESS if answer.guess is not None else None,
+        "not_named": list(answer.unnamed),
+        "limits": list(answer.limits),
+        "noise": {
+            "model": noise_sentence(answer.final),
+            "source": answer.yardstick.source,
+            "sigma_um": _um(answer.yardstick.sigma),
+            "degrees_of_freedom": answer.yardstick.freedom,
+            "decided": list(answer.noise_reasons),
+            "set_aside": [
+                {"pose": readings.pose[row], "line": int(readings.line[row])}
+                for row in answer.set_aside
+            ],
+        },
+        "adequacy": {
+            "probability": answer.adequacy.probability,
+            "left_over": answer.adequacy.excess,
+            "explained": answer.adequacy.explained,
+            "tests": dict(answer.adequacy.tests),
+            "understated": answer.adequacy.understated,
+        },
+        "not_observable": list(answer.not_observable),
+        "smallest_detectable": [
+            {"name": item.name, "value": item.value, "unit": item.unit}
+            for item in answer.smallest_detectable
+        ],
+        "next_poses": next_poses,
+    }
+
+
+def remainder_document(answer: Explanation) -> dict[str, Any]:
+    """What is left beyond the noise."""
+    left = answer.remainder
+    return {
+        "rms_um": _um(left.rms),
+        "interval_95": [_um(end) for end in left.interval],
+        "p": left.probability,
+        "significant": left.significant,
+        "proportional": left.form.proportional,
+        "constant_um": _um(left.form.constant),
+        "where": list(left.where),
+    }
+
+
+def probabilities(answer: Explanation) -> list[dict[str, Any]]:
+    """Every candidate above a hundredth, the likeliest first."""
+    found: dict[str, float] = dict(answer.odds)
+    for finding in answer.findings:
+        for name, share in finding.evidence.odds.items():
+            found[name] = max(share, found.get(name, 0.0))
+    ranked = sorted(found.items(), key=lambda item: -item[1])
+    return [{"name": name, "probability": share} for name, share in ranked if share > LISTED]
+
+
+def share_of(answer: Explanation, finding: Finding) -> float | None:
+    """By how much the held-out gap fell when an effect joined alone [m]; None where it did not."""
+    for before, step in pairwise(answer.steps):
+        if step.label == f"+ {finding.effect.id}":
+            return before.heldout_rms - step.heldout_rms
+    return None
+
+
+def _um(metres: float | None) -> float | None:
+    return None if metres is None or not np.isfinite(metres) else metres * 1e6
+
+
+def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
+    """All parameters of the final model, with the base model's estimate of each."""
+    before = {p.name: p for p in answer.base.model.parameters}
+    unseen = unseen_reasons(answer.final)
+    hidden = unseen_reasons(answer.base)
+    return [
+        {
+            **_parameter(p, unseen.get(p.name)),
+            "before": before[p.name].public_value
+            if p.name in before and p.name not in hidden
+            else None,
+        }
+        for p in answer.final.model.parameters
+    ]
+
+
+def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
+    found = [p for p in answer.final.model.parameters if p.effect == finding.effect]
+    evidence = finding.evidence
+    unseen = unseen_reasons(answer.final)
+    return {
+        "name": finding.effect.name,
+        "where": finding.effect.where,
+        "alternatives": list(finding.alternatives),
+        "exact_aliases": list(finding.exact),
+        "probability": finding.probability,
+        "share_um": _um(share_of(answer, finding)),
+        "parameters": [_parameter(p, unseen.get(p.name)) for p in found],
+        "sentence": finding.effect.sentence(),
+        "equation": finding.effect.equation,
+        "axes": finding.effect.axes,
+        "evidence": {
+            "delta_bic": evidence.score_gain,
+            "delta_chi_square": evidence.misfit_gain,
+            "runner_up": evidence.runner_up,
+            "runner_up_delta_bic": evidence.runner_up_gap,
+            "folds_improved": evidence.confirmation.folds_improved,
+            "folds": evidence.confirmation.folds,
+            "heldout_gain": evidence.confirmation.gain,
+            "heldout_gain_std": evidence.confirmation.gain_error,
+            "folds_count": evidence.confirmation.foretells,
+            "name_frequency": evidence.confirmation.frequency,
+            "rival_frequency": evidence.confirmation.rival_frequency,
+        },
+    }
+
+
+def _parameter(p: Parameter, unseen: str | None = None) -> dict[str, Any]:
+    """Value and error; null, with the reason, for what the readings do not show."""
+    shown = unseen is None
+    return {
+        "name": p.name,
+        "value": p.public_value if shown else None,
+        "std": p.public_std if shown else None,
+        "unit": p.spec.unit,
+        "meaning": p.spec.meaning,
+        "internal_value": p.value if shown else None,
+        "internal_std": p.std if shown else None,
+        "internal_unit": p.spec.internal_unit,
+        "reason": unseen or p.note or (RIGID if np.isinf(p.public_value) else None),
+    }

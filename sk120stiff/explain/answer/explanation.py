@@ -1,0 +1,146 @@
+"""What `explain` answers: frozen data, ready to be shown or written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal
+
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
+from sk120stiff.explain.answer.notebook import summary_html
+from sk120stiff.explain.findings import Contender, Detectable, Finding, Step
+from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.remainder import Remainder
+from sk120stiff.identify import Fit, Yardstick, yardstick
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.robot.coupling import Array
+
+Verdict = Literal["none", "named", "ambiguous", "outside"]
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """The whole answer.
+
+    Attributes
+    ----------
+    verdict
+        See PRODUCT: none, named, ambiguous, outside.
+    findings
+        Named effects in the order in which they were added.
+    base, final
+        Fits of the base model and of the model with the findings.
+    steps
+        The gap step by step.
+    noise
+        The noise model used.
+    noise_reasons
+        What was decided about it beyond the data's own words.
+    set_aside
+        Rows of the readings, masked ones counted, that were treated as outliers.
+    readings
+        What was explained, masked rows included.
+    adequacy
+        Tests of what the final model leaves over.
+    remainder
+        Its size, as model-form error beside the noise.
+    unnamed
+        What fitted but is not named, and why, in sentences.
+    limits
+        How the user limited the search, in sentences; empty if not at all.
+    where
+        Plain statements on where the gap of the base model lives.
+    suspects
+        For verdict ``outside``: what comes nearest.
+    guess
+        For verdict ``outside``: the fit with what foretells other poses best, confirmed or not;
+        None if nothing does.
+    odds
+        Probability of one effect more, for each candidate above a hundredth.
+    not_observable
+        Effects that these readings cannot show at any plausible size.
+    smallest_detectable
+        For every parameter of the catalogue what would have shown.
+    next_poses
+        (K, n) coordinates and (K, 6) wrenches to measure next, or None.
+    catalogue
+        The effects that were considered.
+    details
+        Further figures for reports.
+    """
+
+    verdict: Verdict
+    findings: tuple[Finding, ...]
+    base: Fit
+    final: Fit
+    steps: tuple[Step, ...]
+    noise: NoiseModel
+    noise_reasons: tuple[str, ...]
+    set_aside: tuple[int, ...]
+    readings: Measurements
+    adequacy: Adequacy
+    remainder: Remainder
+    unnamed: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
+    where: tuple[str, ...] = ()
+    suspects: tuple[Contender, ...] = ()
+    guess: Fit | None = None
+    odds: Mapping[str, float] = field(default_factory=dict)
+    not_observable: tuple[str, ...] = ()
+    smallest_detectable: tuple[Detectable, ...] = ()
+    next_poses: tuple[Array, Array] | None = None
+    catalogue: Catalogue = CATALOGUE
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def yardstick(self) -> Yardstick:
+        """The noise that all gaps are held against, on every page and in every file."""
+        return yardstick(self.final)
+
+    @property
+    def noise_floor(self) -> float | None:
+        """Rms per axis that noise alone would give the gap [m]; None where nothing tells it."""
+        return self.yardstick.floor
+
+    def effect(self, name: str) -> Effect:
+        """The effect ``name:where`` of the catalogue, as it was considered."""
+        readings = self.base.problem.measurements
+        kind, _, where = name.partition(":")
+        told = Options(poses=readings.poses, timed=readings.time is not None)
+        return self.catalogue.effect(self.base.model.robot, kind, where, told)
+
+    def save(
+        self, folder: str | os.PathLike[str], *, provenance: Mapping[str, str] | None = None
+    ) -> dict[str, object]:
+        """Write verdict.json, model.yaml, gaps.csv, and next_poses.csv where poses would tell more.
+
+        Files of an earlier answer in the folder are replaced, pages too, all in one moment. The
+        report and the scene are pages of `sk120stiff.show.stories`.
+
+        Parameters
+        ----------
+        folder
+            Made where it is missing.
+        provenance
+            Where the readings come from, for the model's file.
+
+        Returns
+        -------
+        dict
+            The content of verdict.json.
+        """
+        from sk120stiff.explain.answer.saving import save
+
+        return save(self, folder, provenance=provenance)
+
+    def __repr__(self) -> str:
+        names = ", ".join(finding.effect.id for finding in self.findings)
+        first, last = self.steps[0].fit_rms * 1e6, self.steps[-1].fit_rms * 1e6
+        gap = f"{first:.3g} → {last:.3g}" if self.findings else f"{first:.3g}"
+        return f"<Explanation: {self.verdict}{' ' if names else ''}{names}; gap {gap} µm rms>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return summary_html(self)

@@ -1,0 +1,165 @@
+"""What is found, as frozen data: a named effect with its evidence, and what stands beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sk120stiff.effects import Effect
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """How an effect fares on poses that did not speak for it.
+
+    Attributes
+    ----------
+    folds_improved, folds
+        In how many of the folds the held-out misfit falls when the effect is added.
+    gain, gain_error
+        Fall of the held-out misfit per reading axis [noise variances], with its standard error over
+        poses.
+    frequency
+        Share of resamplings of the poses in which the same name (or an alternative of it) wins.
+    rival_frequency
+        Share in which the most frequent of the other names wins.
+    foretells
+        The effect says something of poses that were not measured. Draws, one for every pose, do
+        not; no fold can gain by them, and their name rests on the resampling alone.
+    """
+
+    folds_improved: int
+    folds: int
+    gain: float
+    gain_error: float
+    frequency: float
+    rival_frequency: float
+    foretells: bool = True
+
+    @property
+    def holds(self) -> bool:
+        """The name may be given: other poses gain by it, and it wins on most drawings of the poses.
+
+        Four of five folds have to gain. Three will do if the gain of all is positive, and fewer if
+        it goes beyond its own scatter: few poses may carry a small effect. Where no other name
+        comes near, a third of the drawings is enough: a weak effect drowns in some of them.
+        """
+        mostly = self.folds_improved >= 0.6 * self.folds or self.gain > self.gain_error
+        gains = (
+            not self.foretells
+            or self.folds_improved >= 0.8 * self.folds
+            or (mostly and self.gain > 0.0)
+        )
+        wins = self.frequency >= 0.5
+        alone = self.frequency >= 0.33 and self.rival_frequency <= 0.5 * self.frequency
+        return gains and (wins or alone)
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Why an effect was named.
+
+    Attributes
+    ----------
+    score_gain
+        By how much the extended BIC gets worse without the effect.
+    misfit_gain
+        By how much the misfit (χ²) grows without it.
+    runner_up, runner_up_gap
+        The best effect that is no alternative (``name:where``), and by how much it loses.
+    confirmation
+        Cross-validation and resampling of the poses.
+    odds
+        Probability of each candidate (``name:where``) in this effect's place beside the other
+        effects, as far as the catalogue goes; what is missing to one is that of none.
+    """
+
+    score_gain: float
+    misfit_gain: float
+    runner_up: str | None
+    runner_up_gap: float
+    confirmation: Confirmation
+    odds: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One named effect.
+
+    Attributes
+    ----------
+    effect
+        The effect.
+    alternatives
+        Other effects (``name:where``) that these readings cannot tell from it.
+    exact
+        Those of the alternatives that no readings of this kind could tell from it.
+    evidence
+        Why it was named.
+    """
+
+    effect: Effect
+    alternatives: tuple[str, ...]
+    exact: tuple[str, ...]
+    evidence: Evidence
+
+    @property
+    def probability(self) -> float:
+        """Probability that the effect or one of its alternatives is at work."""
+        return sum(
+            self.evidence.odds.get(name, 0.0) for name in {self.effect.id, *self.alternatives}
+        )
+
+    @property
+    def settled(self) -> bool:
+        """No further poses could tell more."""
+        return set(self.alternatives) <= set(self.exact)
+
+
+@dataclass(frozen=True)
+class Step:
+    """The gap with one more effect in the model, rms per axis [m].
+
+    Attributes
+    ----------
+    label
+        Names of the base model's effects, then ``+ name:where``.
+    fit_rms
+        On the readings that were fitted.
+    heldout_rms
+        On poses left out of the fit (cross-validation), or on the hold-out file.
+    """
+
+    label: str
+    fit_rms: float
+    heldout_rms: float
+
+
+@dataclass(frozen=True)
+class Contender:
+    """What comes nearest to an explanation where none is confirmed.
+
+    Attributes
+    ----------
+    id
+        ``name:where``.
+    heldout_gain
+        By how much the held-out gap falls with it in the model, rms per axis [m]; NaN if poses that
+        are left do not hold it.
+    """
+
+    id: str
+    heldout_gain: float
+
+
+@dataclass(frozen=True)
+class Detectable:
+    """Smallest size of one parameter that these readings would have shown.
+
+    `value` is in the parameter's public unit (for a stiffness: the largest one that shows); None
+    means that no plausible value would have shown.
+    """
+
+    name: str
+    value: float | None
+    unit: str

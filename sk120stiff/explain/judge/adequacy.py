@@ -1,0 +1,205 @@
+"""Is anything left over once the named effects are in the model?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.errors import Refusal
+from sk120stiff.explain.candidates.regression import Index, Regression
+from sk120stiff.explain.judge.scatter_at_poses import unlike_scatter
+from sk120stiff.explain.localise.places import localise
+from sk120stiff.identify import Fit, LackOfFit, Yardstick, lack_of_fit, yardstick
+from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.identify.checks.yardstick import CONTRADICTED, scatter
+
+LEVEL = 1e-3
+FOUND = 8.0  # times a stated σ beyond which no statement is merely too small
+WITHOUT_SCATTER = 2.0  # the same where no scatter within poses bears it out
+OWN = {
+    "proportional": "in proportion to the load at single poses",
+    "constant": "constant at single poses",
+    "drift": "drifting at single poses",
+    "branches": "other when unloading",
+}
+ORDERS = {
+    "constant": "constant at single poses, beyond what is in proportion to the load",
+    "curved": "curved in the load at single poses",
+}
+Tests = dict[str, tuple[float, float]]  # name → probability, excess in noise variances
+
+
+@dataclass(frozen=True)
+class Adequacy:
+    """Tests of what a model leaves over.
+
+    Attributes
+    ----------
+    probability
+        Smallest probability of the tests, times their number (Bonferroni).
+    excess
+        Size of the left-over structure in units of the noise, √λ.
+    explained
+        Size of what the named effects explain beyond the base model, in the same units.
+    tests
+        For each test its name and probability.
+    whole
+        The test of the whole misfit; None where nothing tells the noise.
+    understated
+        By how much a stated σ looks too small, where that is all that is wrong; else None.
+    """
+
+    probability: float
+    excess: float
+    explained: float
+    tests: dict[str, float]
+    whole: LackOfFit | None = None
+    understated: float | None = None
+
+    @property
+    def lacking(self) -> bool:
+        """Something is missing beyond doubt."""
+        return self.probability < LEVEL
+
+    @property
+    def chance(self) -> float | None:
+        """The one probability of the gap that is left; None where nothing tells the noise."""
+        return None if self.whole is None else self.whole.probability
+
+    def refuse_contradicted(self, where: str) -> None:
+        """Stop where "nothing is missing" would rest on noise that the data themselves deny.
+
+        Raises
+        ------
+        Refusal
+            Nothing structured is left, and what is left is `CONTRADICTED` times the stated σ.
+        """
+        if self.understated is None or self.understated < CONTRADICTED:
+            return
+        raise Refusal(
+            f"the readings scatter {self.understated:.2g} times as much as their stated "
+            "uncertainty, and nothing structured is left that an effect could account for",
+            where=where,
+            remedy="Whether something is missing cannot be told against such a number. Check "
+            "noise: {sigma: ..., unit: ...} in the YAML file beside the readings and that every "
+            "row's load and reading belong together; without a sigma it is estimated.",
+        )
+
+    def of_the_statement(self) -> tuple[str, ...]:
+        """What is to be said of a stated σ that the readings do not bear out."""
+        whole = self.whole
+        if whole is None or whole.against != "stated":
+            return ()
+        if self.understated is not None:
+            return (
+                f"σ looks {self.understated:.2f} times too small; nothing structured is left. It "
+                "stays the yardstick, and the standard errors are inflated by as much.",
+            )
+        if whole.probability < LEVEL:
+            return (
+                f"What is left is {whole.factor:.3g} times the stated uncertainty. Noise of that "
+                "size was not stated, and repeats (same pose, load and branch) would show it. "
+                "The standard errors account for it.",
+            )
+        said = whole.too_large()
+        return (said,) if said else ()
+
+
+def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+    """Test the gap that a fitted model leaves.
+
+    Tested are the whole misfit; the parts that go at single poses in proportion to the load, as
+    every elastic cause does, known or not, that are constant there, that are curved, go with the
+    order or with unloading; and whatever the gap goes with most closely of all that `localise`
+    suspects. Where a stated σ is exceeded, but nothing structured is left once the size of the
+    noise is free, the statement is too small and no cause is missing. The more it is exceeded, the
+    less structure it takes to think otherwise.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    regression
+        Linearised at that fit, in units of the same σ.
+    columns
+        Its columns in the regression.
+    """
+    noise, whole = yardstick(fit), lack_of_fit(fit)
+    explained = _explained(regression, columns) / float(np.sqrt(noise.scale))
+    if noise.source == "stated" and whole is not None and whole.probability < LEVEL:
+        free = dict(_structure(fit, _free(fit)))
+        free |= unlike_scatter(fit)
+        if _nothing_structured(fit, free, whole.factor):
+            return _judged(free, explained / whole.factor, whole, whole.factor)
+    tests = dict(_structure(fit, noise))
+    if whole is not None:
+        taken = whole.freedom[0]
+        beyond = whole.statistic * (1 if whole.freedom[1] is None else taken) - taken
+        tests["whole misfit"] = whole.probability, beyond
+    return _judged(tests, explained, whole)
+
+
+def structure(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+    """As `adequacy`, of structure alone: beside model-form error the whole misfit says nothing."""
+    noise = yardstick(fit)
+    explained = _explained(regression, columns) / float(np.sqrt(noise.scale))
+    return _judged(dict(_structure(fit, noise)), explained, None)
+
+
+def _judged(
+    tests: Tests, explained: float, whole: LackOfFit | None, understated: float | None = None
+) -> Adequacy:
+    excess = max((beyond for _, beyond in tests.values()), default=0.0)
+    return Adequacy(
+        probability=_smallest(tests),
+        excess=float(np.sqrt(max(excess, 0.0))),
+        explained=explained,
+        tests={name: chance for name, (chance, _) in tests.items()},
+        whole=whole,
+        understated=understated,
+    )
+
+
+def _smallest(tests: Tests) -> float:
+    return min(1.0, len(tests) * min((chance for chance, _ in tests.values()), default=1.0))
+
+
+def _free(fit: Fit) -> Yardstick:
+    """The noise as the readings scatter, whatever was stated."""
+    found = scatter(fit)
+    return found or Yardstick("unknown", fit.noise_factor**2, 0.0, None, None)
+
+
+def _nothing_structured(fit: Fit, tests: Tests, factor: float) -> bool:
+    if factor >= (FOUND if scatter(fit) is not None else WITHOUT_SCATTER):
+        return False
+    return _smallest(tests) >= min(LEVEL * factor**4, 0.05)
+
+
+def _structure(fit: Fit, noise: Yardstick) -> Iterator[tuple[str, tuple[float, float]]]:
+    """All that noise cannot have made, with its probability and its excess."""
+    found = localise(fit, noise)
+    if noise.freedom:
+        for order in found.orders:
+            if order.probability is not None and order.name in ORDERS:
+                yield ORDERS[order.name], (order.probability, order.excess)
+    for own in found.own:
+        yield OWN[own.name], (own.probability, own.statistic - own.freedom)
+    if found.suspects:
+        closest = min(found.suspects, key=lambda suspicion: suspicion.probability)
+        beyond = closest.statistic - closest.freedom
+        yield f"together with {closest.name}", (closest.probability, beyond)
+
+
+def _explained(regression: Regression, columns: Index) -> float:
+    """‖M_B S v‖: what the chosen candidates explain that the base model cannot imitate."""
+    named = np.setdiff1d(columns, regression.base)
+    if not len(named):
+        return 0.0
+    values = np.linalg.lstsq(regression.X[:, columns], regression.y, rcond=None)[0]
+    part = dict(zip(columns.tolist(), values, strict=True))
+    signature = regression.X[:, named] @ np.array([part[int(c)] for c in named])
+    base = orthonormal(regression.X[:, regression.base])
+    return float(np.linalg.norm(signature - base @ (base.T @ signature)))

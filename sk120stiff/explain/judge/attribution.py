@@ -1,0 +1,336 @@
+"""Which of the chosen effects may be named, beside which alternatives, on what evidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.effects.base import Elastic
+from sk120stiff.errors import Refusal
+from sk120stiff.explain.candidates.aliases import aliases_by_design, exact_aliases
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.findings import Evidence, Finding
+from sk120stiff.explain.judge.confirm import UNTRIED, confirm
+from sk120stiff.explain.judge.posterior import posterior
+from sk120stiff.explain.localise.localisation import OwnAtPoses
+from sk120stiff.explain.localise.places import localise
+from sk120stiff.explain.select.beam import gains
+from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set
+from sk120stiff.explain.select.stepwise import Attempt, refit, with_effects
+from sk120stiff.robot.anatomy import arm_joints
+
+MARGIN = 6.0  # difference of scores below which two names cannot be told apart
+SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice of law explains
+NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
+CHANCE = 2.0  # by which noise lengthens what a law leaves over
+CONTENDERS = 24  # rivals looked at for every effect
+
+
+@dataclass(frozen=True)
+class Fallen:
+    """An effect that fits and may not be named.
+
+    Attributes
+    ----------
+    id
+        ``name:where``.
+    reason
+        Why, in a sentence.
+    shadow
+        It only mends the law of a stronger effect; else other poses do not confirm it.
+    """
+
+    id: str
+    reason: str
+    shadow: bool = False
+
+
+@dataclass(frozen=True)
+class Named:
+    """What came of the chosen effects.
+
+    Attributes
+    ----------
+    findings
+        Effects that may be named, in the order of their weight.
+    fallen
+        Those that may not, the weakest last.
+    """
+
+    findings: tuple[Finding, ...] = ()
+    fallen: tuple[Fallen, ...] = ()
+
+    @property
+    def doubted(self) -> tuple[str, ...]:
+        """Ids of effects that other poses do not confirm."""
+        return tuple(each.id for each in self.fallen if not each.shadow)
+
+    @property
+    def shadows(self) -> tuple[str, ...]:
+        """Ids of effects that only mend the law of a stronger one."""
+        return tuple(each.id for each in self.fallen if each.shadow)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why these are not named, in sentences."""
+        return tuple(each.reason for each in self.fallen)
+
+
+def judged(found: Attempt, *, seed: int, least: float = -np.inf) -> tuple[Attempt, Named]:
+    """The attempt with those effects alone that may be named, and what was said of each.
+
+    Where some may not, the weakest of them falls, and the others are judged anew without it: names
+    that overlap spoil each other's evidence, and theirs is that of the model that is written.
+
+    Parameters
+    ----------
+    found
+        The attempt.
+    seed
+        Of folds and resampling.
+    least
+        Gain of score that an effect has to bring.
+    """
+    fallen: list[Fallen] = []
+    named = findings_of(found, seed=seed, least=least)
+    while named.fallen:
+        fallen.append(named.fallen[-1])
+        kept = [e for e in _in_order(found) if e.id != fallen[-1].id]
+        found = _without_the_weakest(found, kept)
+        named = findings_of(found, seed=seed, least=least)
+    return found, Named(named.findings, tuple(fallen))
+
+
+def _in_order(found: Attempt) -> list[Effect]:
+    """The chosen effects, the strongest first."""
+    return [found.regression.candidates[e] for e in by_weight(found.regression, found.chosen)]
+
+
+def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
+    """The attempt with these effects, or with as many of the strongest as a fit holds."""
+    while True:
+        try:
+            return with_effects(found, effects)
+        except Refusal:
+            effects = effects[:-1]
+
+
+def findings_of(found: Attempt, *, seed: int, least: float = -np.inf) -> Named:
+    """Judge every chosen effect, beside all the others."""
+    findings: list[Finding] = []
+    fallen: list[Fallen] = []
+    for effect in by_weight(found.regression, found.chosen):
+        finding = _finding(found, effect, seed, least)
+        objection = _objection(found, finding, findings, least)
+        if objection is None:
+            findings.append(finding)
+        else:
+            fallen.append(objection)
+    return Named(tuple(findings), tuple(fallen))
+
+
+def _objection(
+    found: Attempt, finding: Finding, before: list[Finding], least: float
+) -> Fallen | None:
+    """Why an effect may not be named beside the stronger ones; None if it may."""
+    name = finding.effect.id
+    caster = _caster(found, finding, before)
+    if caster is not None:
+        return Fallen(
+            name,
+            f"{name} would take away a little more of the gap, but no more than the law of "
+            f"{caster.effect.id} leaves over; it is not named.",
+            shadow=True,
+        )
+    if finding.effect.exchangeable and not _constant(found, finding.effect):
+        return Fallen(
+            name,
+            f"{name} fits, but something in proportion to the load at every pose would fit as "
+            "well; it is not named.",
+        )
+    if finding.evidence.score_gain < least:
+        return Fallen(
+            name,
+            f"{name} fits a little better, but beside what the laws of real arms leave over its "
+            f"evidence is weak ({finding.evidence.score_gain:.1f} where {least:.0f} is strong); it "
+            "is not named.",
+        )
+    if not finding.evidence.confirmation.holds:
+        return Fallen(name, _unconfirmed(finding))
+    return None
+
+
+def unit(regression: Regression, model: Scored) -> float:
+    """Noise variance over the one assumed; where nobody stated it, what the model leaves tells."""
+    if regression.sigma_known:
+        return 1.0
+    return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
+
+
+def _constant(found: Attempt, effect: Effect) -> bool:
+    """Is what single poses have of their own a constant, and not in proportion to the load?
+
+    Draws, one for every pose, can imitate part of any cause that the catalogue lacks.
+    """
+    rest = [other for other in found.effects if other != effect]
+    try:
+        without = refit(found.base, rest)
+    except Refusal:
+        return True  # the other effects need it beside them, so there is nothing to compare
+    own = {each.name: each for each in localise(without).own}
+    if not {"constant", "proportional"} <= own.keys():
+        return True
+
+    def evidence(each: OwnAtPoses) -> float:
+        return each.statistic - price_of_sizes(each.statistic, each.freedom, np.inf)
+
+    return evidence(own["constant"]) > evidence(own["proportional"])
+
+
+def _unconfirmed(finding: Finding) -> str:
+    seen = finding.evidence.confirmation
+    folds = f"better in {seen.folds_improved} of {seen.folds} folds, " if seen.foretells else ""
+    return (
+        f"{finding.effect.id} fits best, but other poses do not confirm it ({folds}the same name "
+        f"in {100.0 * seen.frequency:.0f} % of resamplings, the next in "
+        f"{100.0 * seen.rival_frequency:.0f} %); it is not named."
+    )
+
+
+def _caster(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
+    """The stronger effect whose law leaves over what this one explains.
+
+    No gear follows a cubic to the last digit; what is left looks like play or friction there. No
+    link is as thick at its end as at its root; what is left looks like a tilting bearing.
+    """
+    gain = np.sqrt(max(finding.evidence.misfit_gain, 0.0))
+    for other in before:
+        if gain < _of_one_gear(finding, other) * np.sqrt(other.evidence.misfit_gain):
+            return other
+        share = other.effect.inexact
+        if (
+            share
+            and _beside(found, finding.effect, other.effect)
+            and gain < share * _length_alone(found, other.effect) + CHANCE
+        ):
+            return other
+    return None
+
+
+def _beside(found: Attempt, effect: Effect, link: Effect) -> bool:
+    """Does this yield in proportion to its load, at the link or at a neighbour of it?"""
+    if not isinstance(effect, Elastic) or effect.of_gear:
+        return False
+    place: dict[str, int] = {}
+    for number, joint in enumerate(arm_joints(found.final.model.robot)):
+        place |= {joint.name: number, joint.link: number}
+    both = effect.where in place and link.where in place
+    return both and abs(place[effect.where] - place[link.where]) <= NEIGHBOURS
+
+
+def _length_alone(found: Attempt, effect: Effect) -> float:
+    """Fall of the misfit that one effect alone brings, as a length √λ in units of the noise."""
+    regression, sums = found.regression, found.regression.sums()
+    place = next(k for k, e in enumerate(regression.candidates) if e.id == effect.id)
+    whole = score_set(regression, sums, found.chosen)
+    alone = score_set(regression, sums, (place,)).solved.rss
+    fall = (score_set(regression, sums, ()).solved.rss - alone) / unit(regression, whole)
+    return float(np.sqrt(max(fall, 0.0)))
+
+
+def _of_one_gear(finding: Finding, other: Finding) -> float:
+    """`SHADOW` if both effects are laws of one gear."""
+    gears = finding.effect.of_gear and other.effect.of_gear
+    return SHADOW if gears and finding.effect.where == other.effect.where else 0.0
+
+
+def _finding(found: Attempt, effect: int, seed: int, least: float) -> Finding:
+    """An effect with its evidence; where that is weak, other poses need not be asked."""
+    regression = found.regression
+    with_it = found.scored
+    rest = tuple(e for e in found.chosen if e != effect)
+    without = score_set(regression, regression.sums(), rest)
+    chosen = regression.candidates[effect]
+    rivals = _rivals(regression, rest, effect)
+    exact = _aliases(found, effect, with_it, rivals)
+    # A rival is compared with the effect in full: that some of its parameters may be equal is no
+    # evidence against the rival, nor is one parameter more.
+    full = score_set(regression, regression.sums(), found.chosen, untied=effect).score
+    margin = max(MARGIN, np.log(regression.rows) + 0.5)
+    same = [
+        e
+        for e, model in rivals
+        if model.score - full < margin or regression.candidates[e].id in exact
+    ]
+    others = [(e, model.score) for e, model in rivals if e not in same]
+    runner_up = min(others, key=lambda pair: pair[1], default=None)
+    names = [regression.candidates[e].id for e in same]
+    gain = without.score - with_it.score
+    return Finding(
+        effect=chosen,
+        alternatives=tuple(dict.fromkeys([*names, *exact])),
+        exact=exact,
+        evidence=Evidence(
+            score_gain=gain,
+            misfit_gain=(without.solved.rss - with_it.solved.rss) / unit(regression, with_it),
+            runner_up=None if runner_up is None else regression.candidates[runner_up[0]].id,
+            runner_up_gap=np.inf if runner_up is None else runner_up[1] - with_it.score,
+            confirmation=confirm(regression, found.chosen, effect, same, seed=seed)
+            if gain >= least
+            else UNTRIED,
+            odds=posterior(
+                {chosen.id: with_it.score}
+                | {regression.candidates[e].id: model.score for e, model in rivals},
+                none=without.score,
+            ),
+        ),
+    )
+
+
+def _aliases(
+    found: Attempt, effect: int, with_it: Scored, rivals: list[tuple[int, Scored]]
+) -> tuple[str, ...]:
+    """Names that no readings of this kind could tell from the effect."""
+    regression, situation = found.regression, found.final.problem.situation
+    chosen = regression.candidates[effect]
+    close = [
+        regression.candidates[e]
+        for e, model in rivals
+        if model.solved.rss - with_it.solved.rss < 2.0 * MARGIN
+        and len(regression.columns[e]) <= len(regression.columns[effect]) + 1
+    ]
+    always = exact_aliases(
+        found.final.model,
+        chosen,
+        close,
+        point=situation.point,
+    )
+    X = regression.X
+    here = aliases_by_design(
+        chosen,
+        regression.candidates,
+        X[:, regression.columns[effect][0]],
+        [X[:, own] for own in regression.columns],
+    )
+    return always + here
+
+
+def by_weight(regression: Regression, model: tuple[int, ...]) -> list[int]:
+    """Order in which a greedy observer would add the effects of a model."""
+    sums = regression.sums()
+    order: list[int] = []
+    while len(order) < len(model):
+        left = [e for e in model if e not in order]
+        order.append(min(left, key=lambda e: score_set(regression, sums, (*order, e)).solved.rss))
+    return order
+
+
+def _rivals(regression: Regression, rest: tuple[int, ...], effect: int) -> list[tuple[int, Scored]]:
+    """The other candidates that promise most in the place of one effect, with their models."""
+    sums = regression.sums()
+    promise = gains(regression, sums, score_set(regression, sums, rest).solved)
+    order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:CONTENDERS]
+    found = [(e, score_set(regression, sums, (*rest, e))) for e in order]
+    return [(e, model) for e, model in found if model.plausible]

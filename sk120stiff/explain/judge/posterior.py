@@ -1,0 +1,47 @@
+"""Probabilities of names from the scores of models.
+
+Scores are -2 ln(evidence × prior) up to a constant (`score.py`), so a model's share among models
+that exclude one another is exp(-score/2) over the sum of all (Kass & Raftery 1995). They are
+probabilities within the catalogue: a cause that it lacks has no score.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.select.beam import gains
+from sk120stiff.explain.select.score import score_set
+
+LISTED = 0.01  # probability from which on a candidate is worth a line
+LOOKED_AT = 24  # candidates that are scored
+
+
+def posterior(scores: Mapping[str, float], *, none: float) -> dict[str, float]:
+    """Probability of each of some models, beside the one without any of them.
+
+    Parameters
+    ----------
+    scores
+        Score of the model with each name.
+    none
+        Score of the model without all of them.
+    """
+    values = np.array([none, *scores.values()])
+    weights = np.exp(-0.5 * (values - values.min()))
+    shares = weights / weights.sum()
+    return {name: float(share) for name, share in zip(scores, shares[1:], strict=True)}
+
+
+def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]:
+    """Probability of every candidate as one effect more, above a hundredth."""
+    sums = regression.sums()
+    base = score_set(regression, sums, model)
+    promise = gains(regression, sums, base.solved)
+    order = [int(e) for e in np.argsort(-promise) if int(e) not in model][:LOOKED_AT]
+    scored = {e: score_set(regression, sums, (*model, e)) for e in order}
+    fair = {regression.candidates[e].id: m.score for e, m in scored.items() if m.plausible}
+    found = posterior(fair, none=base.score)
+    return {name: share for name, share in found.items() if share > LISTED}

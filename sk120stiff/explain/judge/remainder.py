@@ -1,0 +1,93 @@
+"""What is left once everything that can be named is in the model: how large, how surely, where.
+
+The left-over of a fitted model is laid out as model-form error beside the noise
+(`measurements/model_form.py`): its size is that of the random effects at the measured loads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+from scipy.optimize import brentq
+
+from sk120stiff.identify import Fit
+from sk120stiff.identify.uncertainty.variance_components import Deviance, variance_components
+from sk120stiff.measurements.model_form import ModelForm
+
+LEVEL = 1e-3  # below this probability of noise alone something is left
+INTERVAL = float(stats.chi2.isf(0.05, 1))  # rise of -2 ln L at the ends of a 95 % interval
+SMALLEST = 1e-6  # of a pose's compliance: where an upper limit is looked for from
+WIDEST = 16.0  # ln of the factors by which the size is looked for
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """What a model leaves beyond the noise.
+
+    Attributes
+    ----------
+    rms
+        Its size at the measured loads, rms per axis [m].
+    interval
+        95 % interval of `rms`.
+    probability
+        Probability that noise alone leaves as much.
+    form
+        How it goes with the load.
+    where
+        Where it lives, in sentences.
+    """
+
+    rms: float
+    interval: tuple[float, float]
+    probability: float
+    form: ModelForm
+    where: tuple[str, ...] = ()
+
+    @property
+    def significant(self) -> bool:
+        """Noise alone does not explain it."""
+        return self.probability < LEVEL
+
+    def sentence(self) -> str:
+        """How large it is, in plain words."""
+        low, high = (1e6 * end for end in self.interval)
+        if not self.significant:
+            if not np.isfinite(high):
+                return "The readings do not tell how large an error of the model's form is."
+            return (
+                f"Beyond the noise the model's form is off by {high:.3g} µm rms per axis at most."
+            )
+        parts = []
+        if self.form.proportional:
+            parts.append(f"{100.0 * self.form.proportional:.2g} % of a pose's compliance")
+        if self.form.constant:
+            parts.append(f"{1e6 * self.form.constant:.3g} µm of its own at every pose")
+        return (
+            f"Left over beyond the noise are {1e6 * self.rms:.3g} µm rms per axis (95 %: {low:.3g} "
+            f"to {high:.3g}), as if every pose had {' and '.join(parts)} that no effect explains."
+        )
+
+
+def remainder_of(fit: Fit) -> Remainder:
+    """The remainder of a fitted model; its model-form error is estimated anew."""
+    found = variance_components(fit)
+    readings = fit.problem.measurements
+    deviance = Deviance.of(fit)
+    relative = found.form.scaled(1.0 / found.noise_factor)
+    least = deviance(relative)
+    form = relative or ModelForm(proportional=SMALLEST)
+
+    def rise(logarithm: float) -> float:
+        return deviance(form.scaled(float(np.exp(logarithm)))) - least - INTERVAL
+
+    rms = found.form.rms(readings)
+    low = high = form.rms(readings) * found.noise_factor
+    if rms and rise(-WIDEST) > 0.0:
+        low *= float(np.exp(brentq(rise, -WIDEST, 0.0)))
+    else:
+        low = 0.0
+    high *= float(np.exp(brentq(rise, 0.0, WIDEST))) if rise(WIDEST) > 0.0 else np.inf
+    return Remainder(rms, (low, high), found.probability, found.form)

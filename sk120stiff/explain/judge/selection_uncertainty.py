@@ -1,0 +1,62 @@
+"""Standard errors that hold what another possible name would make of a parameter.
+
+Where the readings cannot tell two names apart, or two laws of one gear, the springs come out
+differently under each. What a single model calls its standard error is then too small by far: the
+largest difference is added in squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
+from sk120stiff.explain.findings import Finding
+from sk120stiff.explain.select.stepwise import Attempt, refit
+from sk120stiff.identify import Fit
+from sk120stiff.identify.fit import with_values
+
+REFUTED = 10.0  # twice the log-likelihood by which another law may be worse at most
+LOOKED_AT = 8  # alternatives of one name
+
+
+def with_doubt(found: Attempt, findings: Sequence[Finding]) -> Fit:
+    """The final fit, its standard errors and intervals widened by the models that remain possible.
+
+    Parameters
+    ----------
+    found
+        The attempt with its final fit.
+    findings
+        The named effects with their alternatives.
+    """
+    final = found.final
+    place = {parameter.name: k for k, parameter in enumerate(final.parameters)}
+    doubt = np.zeros(len(final.x))
+    for effects, must_fit in _others(found, findings):
+        try:
+            other = refit(found.base, effects)
+        except Refusal:
+            continue
+        if must_fit and 2.0 * (final.log_likelihood - other.log_likelihood) > REFUTED:
+            continue
+        for parameter, value in zip(other.parameters, other.x, strict=True):
+            if parameter.name in place:
+                k = place[parameter.name]
+                doubt[k] = max(doubt[k], abs(value - final.x[k]))
+    return with_values(replace(final, doubt=doubt))
+
+
+def _others(found: Attempt, findings: Sequence[Finding]) -> Iterator[tuple[list[Effect], bool]]:
+    """Sets of effects that may be meant as well; and whether they have to prove that they fit."""
+    regression = found.regression
+    where = {effect.id: k for k, effect in enumerate(regression.candidates)}
+    for finding in findings:
+        rest = [other.effect for other in findings if other is not finding]
+        for name in finding.alternatives[:LOOKED_AT]:
+            yield [*rest, regression.candidates[where[name]]], False
+        for law in set(regression.laws[where[finding.effect.id]]) - {finding.effect}:
+            yield [*rest, law], True

@@ -1,0 +1,120 @@
+"""The gap with every effect that joins the model, on fitted and on held-out poses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.errors import InputError, Refusal
+from sk120stiff.explain.candidates.regression import regression_at
+from sk120stiff.explain.findings import Step
+from sk120stiff.explain.judge.beside_form import with_model_form
+from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.stepwise import Attempt, laws_of, refit
+from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
+from sk120stiff.measurements import Measurements
+
+NARROW = 4  # models kept at each size of a search in one part: it is there to choose, not to rank
+
+
+def gap_steps(
+    found: Attempt, effects: Sequence[Effect], holdout: Measurements | None, *, seed: int
+) -> tuple[Step, ...]:
+    """The base model, then one effect more at each step.
+
+    Halfway, where an effect is still missing, a fit may have no answer; that step is told together
+    with the next.
+
+    Parameters
+    ----------
+    found
+        The base model, its readings, and the effects that were considered.
+    effects
+        In the order in which they were added.
+    holdout
+        Readings of other poses; without them poses are left out of the fit in turn.
+    seed
+        Of the parts in which poses are left out.
+    """
+    fits: list[Fit] = []
+    counts: list[int] = []
+    labels: list[str] = []
+    joined: list[str] = []
+    for count in range(len(effects) + 1):
+        if count:
+            joined.append(f"+ {effects[count - 1].id}")
+        try:
+            fits.append(refit(found.base, effects[:count]))
+        except Refusal:
+            if count == len(effects):
+                raise
+            continue
+        counts.append(count)
+        labels.append(" ".join(joined) if count else _base_name(found.base))
+        joined.clear()
+    if holdout is None:
+        held = _on_poses_left_out(found, counts, seed)
+    else:
+        held = [_on_file(each, holdout) for each in fits]
+    return tuple(
+        Step(label, each.rms, error) for label, each, error in zip(labels, fits, held, strict=True)
+    )
+
+
+def nested(found: Attempt, counts: Sequence[int]) -> Learn:
+    """Learning as `explain` learns: noise, effects and values from the readings at hand alone.
+
+    It gives the base model, and for every count the best model with so many effects at most; the
+    names need not be those that all readings bring.
+    """
+    start, alpha = found.base.problem.model, found.regression.alpha
+    ids = [effect.id for effect in start.effects]
+    whole = found.base.problem.noise
+
+    def learn(readings: Measurements) -> list[Fit]:
+        base = fit(start, readings)
+        if whole.form or (base.sigma_known and not whole.known):  # laws that are not exact
+            base = fit(start, readings, noise=with_model_form(base))
+        if not any(counts):
+            return [base for _ in counts]
+        regression = regression_at(base, found.candidates, ids, alpha=alpha)
+        ranked = beam_search(regression, width=NARROW, max_effects=max(counts))
+        return [
+            _first_fit(base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count])
+            for count in counts
+        ]
+
+    return learn
+
+
+def _first_fit(base: Fit, choices: Sequence[Sequence[Effect]]) -> Fit:
+    """The first of some sets of effects that can be fitted at exact equilibrium."""
+    for effects in choices:
+        try:
+            return refit(base, effects)
+        except Refusal:
+            continue
+    return base
+
+
+def _base_name(base: Fit) -> str:
+    """Names of the base model's effects, each once."""
+    return " + ".join(dict.fromkeys(effect.name for effect in base.model.effects))
+
+
+def _on_file(found: Fit, holdout: Measurements) -> float:
+    """Gap on a hold-out file, per axis [m]."""
+    other = Problem(found.model, holdout.masked(), found.problem.noise)
+    gap = other.measured - found.model.predict(other.situation)
+    return float(np.sqrt(np.mean(gap**2)))
+
+
+def _on_poses_left_out(found: Attempt, counts: Sequence[int], seed: int) -> list[float]:
+    """Gap on poses left out in turn, per axis [m]; NaN where the others do not hold the model."""
+    try:
+        errors = held_out(found.base.problem.measurements, nested(found, counts), seed=seed)
+    except (InputError, Refusal):
+        return [float("nan")] * len(counts)
+    return [error.rms for error in errors]

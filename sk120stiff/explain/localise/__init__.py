@@ -1,0 +1,1 @@
+"""Where model and readings disagree: poses, loads, directions, joints, order."""

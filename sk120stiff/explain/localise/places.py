@@ -1,0 +1,373 @@
+"""Where do model and readings disagree: poses, loads, directions, joints, order; and how surely.
+
+Everything is judged against the noise, after the model's own parameters have had their say: the
+statistic of a suspect is T = ‖orth(M_B V^(-1/2) S)ᵀ r‖², with B the columns of the model's
+parameters, S those of the suspect, r the whitened gap and M_B projecting out B. If the gap is noise
+alone, T is χ² with rank(S) degrees of freedom (F where repeats or the scatter within poses tell the
+noise). Probabilities are corrected for the number of looks by Holm's rule.
+
+Shares are of what exceeds the noise. Where nothing tells the noise, or the noise makes most of the
+gap, that is nothing to divide by: shares are of the gap itself then, and it is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from sk120stiff.explain.localise.localisation import (
+    MOSTLY_NOISE,
+    DirectionShare,
+    LoadLevel,
+    Localisation,
+    PoseShare,
+    PostureTrend,
+    Suspicion,
+    Whole,
+)
+from sk120stiff.explain.localise.random_effects import Drawn
+from sk120stiff.explain.localise.suspects import Suspect, axes_of, reach_of, suspects_of
+from sk120stiff.explain.localise.within_poses import WithinPoses, within_poses
+from sk120stiff.identify import Fit, Yardstick, lack_of_fit, yardstick
+from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.robot.coupling import Array
+
+Index = NDArray[np.intp]
+
+SHOWN = 8  # suspects that are worked out for figures
+FEWEST_POSES = 8  # for a trend over poses
+INDISTINCT = 0.02  # share of a direction below which a picture takes it for the springs' own
+SEEN_AT_ALL = 1e-6  # share of a column that must remain, else the model's own parameters do it
+
+
+def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
+    """Find where the gap of a fitted model lives.
+
+    Parameters
+    ----------
+    fit
+        The fitted model, usually the base model.
+    noise
+        What to hold the gap against; None: the fit's own `yardstick`.
+    """
+    look = _look(fit, noise or yardstick(fit))
+    test = lack_of_fit(fit)
+    situation = fit.problem.situation
+    poses = _poses(look)
+    suspects, beside = _suspicions(look)
+    return Localisation(
+        rms=fit.rms,
+        noise=_noise(look, slice(None)),
+        noise_from=look.noise.source,
+        whole=look.whole,
+        beyond=look.beyond if look.whole == "gap" and look.known else 1.0,
+        probability=None if test is None else test.probability,
+        poses=poses,
+        levels=_levels(look),
+        directions=_directions(look),
+        orders=look.within.orders,
+        postures=_postures(look, poses),
+        own=look.within.own,
+        suspects=suspects,
+        beside=beside,
+        clocked=situation.order is not None or situation.time is not None,
+        branched=len(np.unique(situation.branch)) > 1,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What every question needs: the gap raw and white, the model's columns, the noise."""
+
+    fit: Fit
+    gap: Array  # (N, 3) base axes [m]
+    predicted: Array  # (N, 3) base axes [m]
+    derivative: Array  # (3N, p) of the model's moving parameters, reading axes [m]
+    whiten: Callable[[Array], Array]  # (N, 3, ...) reading axes [m] to (3N, ...)
+    inside: Array  # (3N, rank) orthonormal basis of what the model's parameters can do, whitened
+    white: Array  # (3N,) whitened gap, `inside` projected out
+    variance: Array  # (N,) noise variance of a displacement per axis [m²]
+    noise: Yardstick
+    within: WithinPoses
+
+    @property
+    def known(self) -> bool:
+        """Something beside the gap tells the size of the noise."""
+        return self.noise.freedom > 0.0
+
+    @cached_property
+    def beyond(self) -> float:
+        """Share of the gap's square that exceeds the noise, of the raw or of the white gap."""
+        white = float(self.white @ self.white) / self.noise.scale
+        expected = len(self.white) - self.inside.shape[1]
+        raw, noise = float((self.gap**2).sum()), 3.0 * float(self.variance.sum())
+        shares = (1.0 - expected / max(white, 1e-300), 1.0 - noise / max(raw, 1e-300))
+        return float(np.clip(min(shares), 0.0, 1.0)) if self.known else 0.0
+
+    @cached_property
+    def whole(self) -> Whole:
+        """What shares are shares of."""
+        return "excess" if self.beyond >= MOSTLY_NOISE else "gap"
+
+    @cached_property
+    def floor(self) -> Array:
+        """(N,) variance per axis that is no part of the whole [m²]."""
+        return self.variance if self.whole == "excess" else np.zeros_like(self.variance)
+
+    @cached_property
+    def raw_whole(self) -> float:
+        """The whole as a sum of squares of the gap [m²]."""
+        return max(float((self.gap**2).sum() - 3.0 * self.floor.sum()), 1e-300)
+
+
+def _look(fit: Fit, noise: Yardstick) -> _Look:
+    problem = fit.problem
+    axes = problem.situation.reading_axes
+    predicted, full = fit.model.predict_with_sensitivities(problem.situation)
+    drawn = Drawn(fit, full)
+    moving = ~fit.at_bound & ~drawn.columns[problem.free]
+    derivative = full[:, :, problem.free[moving]] * problem.scale[moving]
+    inside = orthonormal(drawn.whiten(derivative))
+    predicted = predicted - drawn.covered()
+    raw = problem.measured - predicted
+    white = drawn.whiten(raw)
+    white = white - inside @ (inside.T @ white)
+    own, zero = problem.noise.variances(problem.measurements, problem.sizes)
+    return _Look(
+        fit=fit,
+        gap=np.einsum("nij,nj->ni", axes, raw),
+        predicted=np.einsum("nij,nj->ni", axes, predicted),
+        derivative=derivative.reshape(len(white), -1),
+        whiten=drawn.whiten,
+        inside=inside,
+        white=white,
+        variance=(own + zero).mean(axis=1) * noise.scale,
+        noise=noise,
+        within=within_poses(fit, white, inside, drawn.whiten, noise),
+    )
+
+
+def _poses(look: _Look) -> tuple[PoseShare, ...]:
+    situation = look.fit.problem.situation
+    square = (look.gap**2).sum(1)
+    rows = [np.flatnonzero(situation.pose == k) for k in range(len(situation.poses))]
+    white = (look.white.reshape(-1, 3) ** 2).sum(1)
+    chance = [_chance_of_pose(look, white, r) for r in rows]
+    found = []
+    for label, r, p in zip(situation.poses, rows, holm(chance), strict=True):
+        if not len(r):
+            continue
+        share = float(square[r].sum() - 3.0 * look.floor[r].sum()) / look.raw_whole
+        rms = float(np.sqrt(square[r].mean() / 3.0))
+        found.append(PoseShare(label, rms, _noise(look, r), share, p))
+    return tuple(found)
+
+
+def _chance_of_pose(look: _Look, white: Array, rows: Index) -> float:
+    """Probability of such a gap at one pose: beside the noise, or beside the gaps of the others."""
+    own, count = float(white[rows].sum()), 3 * len(rows)
+    if look.known:
+        return look.noise.tail(own, count)
+    rest = float(white.sum()) - own
+    freedom = len(look.white) - look.inside.shape[1] - count
+    if freedom < 1 or not count or rest <= 0.0:
+        return 1.0
+    return float(stats.f.sf(own / count / (rest / freedom), count, freedom))
+
+
+def _noise(look: _Look, rows: Index | slice) -> float | None:
+    """Rms per axis that noise alone leaves [m]; None where nothing tells."""
+    return float(np.sqrt(look.variance[rows].mean())) if look.known else None
+
+
+def _levels(look: _Look) -> tuple[LoadLevel, ...]:
+    """The gap at the lower, the middle and the upper third of the loads."""
+    size = np.linalg.norm(look.fit.problem.situation.wrench[:, :3], axis=1)
+    edges = np.quantile(size, [1 / 3, 2 / 3])
+    third = np.searchsorted(edges, size, side="left")
+    square = (look.gap**2).mean(1)
+    return tuple(
+        LoadLevel(
+            low=float(size[part].min()),
+            high=float(size[part].max()),
+            count=int(part.sum()),
+            rms=float(np.sqrt(square[part].mean())),
+            noise=_noise(look, np.flatnonzero(part)),
+        )
+        for part in (third == k for k in range(3))
+        if part.any()
+    )
+
+
+def _directions(look: _Look) -> tuple[DirectionShare, ...]:
+    out = []
+    for axes in axes_of(look.fit.problem.situation):
+        along = np.einsum("nij,ni->nj", axes.directions, look.gap)
+        parts = (along**2).sum(0) - look.floor.sum()
+        for word, part in zip(axes.words, parts, strict=True):
+            out.append(DirectionShare(axes.name, word, float(part) / look.raw_whole))
+    return tuple(out)
+
+
+def _postures(look: _Look, poses: Sequence[PoseShare]) -> tuple[PostureTrend, ...]:
+    """Does the gap grow with reach, height, or the position of a joint?"""
+    situation = look.fit.problem.situation
+    if len(poses) < FEWEST_POSES:
+        return ()
+    _, first = np.unique(situation.pose, return_index=True)
+    variables = {
+        "the reach": reach_of(situation)[first],
+        "the height of the point": situation.nominal.position[first, 2],
+    }
+    for k, joint in enumerate(situation.robot.actuated):
+        variables[f"the position of {joint}"] = situation.a[first, k]
+    variables = {name: v for name, v in variables.items() if np.ptp(v) > 1e-6}
+    rms = np.array([pose.rms for pose in poses])
+    if not np.ptp(rms):
+        return ()
+    tests = [stats.spearmanr(values, rms) for values in variables.values()]
+    corrected = holm([float(test.pvalue) for test in tests])
+    found = []
+    for (name, values), test, p in zip(variables.items(), tests, corrected, strict=True):
+        upper = values > np.median(values)
+        low, high = (float(np.sqrt(np.mean(rms[part] ** 2))) for part in (~upper, upper))
+        found.append(PostureTrend(name, float(test.statistic), p, low, high))
+    return tuple(sorted(found, key=lambda trend: trend.probability))
+
+
+@dataclass(frozen=True, eq=False)
+class _Lineup:
+    """All suspects, with their columns in reading axes and whitened."""
+
+    suspects: tuple[Suspect, ...]
+    reading: list[Array]  # (N, 3, k) each [m]
+    white: Array  # (3N, sum of k)
+    parts: tuple[slice, ...]
+
+
+def _lineup(look: _Look) -> _Lineup:
+    situation = look.fit.problem.situation
+    suspects = suspects_of(look.fit.model, situation, look.predicted)
+    reading = [np.swapaxes(situation.reading_axes, 1, 2) @ s.columns for s in suspects]
+    ends = np.cumsum([0, *(s.columns.shape[2] for s in suspects)])
+    return _Lineup(
+        suspects=suspects,
+        reading=reading,
+        white=look.whiten(np.concatenate(reading, axis=2)),
+        parts=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
+    )
+
+
+def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion, int]]:
+    """Suspects with their places in the line-up, the strongest first.
+
+    `known` (3N, k) is an orthonormal basis of what is in the model already. Shares are of the whole
+    when nothing is known but the model's own parameters.
+    """
+    beyond = lineup.white - known @ (known.T @ lineup.white)
+    length, left = np.linalg.norm(lineup.white, axis=0), np.linalg.norm(beyond, axis=0)
+    visible = left > SEEN_AT_ALL * np.maximum(length, 1e-300)
+    white = look.white - known @ (known.T @ look.white)
+    total = float(white @ white) / look.noise.scale
+    freedom = len(white) - known.shape[1]
+    found: list[tuple[Suspicion, int]] = []
+    for k, (suspect, own) in enumerate(zip(lineup.suspects, lineup.parts, strict=True)):
+        basis = orthonormal(beyond[:, own][:, visible[own]])
+        rank = basis.shape[1]
+        if 0 < rank < freedom:
+            T = float(((basis.T @ white) ** 2).sum()) / look.noise.scale
+            found.append((_suspicion(suspect, T, rank, total, freedom, look), k))
+    corrected = holm([suspicion.probability for suspicion, _ in found])
+    return sorted(
+        ((replace(s, probability=p), k) for (s, k), p in zip(found, corrected, strict=True)),
+        key=lambda pair: -pair[0].evidence,
+    )
+
+
+def _suspicions(look: _Look) -> tuple[tuple[Suspicion, ...], tuple[Suspicion, ...]]:
+    """All suspects, the strongest first; and the others once the strongest is in the model."""
+    lineup = _lineup(look)
+    ranked = _ranked(look, lineup, look.inside)
+    shown = _to_show([suspicion for suspicion, _ in ranked])
+    alone = tuple(
+        _with_picture(s, lineup.suspects[k], lineup.reading[k], look) if number in shown else s
+        for number, (s, k) in enumerate(ranked)
+    )
+    if not alone or not alone[0].seen:
+        return alone, ()
+    first = orthonormal(lineup.white[:, lineup.parts[ranked[0][1]]])
+    known = orthonormal(np.hstack([look.inside, first]))
+    return alone, tuple(suspicion for suspicion, _ in _ranked(look, lineup, known))
+
+
+def _suspicion(
+    suspect: Suspect, T: float, rank: int, total: float, freedom: int, look: _Look
+) -> Suspicion:
+    """The statistic with its probability, not yet corrected for the number of looks."""
+    noise = look.noise
+    unit = 1.0
+    if look.known:
+        p = noise.tail(T * noise.scale, rank)
+    else:  # nothing tells the noise but what the suspect itself leaves
+        unit = max(total - T, 1e-300) / (freedom - rank)
+        p = float(stats.f.sf(T / rank / unit, rank, freedom - rank))
+    whole = float(look.white @ look.white) / noise.scale
+    if look.whole == "excess":
+        whole -= len(look.white) - look.inside.shape[1]
+    return Suspicion(
+        family=suspect.family,
+        name=suspect.name,
+        label=suspect.label,
+        statistic=T,
+        freedom=rank,
+        probability=p,
+        explained=float(np.clip((T - rank * unit) / max(whole, 1e-300), 0.0, 1.0)),
+        evidence=T - rank * float(np.log(max(freedom, 2))),
+    )
+
+
+def _to_show(ranked: Sequence[Suspicion]) -> set[int]:
+    """The three strongest, and the strongest of every family."""
+    shown = set(range(min(3, len(ranked))))
+    for family in dict.fromkeys(s.family for s in ranked):
+        shown.add(next(k for k, s in enumerate(ranked) if s.family == family))
+    return set(sorted(shown)[:SHOWN])
+
+
+def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: _Look) -> Suspicion:
+    """The gap along the suspect's direction, with the model's parameters refitted beside it."""
+    problem = look.fit.problem
+    S = reading.reshape(len(look.white), -1)
+    both = np.hstack([look.derivative, S])
+    white = look.whiten(both.reshape(problem.situation.count, 3, -1))
+    norms = np.maximum(np.linalg.norm(white, axis=0), 1e-300)
+    values = np.linalg.lstsq(white / norms, look.white, rcond=INDISTINCT)[0] / norms
+    own = values[look.derivative.shape[1] :]
+    signature = (S @ own).reshape(-1, 3)
+    covered = (look.derivative @ values[: look.derivative.shape[1]]).reshape(-1, 3)
+    raw = np.einsum("nji,nj->ni", problem.situation.reading_axes, look.gap)
+    freed = raw - covered
+    if suspect.direction is None:
+        size = np.linalg.norm(signature, axis=1, keepdims=True)
+        along = signature / np.where(size > 0.0, size, 1.0)
+    else:
+        along = np.einsum("nji,nj->ni", problem.situation.reading_axes, suspect.direction)
+    return replace(
+        suspicion, abscissa=suspect.abscissa, partial=np.einsum("ni,ni->n", along, freed)
+    )
+
+
+def holm(probabilities: Sequence[float]) -> list[float]:
+    """Probabilities corrected for the number of looks (Holm 1979)."""
+    p = np.asarray(probabilities, dtype=float)
+    order = np.argsort(p)
+    stepped = np.maximum.accumulate(p[order] * (len(p) - np.arange(len(p))))
+    out = np.empty_like(p)
+    out[order] = np.minimum(stepped, 1.0)
+    return [float(x) for x in out]

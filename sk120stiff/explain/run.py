@@ -1,0 +1,203 @@
+"""Fit becomes an `Explanation`: search, tell apart, confirm, add, judge what is left."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.effects import CATALOGUE, Catalogue
+from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.explain.advise.best_guess import contenders
+from sk120stiff.explain.advise.consequences import completed
+from sk120stiff.explain.answer.explanation import Explanation, Verdict
+from sk120stiff.explain.findings import Finding
+from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
+from sk120stiff.explain.judge.attribution import SHADOW, judged
+from sk120stiff.explain.judge.beside_form import beside_model_form
+from sk120stiff.explain.judge.posterior import one_more
+from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.explain.judge.selection_uncertainty import with_doubt
+from sk120stiff.explain.judge.steps import gap_steps
+from sk120stiff.explain.localise.places import localise
+from sk120stiff.explain.localise.words import where_sentences
+from sk120stiff.explain.options import Options, candidates_for, with_assumed
+from sk120stiff.explain.select.best_attempt import best_attempt, held_against
+from sk120stiff.explain.select.stepwise import Attempt, attempt
+from sk120stiff.identify import refuse_unusable
+from sk120stiff.measurements import Measurements, NoiseModel, decided
+from sk120stiff.measurements import candidates as noise_candidates
+from sk120stiff.model import Model
+from sk120stiff.slips import look, refuse_unbelievable, without_copies
+
+LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
+
+TOLD = 2  # sentences on where the remainder lives
+
+Progress = Callable[[str, float], None]
+
+
+def explain(
+    model: Model,
+    measurements: Measurements,
+    *,
+    holdout: Measurements | None = None,
+    options: Options | None = None,
+    catalogue: Catalogue = CATALOGUE,
+    progress: Progress | None = None,
+) -> Explanation:
+    """Find where model and readings disagree, name what is missing, add it, judge the rest.
+
+    Parameters
+    ----------
+    model
+        The base model; its effects are part of every model considered.
+    measurements
+        Readings to be explained.
+    holdout
+        Readings of other poses, kept out of everything; the gap on them is reported.
+    options
+        How the search is steered.
+    catalogue
+        The effects that may be missing, ``CATALOGUE + Mine`` with your own.
+    progress
+        Called with a phrase and a share of the work done.
+
+    Raises
+    ------
+    InputError
+        No displacements, too few readings, one pose alone, or an effect that does not exist.
+    Refusal
+        The data look written down wrongly, they contradict their stated uncertainty, or the base
+        model itself cannot be fitted.
+
+    Examples
+    --------
+    >>> import sk120stiff as sk
+    >>> readings = sk.read(sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv")
+    >>> answer = sk.explain(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+    >>> answer.verdict
+    'none'
+    """
+    wish = options or Options()
+    tell = progress or _silent
+    _refuse_unexplainable(model, measurements)
+    sound = _sound(model, measurements)
+    used, rows = sound.masked(), np.flatnonzero(sound.use)
+    tell("searching the catalogue", 0.05)
+    under = _attempts(model, used, wish, catalogue)
+    found, noise = best_attempt(used, under)
+    base = held_against(noise, found.base)
+    tell("confirming on other poses", 0.3)
+    exact = not found.final.exceeds
+    if exact:
+        exactly = judged(found, seed=wish.seed)
+        left = _adequacy(exactly[0], noise)
+        exact = not _too_much(left, SHADOW if exactly[1].shadows else LEFT_OVER)
+    found, named = exactly if exact else beside_model_form(base, under, seed=wish.seed)
+    left = _adequacy(found, noise)
+    tell("the gap step by step", 0.7)
+    findings = named.findings
+    effects = [finding.effect for finding in findings]
+    final = with_doubt(found, findings)
+    verdict = _verdict(findings, left)
+    if verdict == "none":
+        left.refuse_contradicted(str(measurements.path or "the measurements"))
+    remainder = remainder_of(held_against(noise, found.final))
+    if remainder.significant:
+        lives = where_sentences(localise(held_against(noise, found.final)))
+        remainder = replace(remainder, where=lives[1 : 1 + TOLD])
+    fallen = named.doubted if verdict == "outside" else ()
+    suspects, guess = contenders(found, fallen, seed=wish.seed)
+    answer = Explanation(
+        verdict=verdict,
+        findings=findings,
+        base=base,
+        final=final if final.problem.noise.form else held_against(noise, final),
+        steps=gap_steps(found, effects, holdout, seed=wish.seed),
+        noise=noise,
+        noise_reasons=(*decided(noise, used), *left.of_the_statement()),
+        set_aside=tuple(rows[found.aside].tolist()),
+        readings=measurements,
+        adequacy=left,
+        remainder=remainder,
+        unnamed=named.reasons,
+        limits=wish.limits,
+        suspects=suspects,
+        guess=guess,
+        odds=one_more(found.regression, found.chosen),
+        catalogue=catalogue,
+    )
+    tell("what these readings cannot tell", 0.85)
+    return completed(answer, found.regression, seed=wish.seed)
+
+
+def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:
+    """What is confirmed is named, whatever is left beside it."""
+    if not findings:
+        return "outside" if left.lacking else "none"
+    return "named" if all(finding.settled for finding in findings) else "ambiguous"
+
+
+def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
+    refuse_unusable(model, measurements)
+    if len(measurements.masked().poses) < 2:
+        raise InputError(
+            "readings of one pose alone cannot be explained: no other pose can confirm a name",
+            where=str(measurements.path or "measurements"),
+            remedy="Measure at two poses or more; springs alone come from 'sk120stiff identify'.",
+        )
+
+
+def _attempts(
+    model: Model, measurements: Measurements, wish: Options, catalogue: Catalogue
+) -> Callable[[NoiseModel], Attempt]:
+    """Attempts at an answer, as a function of the noise."""
+    base_model = with_assumed(model, measurements, wish.assume, catalogue)
+    candidates = candidates_for(base_model, measurements, wish, catalogue)
+    plain = tuple(effect for effect in candidates if not effect.exchangeable)
+    undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
+
+    def under(chosen: NoiseModel) -> Attempt:
+        # Constants of single poses are what a shared zero brings; it need not have been separate.
+        # Beside model-form error they are part of it.
+        return attempt(
+            base_model,
+            measurements,
+            chosen,
+            plain if chosen.form or (undescribed and chosen.zero == "separate") else candidates,
+            max_effects=wish.max_effects,
+            alpha=wish.alpha,
+        )
+
+    return under
+
+
+def _sound(model: Model, measurements: Measurements) -> Measurements:
+    """The readings with copied rows masked, once nothing in them looks like a slip of the pen."""
+    doubts = look(model, measurements)
+    refuse_unbelievable(doubts, model, measurements)
+    doubts.refuse_to_explain(str(measurements.path or "the measurements"))
+    for said in doubts.sentences:
+        warnings.warn(said, ToolkitWarning, stacklevel=3)
+    single, told = without_copies(measurements)
+    if told:
+        warnings.warn(told, ToolkitWarning, stacklevel=3)
+    return single
+
+
+def _silent(phrase: str, share: float) -> None:
+    """No one wants to know."""
+    del phrase, share
+
+
+def _adequacy(found: Attempt, noise: NoiseModel) -> Adequacy:
+    final = held_against(noise, found.final)
+    return adequacy(final, found.regression, found.scored.solved.columns)
+
+
+def _too_much(left: Adequacy, allowed: float) -> bool:
+    """Is more left over than a name may leave?"""
+    return left.lacking and left.excess > allowed * left.explained

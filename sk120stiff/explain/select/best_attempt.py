@@ -1,0 +1,50 @@
+"""The attempt that explains most, and what it is held against.
+
+What was stated of the noise, or found from repeats, stays the yardstick of every fit, whatever
+else a search took into account (`beside_form.py`).
+
+A gap that is rounding, because the readings were computed, has no cause: the search is made again
+with the finest noise that instruments have, and finds none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.explain.select.stepwise import Attempt
+from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
+from sk120stiff.identify.fit import with_values
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
+from sk120stiff.measurements.noise import FINEST
+
+Try = Callable[[NoiseModel], Attempt]
+
+
+def best_attempt(measurements: Measurements, under: Try) -> tuple[Attempt, NoiseModel]:
+    """The best attempt, and the noise that its fits are to be held against.
+
+    Parameters
+    ----------
+    measurements
+        Readings in use.
+    under
+        Makes an attempt under one noise model.
+    """
+    tried = [under(noise) for noise in candidates(measurements)]
+    found = tried[likelier([-each.total for each in tried])]
+    noise = found.base.problem.noise
+    if yardstick(found.base).source == "computed":
+        found = under(replace(noise, sigma=FINEST, freedom=np.inf))
+    return found, noise
+
+
+def held_against(noise: NoiseModel, fit: Fit) -> Fit:
+    """The same estimates, their misfit and their errors judged by this noise."""
+    problem = fit.problem
+    if problem.noise == noise:
+        return fit
+    again = solve_near(Problem(problem.model, problem.measurements, noise), fit.x)
+    return with_values(replace(again, doubt=fit.doubt))

@@ -1,0 +1,92 @@
+"""Readings that no smooth cause can have made, found before any cause is named."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.measurements import FormWhitener, Whitener
+from sk120stiff.robot.coupling import Array
+
+LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
+NEXT = 3.7  # the same once one outlier is certain
+LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to tell of the noise
+LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
+
+
+def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> NDArray[np.intp]:
+    """Rows (readings) whose own shift would be significant beyond the whole catalogue together.
+
+    The catalogue is fitted with every parameter drawn towards zero by its plausible range, which is
+    flexible enough for any cause like those in it. A reading stands out if a shift of one of its
+    axes would still take more than `LIMIT` standard errors (`NEXT`, once one was found). The worst
+    is taken out first, and the rest judged again.
+    """
+    X, y = regression.X, regression.y
+    prior = 3.0 / np.maximum(regression.plausible, 1e-300)
+    prior[regression.base] = 0.0
+    own = np.diag(X.T @ X)
+    prior = np.where(own > 0.0, prior, 1.0)
+    count = len(y) // 3
+    shifts = _shift_columns(whitener, count, regression.group[::3])
+    out: list[int] = []
+    while len(out) <= LARGEST_SHARE * count:
+        extra = np.zeros((len(y), 3 * len(out)))
+        for k, row in enumerate(out):
+            rows, block = shifts[row]
+            extra[rows, 3 * k : 3 * k + 3] = block
+        full = np.hstack([X, extra])
+        weight = np.concatenate([prior, np.zeros(extra.shape[1])])
+        gram = full.T @ full + np.diag(weight**2)
+        scale = 1.0 / np.sqrt(np.diag(gram))
+        factor = np.linalg.cholesky(gram * np.outer(scale, scale) + 1e-12 * np.eye(len(gram)))
+        half = np.linalg.solve(factor, (full * scale).T)  # (P, R)
+        residual = y - half.T @ (half @ y)
+        noise = 1.0 if regression.sigma_known else _robust_scale(residual, (half**2).sum(0))
+        worst, where = 0.0, -1
+        for row, (rows, block) in enumerate(shifts):
+            if row in out:
+                continue
+            total = (block**2).sum(0)
+            left = total - ((half[:, rows] @ block) ** 2).sum(0)
+            score = np.abs(block.T @ residual[rows]) / (noise * np.sqrt(np.maximum(left, 1e-9)))
+            highest = float(score[left > LEAST_LEFT * total].max(initial=0.0))
+            if highest > worst:
+                worst, where = highest, row
+        if worst <= (NEXT if out else LIMIT):
+            return np.array(sorted(out), dtype=np.intp)
+        out.append(where)
+    return np.zeros(0, dtype=np.intp)
+
+
+def _shift_columns(
+    whitener: Whitener | FormWhitener, count: int, pose: NDArray[np.intp]
+) -> list[tuple[NDArray[np.intp], Array]]:
+    """For each reading the rows of its pose and their whitened shifts (rows, 3).
+
+    Whitening mixes rows of one pose only.
+    """
+    position = np.zeros(count, dtype=np.intp)
+    members = [np.flatnonzero(pose == p) for p in range(int(pose.max(initial=-1)) + 1)]
+    for rows in members:
+        position[rows] = np.arange(len(rows))
+    width = int(position.max(initial=0)) + 1
+    unit = np.zeros((count, 3, width, 3))
+    unit[np.arange(count), :, position, :] = np.eye(3)
+    white = whitener.apply(unit.reshape(count, 3, -1)).reshape(count, 3, width, 3)
+    out = []
+    for k in range(count):
+        rows = members[pose[k]]
+        flat = (3 * rows[:, None] + np.arange(3)).reshape(-1)
+        out.append((flat, white[rows, :, position[k], :].reshape(-1, 3)))
+    return out
+
+
+def _robust_scale(residual: Array, leverage: Array) -> float:
+    """Scale of the noise from residuals, each put right for what the fit took of it."""
+    free = leverage < 1.0 - LEAST_LEFT
+    if not free.any():
+        return 1.0
+    fair = residual[free] / np.sqrt(1.0 - leverage[free])
+    return float(1.4826 * np.median(np.abs(fair))) or 1.0

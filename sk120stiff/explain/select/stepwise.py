@@ -1,0 +1,181 @@
+"""One attempt at an answer: under one noise model, linearise, search and refit until it settles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
+from sk120stiff.explain.candidates.regression import Index, Regression, regression_at
+from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.outliers import outlying_rows
+from sk120stiff.explain.select.score import Scored, score_set
+from sk120stiff.identify import Fit, Problem, fit, solve
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model
+
+ROUNDS = 4  # of linearising, searching and refitting
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """A base model, the model that the search settled on, and everything to judge it by.
+
+    Attributes
+    ----------
+    base, final
+        Fits of the base model and of the model with the chosen effects.
+    regression
+        Readings linearised at `final`.
+    chosen
+        Candidates in `final`.
+    aside
+        Rows (of the readings given) that were set aside as outliers.
+    candidates
+        All effects considered.
+    total
+        Score of the whole, noise included; attempts under other zero readings compare by it.
+    """
+
+    base: Fit
+    final: Fit
+    regression: Regression
+    chosen: tuple[int, ...]
+    aside: Index
+    candidates: tuple[Effect, ...]
+    total: float
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The chosen effects."""
+        return tuple(self.regression.candidates[e] for e in self.chosen)
+
+    @property
+    def scored(self) -> Scored:
+        """The chosen model in the regression."""
+        return score_set(self.regression, self.regression.sums(), self.chosen)
+
+
+def attempt(
+    model: Model,
+    measurements: Measurements,
+    noise: NoiseModel,
+    candidates: Sequence[Effect],
+    *,
+    max_effects: int,
+    alpha: float,
+) -> Attempt:
+    """Settle on a set of effects under one noise model.
+
+    Parameters
+    ----------
+    model
+        The base model.
+    measurements
+        Readings in use.
+    noise
+        Their noise.
+    candidates
+        Effects that may be missing.
+    max_effects
+        Largest number of them to add.
+    alpha
+        Probability of naming something where nothing is missing.
+    """
+    base = fit(model, measurements, noise=noise)
+    ids = tuple(effect.id for effect in model.effects)
+    regression = regression_at(base, candidates, ids, alpha=alpha)
+    whole = base.problem.whitener.logdet
+    aside = outlying_rows(regression, base.problem.whitener)
+    if len(aside):
+        keep = np.ones(measurements.n_readings, dtype=bool)
+        keep[aside] = False
+        base = fit(model, measurements.select(keep), noise=noise)
+        regression = regression_at(base, candidates, ids, alpha=alpha)
+    final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
+    score = score_set(regression, regression.sums(), chosen).score
+    axes = np.log(3.0 * measurements.n_readings)
+    if not regression.sigma_known:  # its part of the likelihood that no model changes
+        score += regression.rows
+    return Attempt(
+        base=base,
+        final=final,
+        regression=regression,
+        chosen=chosen,
+        aside=aside,
+        candidates=tuple(candidates),
+        total=score + whole + 3.0 * axes * len(aside),
+    )
+
+
+def with_effects(found: Attempt, effects: Sequence[Effect]) -> Attempt:
+    """The same attempt with other effects chosen, refitted and linearised anew."""
+    ids = tuple(effect.id for effect in found.base.model.effects)
+    final = refit(found.base, effects)
+    regression = regression_at(final, found.candidates, ids, alpha=found.regression.alpha)
+    chosen = positions(regression, effects)
+    return Attempt(
+        base=found.base,
+        final=final,
+        regression=regression,
+        chosen=chosen,
+        aside=found.aside,
+        candidates=found.candidates,
+        total=np.nan,
+    )
+
+
+def refit(base: Fit, effects: Sequence[Effect]) -> Fit:
+    """The base model with effects added, fitted at exact equilibrium to the same readings."""
+    if not effects:
+        return base
+    model = base.model
+    for effect in effects:
+        model = model + effect
+    return solve(Problem(model, base.problem.measurements, base.problem.noise))
+
+
+def positions(regression: Regression, effects: Sequence[Effect]) -> tuple[int, ...]:
+    """Places of effects among the candidates, ascending."""
+    where = {effect.id: k for k, effect in enumerate(regression.candidates)}
+    return tuple(sorted(where[effect.id] for effect in effects))
+
+
+def _settle(
+    base: Fit,
+    regression: Regression,
+    candidates: Sequence[Effect],
+    ids: Sequence[str],
+    max_effects: int,
+) -> tuple[Fit, Regression, tuple[int, ...]]:
+    """Linearise, search, refit exactly, until the search confirms the model it was made at."""
+    final = base
+    effects: list[Effect] = []
+    for _ in range(ROUNDS):
+        ranked = beam_search(regression, max_effects=max_effects)
+        if set(laws_of(regression, ranked[0])) == set(effects):
+            break
+        effects, final = _first_that_fits(base, regression, ranked)
+        regression = regression_at(final, candidates, ids, alpha=regression.alpha)
+    return final, regression, positions(regression, effects)
+
+
+def laws_of(regression: Regression, scored: Scored) -> list[Effect]:
+    """The effects of a model, each by the law by which it entered."""
+    return [regression.law(e, k) for e, k in zip(scored.effects, scored.variants, strict=True)]
+
+
+def _first_that_fits(
+    base: Fit, regression: Regression, ranked: Sequence[Scored]
+) -> tuple[list[Effect], Fit]:
+    """The best model that can be fitted at exact equilibrium too."""
+    for model in ranked:
+        effects = laws_of(regression, model)
+        try:
+            return effects, refit(base, effects)
+        except Refusal:
+            continue
+    return [], base

@@ -1,0 +1,254 @@
+"""Directions of the parameters that the readings say nothing or little about, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.effects.base import SPRINGS
+from sk120stiff.identify.checks.unseen import why_unseen
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.covariance import covariance_of
+from sk120stiff.identify.solve.overlaid import Overlay, separating
+from sk120stiff.identify.solve.polish import seen_directions
+from sk120stiff.model import Parameter
+from sk120stiff.robot.coupling import Array
+
+VAGUE = 0.5  # relative standard error beyond which a value is no knowledge
+TOGETHER = 0.95  # correlation beyond which two estimates are said to move together
+LINKED = 0.1  # cosine of their parts in blind directions that ties two parameters
+
+
+def weak_directions(fit: Fit) -> tuple[str, ...]:
+    """Sentences on what a fit cannot tell apart, hardly knows, or found on a physical bound.
+
+    Parameters that lie on one another while a bound holds some come first, then those that no
+    reading shows, those of which only combinations are known,
+    those that are strongly correlated, those on a bound, those that are larger than is plausible,
+    and single values that are vague.
+    """
+    said: list[str] = []
+    told: set[int] = set()
+    for overlay in fit.overlays:
+        said.append(overlaid_sentence(fit, overlay))
+        told.update(overlay.members)
+    for group, size in _blind_groups(fit):
+        if not told.issuperset(group):
+            said.append(_unseen(fit, group, size))
+            told.update(group)
+    for first, second in _correlated(fit):
+        if not told.issuperset((first, second)):
+            said.append(_correlation(fit, first, second))
+    said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound & fit.held)]
+    far = (np.abs(fit.x) > fit.problem.span) & fit.identifiable
+    said += [_implausible(fit.parameters[k]) for k in np.flatnonzero(far)]
+    if fit.degrees_of_freedom < 1 and not fit.sigma_known:
+        said.append(
+            "As many values were estimated as were read, and no uncertainty is stated: "
+            "nothing is left to tell how well they are known."
+        )
+        return tuple(said)
+    for k, parameter in enumerate(fit.parameters):
+        std = parameter.std
+        if std and k not in told and std > VAGUE * abs(parameter.value):
+            share = 100.0 * std / max(abs(parameter.value), 1e-300)
+            low, high = (f"{end:.3g}" for end in fit.intervals()[k])
+            said.append(
+                f"{parameter.name} is hardly known: its 95 % interval reaches from {low} to {high} "
+                f"{parameter.spec.unit} (standard error {share:.0f} %)."
+            )
+    return tuple(said)
+
+
+def overlaid_sentence(fit: Fit, group: Overlay) -> str:
+    """Which parameters lie on one another, what of them is known, and what would separate them."""
+    members = [fit.parameters[k] for k in group.members]
+    held = [fit.parameters[k] for k in group.held]
+    if {p.effect.name for p in members} == {SPRINGS}:
+        names = f"the springs of {_listed([p.effect.where for p in members])}"
+        bound = f"that {_listed([p.effect.where for p in held])} came out rigid"
+    else:
+        names = _listed([words_for(p) for p in members])
+        bound = f"that {_listed([words_for(p) for p in held])} lies on a physical bound"
+    low = 100.0 * group.likeness
+    return (
+        f"In these readings {names} lie on one another (they move the point alike by {low:.3f} % "
+        f"or more): {_known_of(fit, group)}, and how it is shared among them is not. The fit gave "
+        f"it where the misfit is least by a hair; {bound} is no finding. {_cure(fit, group)}"
+    )
+
+
+def _known_of(fit: Fit, group: Overlay) -> str:
+    """The one combination of overlaid parameters that the readings tell, with its doubt."""
+    own = list(group.members)
+    members = [fit.parameters[k] for k in own]
+    size = np.linalg.norm(fit.jacobian[:, own], axis=0) / fit.problem.scale[own]
+    first = next(i for i, k in enumerate(own) if k not in group.held)
+    sign = np.sign(fit.jacobian[:, own].T @ fit.jacobian[:, own[first]])
+    ratio = sign * size / size[first]
+    weights = np.zeros(len(fit.parameters))
+    weights[own] = ratio
+    value = float(ratio @ np.array([p.value for p in members]))
+    share = 100.0 * _std_of(fit, weights * fit.problem.scale) / max(abs(value), 1e-300)
+    kind = "compliances" if all(p.spec.reciprocal for p in members) else "values"
+    terms = [f"{words_for(members[first])}"]
+    terms += [
+        f"{'+' if r > 0 else '-'} {abs(r):.3g} x {words_for(p)}"
+        for i, (p, r) in enumerate(zip(members, ratio, strict=True))
+        if i != first
+    ]
+    return f"one sum of their {kind} is known to {share:.2g} % ({' '.join(terms)})"
+
+
+def _cure(fit: Fit, group: Overlay) -> str:
+    """The pose to measure."""
+    found = separating(fit.problem, group, fit.jacobian)
+    if found is None:
+        return (
+            "No measured pose with one joint turned separates them; let 'sk120stiff plan' choose."
+        )
+    robot = fit.problem.model.robot
+    slides = robot.prismatic[found.joint]
+    position = f"{found.position:.3g} m" if slides else f"{np.degrees(found.position):.0f} deg"
+    return (
+        f"A pose that separates them: as {found.pose}, with {robot.actuated[found.joint]} at "
+        f"{position} and the same load (one such reading makes the largest of their standard "
+        f"errors {found.gain:.0f} times smaller)."
+    )
+
+
+def words_for(parameter: Parameter) -> str:
+    """A parameter in plain words, e.g. ``base rocking z (base_link)``."""
+    what = parameter.effect.name.replace("_", " ")
+    detail = parameter.spec.name.removeprefix("stiffness").strip("_").replace("_", " ")
+    detail = detail.removeprefix(what.rpartition(" ")[2]).strip()  # force scale y, said once
+    return f"{what} {detail} ({parameter.effect.where})".replace("  ", " ")
+
+
+def _blind_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
+    """Sets of lost parameters that blind directions tie, and how many of these each has."""
+    moving = np.flatnonzero(~fit.held)
+    span = fit.problem.span
+    blind = seen_directions(fit.jacobian[:, moving], span[moving])[3]
+    covariance = covariance_of(fit.jacobian, fit.held, span)
+    left = [int(k) for k in np.flatnonzero(np.isinf(np.diag(covariance)[moving]))]
+    part = blind / np.maximum(np.linalg.norm(blind, axis=1, keepdims=True), 1e-300)
+    tied = np.abs(part @ part.T) > LINKED
+    while left:
+        group = [left.pop(0)]
+        for member in group:
+            joined = [k for k in left if tied[member, k]]
+            group += joined
+            left = [k for k in left if k not in joined]
+        size = int(np.linalg.matrix_rank(part[group], tol=LINKED)) if blind.size else 0
+        yield [int(moving[k]) for k in sorted(group)], max(size, 1)
+
+
+def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
+    parameters = [fit.parameters[k] for k in group]
+    if len(group) == 1:
+        why = why_unseen(fit.problem.situation, parameters[0])
+        return f"{parameters[0].name} does not show in these readings: " + (
+            f"{why}." if why else "no plausible value would change them by a tenth of their noise."
+        )
+    if size >= len(group):
+        return f"{_listed([p.name for p in parameters])} cannot be told from the others."
+    if len(group) == 2:
+        return _pair(fit, group)
+    known = len(group) - size
+    some = "one combination" if known == 1 else f"{known} of {len(group)} combinations"
+    return (
+        f"{_listed([words_for(p) for p in parameters])} move together: only {some} of their values "
+        f"{'is' if known == 1 else 'are'} known."
+    )
+
+
+def _pair(fit: Fit, group: Sequence[int]) -> str:
+    moving = np.flatnonzero(~fit.held)
+    blind = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[3]
+    place = [int(np.flatnonzero(moving == k)[0]) for k in group]
+    part = blind[place] * (fit.problem.span * fit.problem.scale)[list(group)][:, None]
+    strongest = part[:, int(np.argmax(np.linalg.norm(part, axis=0)))]
+    known, value, std = _combination(fit, group, strongest)
+    first, second = (fit.parameters[k] for k in group)
+    return (
+        f"{words_for(first)} and {words_for(second)} move together: only {known} is known, "
+        f"{value:.4g} ± {std:.2g} {first.spec.internal_unit}."
+    )
+
+
+def _combination(fit: Fit, group: Sequence[int], blind: Array) -> tuple[str, float, float]:
+    """What stays the same along a blind direction (2,) of two internal values, in words."""
+    first, second = (fit.parameters[k] for k in group)
+    ratio = float(-blind[0] / blind[1])  # first + ratio · second is invariant
+    kind = "compliances" if first.spec.reciprocal and second.spec.reciprocal else "values"
+    if abs(ratio - 1.0) < 0.05:
+        known, ratio = f"the sum of their {kind}", 1.0
+    elif abs(ratio + 1.0) < 0.05:
+        known, ratio = f"the difference of their {kind}", -1.0
+    else:
+        known = f"the first of their {kind} {'+' if ratio > 0 else '-'} {abs(ratio):.3g} times"
+        known += " the second"
+    weights = np.zeros(len(fit.parameters))
+    weights[list(group)] = (1.0, ratio)
+    values = np.array([p.value for p in fit.parameters])
+    return known, float(weights @ values), _std_of(fit, weights * fit.problem.scale)
+
+
+def _std_of(fit: Fit, weights: Array) -> float:
+    """Standard error of a combination (P,) of scaled parameters, along what is seen."""
+    moving = np.flatnonzero(~fit.held)
+    span = fit.problem.span[moving]
+    _, singular, V, _ = seen_directions(fit.jacobian[:, moving], span)
+    return float(np.linalg.norm((V.T @ (weights[moving] * span)) / singular)) * fit.unit
+
+
+def _correlated(fit: Fit) -> list[tuple[int, int]]:
+    known = np.isfinite(np.diag(fit.covariance)) & ~fit.held
+    upper: NDArray[np.bool_] = np.triu(np.abs(fit.correlation) > TOGETHER, k=1)
+    return [(int(i), int(j)) for i, j in np.argwhere(upper & np.outer(known, known))]
+
+
+def _correlation(fit: Fit, first: int, second: int) -> str:
+    covariance = fit.covariance[np.ix_([first, second], [first, second])]
+    scale = fit.problem.scale[[first, second]]
+    weakest = np.linalg.eigh(fit.correlation[np.ix_([first, second], [first, second])])[1][:, 1]
+    direction = weakest * np.sqrt(np.diag(covariance)) * scale
+    known, value, std = _combination(fit, (first, second), direction)
+    share = 100.0 * std / max(abs(value), 1e-300)
+    return (
+        f"{words_for(fit.parameters[first])} and {words_for(fit.parameters[second])} move together "
+        f"(correlation {fit.correlation[first, second]:.3f}): {known} is known to {share:.2g} %, "
+        "each alone much less."
+    )
+
+
+def _bound(fit: Fit, k: int) -> str:
+    parameter = fit.parameters[k]
+    low, high = fit.intervals()[k]
+    unit = parameter.spec.unit
+    if parameter.spec.reciprocal:
+        return (
+            f"{parameter.name} lies on its physical bound: rigid fits best; with 95 % it is "
+            f"stiffer than {low:.3g} {unit}."
+        )
+    return (
+        f"{parameter.name} lies on its physical bound; its 95 % interval reaches from {low:.3g} to "
+        f"{high:.3g} {unit}."
+    )
+
+
+def _implausible(parameter: Parameter) -> str:
+    spec = parameter.spec
+    limit = abs(spec.public(spec.plausible))
+    than = "softer" if spec.reciprocal else "larger"
+    return (
+        f"{parameter.name} is {than} than is plausible ({parameter.public_value:.3g}, limit "
+        f"{limit:.3g} {spec.unit}): it fits, but it explains nothing."
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,67 @@
+"""Why the readings say nothing of a parameter, and what to do about it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.effects import Situation
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.polish import FAINTEST
+from sk120stiff.model import Parameter
+from sk120stiff.robot.anatomy import arm_length
+from sk120stiff.robot.coupling import Array
+
+ON_AXIS = 1e-6  # share of the arm's length below which a lever is rounding of the URDF's numbers
+
+NOT_SHOWN = "it does not show in these readings"
+SHARED = "these readings tell it together with others only"
+
+
+def unseen_reasons(fit: Fit) -> dict[str, str]:
+    """Full name → reason, for every estimated parameter that the readings do not determine."""
+    situation = fit.problem.situation
+    alone = np.linalg.norm(fit.jacobian, axis=0) * fit.problem.span > FAINTEST
+    return {
+        p.name: why_unseen(situation, p) or (SHARED if shows else NOT_SHOWN)
+        for p, shown, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
+        if not shown
+    }
+
+
+def why_unseen(situation: Situation, parameter: Parameter) -> str | None:
+    """The geometric reason why no such reading can show a joint's spring; None: there is none.
+
+    A spring turns the point about its joint's axis by c τ. Nothing of it shows where the point lies
+    on that axis in every pose, or where every load passes through it.
+
+    Parameters
+    ----------
+    situation
+        Poses (N, n), loads and points of the readings, taken or planned.
+    parameter
+        The parameter; only a joint's spring has a reason of this kind.
+    """
+    if not parameter.effect.joint_spring or not situation.count:
+        return None
+    robot, joint = situation.robot, parameter.effect.where
+    k = robot.actuated.index(joint)
+    small = ON_AXIS * arm_length(robot)
+    moved = np.linalg.norm(situation.nominal.jacobian[:, :3, k], axis=1)
+    if not robot.prismatic[k] and moved.max() <= small:
+        return (
+            f"the point lies on the axis of {joint}; give a point off the axis (--point of 'plan', "
+            "point: in the YAML file of the readings)"
+        )
+    if _torques(situation)[:, k].max() <= small * _largest_load(situation):
+        return f"every load passes through the axis of {joint}; push beside it, or add a moment"
+    return None
+
+
+def _torques(situation: Situation) -> Array:
+    """(N, n) size of the torque that each load puts on each actuated joint [N·m or N]."""
+    at_load = situation.robot.screws(situation.a, point=situation.force_point)
+    return np.asarray(np.abs(np.einsum("nij,ni->nj", at_load.jacobian, situation.wrench)))
+
+
+def _largest_load(situation: Situation) -> float:
+    return float(np.linalg.norm(situation.wrench, axis=1).max())

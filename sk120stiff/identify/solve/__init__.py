@@ -1,0 +1,1 @@
+"""The least-squares problem, its solution within bounds, and what its derivative says."""

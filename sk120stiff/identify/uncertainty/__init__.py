@@ -1,0 +1,1 @@
+"""How sure a fitted model is: likelihood intervals, model-form error, what it predicts."""

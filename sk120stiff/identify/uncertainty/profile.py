@@ -1,0 +1,55 @@
+"""Profile-likelihood intervals of a fit, at exact equilibrium: no linearity is assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.covariance import covariance_of, public_interval
+from sk120stiff.identify.solve.profile_likelihood import Valley
+
+
+def profile_intervals(
+    fit: Fit, level: float = 0.95, *, progress: Callable[[int, int], None] | None = None
+) -> tuple[tuple[float, float], ...]:
+    """Confidence intervals of the public values, one (low, high) per estimated parameter.
+
+    Parameters
+    ----------
+    fit
+        A converged fit.
+    level
+        Confidence.
+    progress
+        Called as ``progress(done, total)``.
+
+    Notes
+    -----
+    An end that no misfit sets lies at the physical bound, which may be infinite. A parameter that
+    the readings do not show has both ends there.
+    """
+    problem = fit.problem
+    lower, upper = problem.bounds
+    goal = fit.reach(level) * fit.unit
+    variance = np.diag(covariance_of(fit.jacobian, fit.at_bound, problem.span))
+    valley = Valley(
+        evaluate=problem.evaluate,
+        x=fit.x,
+        misfit=fit.chi_square,
+        bounds=problem.bounds,
+        span=problem.span,
+        std=np.sqrt(variance),
+        slopes=np.linalg.norm(fit.jacobian, axis=0),
+    )
+    found = []
+    for k, parameter in enumerate(fit.parameters):
+        ends = (float(lower[k]), float(upper[k]))
+        if fit.identifiable[k] and np.isfinite(goal):
+            ends = (valley.end(k, -1.0, goal), valley.end(k, 1.0, goal))
+        scale = float(problem.scale[k])
+        found.append(public_interval(parameter.spec, ends[0] * scale, ends[1] * scale))
+        if progress is not None:
+            progress(k + 1, len(fit.parameters))
+    return tuple(found)
