@@ -22,7 +22,7 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import all_effects, situation_of
 from sk120stiff.explain import explain, verdict_document
 from sk120stiff.explain.answer.saving import plan_of, replacing_results
-from sk120stiff.explain.candidates.absorbed import swallowed
+from sk120stiff.explain.candidates.absorbed import absorbed
 from sk120stiff.files import write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import fit
@@ -76,7 +76,7 @@ def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
         for effect in all_effects(robot, poses=readings.poses, timed=readings.time is not None)
         if effect.id not in present and effect.applies_to(situation)
     ]
-    return Demo(paper, found, other, answer, swallowed(found, absent))
+    return Demo(paper, found, other, answer, absorbed(found, absent))
 
 
 def _write(

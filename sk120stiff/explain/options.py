@@ -79,7 +79,7 @@ def with_assumed(
 
 
 def candidates_for(
-    model: Model, used: Measurements, wish: Options, catalogue: Catalogue = CATALOGUE
+    model: Model, used: Measurements, options: Options, catalogue: Catalogue = CATALOGUE
 ) -> tuple[Effect, ...]:
     """Effects of the catalogue that the readings could show and the user does not exclude.
 
@@ -91,7 +91,7 @@ def candidates_for(
     situation = situation_of(model.robot, used)
     present = {effect.id for effect in model.effects}
     everything = _everything(model, used, catalogue)
-    for wanted in (*wish.only, *wish.exclude):
+    for wanted in (*options.only, *options.exclude):
         if not any(_matches(effect, wanted) for effect in everything):
             raise _unknown(wanted, model, catalogue)
     springs = np.isfinite(model.joint_stiffness())
@@ -106,9 +106,9 @@ def candidates_for(
         for effect in everything
         if effect.id not in present
         and effect.applies_to(situation)
-        and (sensible(effect) or any(_matches(effect, wanted) for wanted in wish.only))
-        and not any(_matches(effect, wanted) for wanted in wish.exclude)
-        and (not wish.only or any(_matches(effect, wanted) for wanted in wish.only))
+        and (sensible(effect) or any(_matches(effect, wanted) for wanted in options.only))
+        and not any(_matches(effect, wanted) for wanted in options.exclude)
+        and (not options.only or any(_matches(effect, wanted) for wanted in options.only))
     )
     if not found:
         raise InputError(

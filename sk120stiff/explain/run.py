@@ -15,11 +15,11 @@ from sk120stiff.explain.advise.consequences import completed
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
-from sk120stiff.explain.judge.attribution import SHADOW, judged
+from sk120stiff.explain.judge.attribution import MISSPECIFICATION, judged
 from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.posterior import one_more
 from sk120stiff.explain.judge.remainder import remainder_of
-from sk120stiff.explain.judge.selection_uncertainty import with_doubt
+from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
@@ -81,27 +81,27 @@ def explain(
     >>> answer.verdict
     'none'
     """
-    wish = options or Options()
+    options = options or Options()
     tell = progress or _silent
     _refuse_unexplainable(model, measurements)
     sound = _sound(model, measurements)
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
-    under = _attempts(model, used, wish, catalogue)
+    under = _attempts(model, used, options, catalogue)
     found, noise = best_attempt(used, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
     exact = not found.final.exceeds
     if exact:
-        exactly = judged(found, seed=wish.seed)
+        exactly = judged(found, seed=options.seed)
         left = _adequacy(exactly[0], noise)
-        exact = not _too_much(left, SHADOW if exactly[1].shadows else LEFT_OVER)
-    found, named = exactly if exact else beside_model_form(base, under, seed=wish.seed)
+        exact = not _too_much(left, MISSPECIFICATION if exactly[1].misspecified else LEFT_OVER)
+    found, named = exactly if exact else beside_model_form(base, under, seed=options.seed)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     findings = named.findings
     effects = [finding.effect for finding in findings]
-    final = with_doubt(found, findings)
+    final = with_selection_uncertainty(found, findings)
     verdict = _verdict(findings, left)
     if verdict == "none":
         left.refuse_contradicted(str(measurements.path or "the measurements"))
@@ -110,13 +110,13 @@ def explain(
         lives = where_sentences(localise(held_against(noise, found.final)))
         remainder = replace(remainder, where=lives[1 : 1 + TOLD])
     fallen = named.doubted if verdict == "outside" else ()
-    suspects, guess = contenders(found, fallen, seed=wish.seed)
+    suspects, guess = contenders(found, fallen, seed=options.seed)
     answer = Explanation(
         verdict=verdict,
         findings=findings,
         base=base,
         final=final if final.problem.noise.form else held_against(noise, final),
-        steps=gap_steps(found, effects, holdout, seed=wish.seed),
+        steps=gap_steps(found, effects, holdout, seed=options.seed),
         noise=noise,
         noise_reasons=(*decided(noise, used), *left.of_the_statement()),
         set_aside=tuple(rows[found.aside].tolist()),
@@ -124,14 +124,14 @@ def explain(
         adequacy=left,
         remainder=remainder,
         unnamed=named.reasons,
-        limits=wish.limits,
+        limits=options.limits,
         suspects=suspects,
         guess=guess,
         odds=one_more(found.regression, found.chosen),
         catalogue=catalogue,
     )
     tell("what these readings cannot tell", 0.85)
-    return completed(answer, found.regression, seed=wish.seed)
+    return completed(answer, found.regression, seed=options.seed)
 
 
 def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:
@@ -152,11 +152,11 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
 
 
 def _attempts(
-    model: Model, measurements: Measurements, wish: Options, catalogue: Catalogue
+    model: Model, measurements: Measurements, options: Options, catalogue: Catalogue
 ) -> Callable[[NoiseModel], Attempt]:
     """Attempts at an answer, as a function of the noise."""
-    base_model = with_assumed(model, measurements, wish.assume, catalogue)
-    candidates = candidates_for(base_model, measurements, wish, catalogue)
+    base_model = with_assumed(model, measurements, options.assume, catalogue)
+    candidates = candidates_for(base_model, measurements, options, catalogue)
     plain = tuple(effect for effect in candidates if not effect.exchangeable)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
@@ -168,8 +168,8 @@ def _attempts(
             measurements,
             chosen,
             plain if chosen.form or (undescribed and chosen.zero == "separate") else candidates,
-            max_effects=wish.max_effects,
-            alpha=wish.alpha,
+            max_effects=options.max_effects,
+            alpha=options.alpha,
         )
 
     return under

@@ -107,7 +107,7 @@ def test_the_report_tells_three_acts_and_its_limits(demo) -> None:
     assert f"by {gap['paper']:.1f} µm rms" in text and f"by {gap['identified']:.1f} µm" in text
     assert ("What 'none' means here" in text) == (document["verdict"] == "none")
     assert ("Thin ground" in text) == bool(document["effects"])
-    assert "force_scale:sensor and reading_scale:tracker : swallowed whole" in text
+    assert "force_scale:sensor and reading_scale:tracker : absorbed whole" in text
     assert text.count("pose 1") >= 2  # gaps and stiffness
     assert all(a["aria-label"] for a in outline.of("svg") if a.get("role") == "img")
     assert len([a for a in outline.of("svg") if a.get("role") == "img"]) >= 5

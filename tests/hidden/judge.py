@@ -61,7 +61,7 @@ def _nothing(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     if answer.verdict in {"error", "refused"}:
         return 0.0, 0, answer.verdict
     hidden = set(true_names(truth))
-    # a cause that the base springs swallow may still be named, as one member of its class
+    # a cause that the base springs absorb may still be named, as one member of its class
     wrong = sum(1 for group in answer.effects if not group & hidden)
     if hidden and answer.names and not wrong and all(len(group) > 1 for group in answer.effects):
         return 1.0, 0, "named as a class"

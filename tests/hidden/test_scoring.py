@@ -112,7 +112,7 @@ def test_near_pair_with_poses_is_right(tmp_path: Path) -> None:
     assert mark(truth("L4", TILT), answer)[0] == 0.5
 
 
-def test_swallowed_cause_may_stay_unnamed(tmp_path: Path) -> None:
+def test_absorbed_cause_may_stay_unnamed(tmp_path: Path) -> None:
     yaw = {**ROCK, "left": 0.0}
     assert mark(truth("L5", yaw, expected="none"), answered(tmp_path, "none"))[0] == 1.0
     named = answered(tmp_path, "named", ROCKS)

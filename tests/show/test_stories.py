@@ -10,7 +10,7 @@ import pytest
 
 from sk120stiff.effects import effect
 from sk120stiff.explain import Explanation, Finding, explain
-from sk120stiff.explain.candidates.absorbed import swallowed
+from sk120stiff.explain.candidates.absorbed import absorbed
 from sk120stiff.explain.findings import Contender
 from sk120stiff.identify import LackOfFit
 from sk120stiff.model import base_model
@@ -222,12 +222,12 @@ def test_panels_mark_the_strongest_suspect_alone() -> None:
     assert [k for k, title in enumerate(titles) if "strongest" in title] == [0]
 
 
-def test_swallowed_is_what_a_refit_leaves() -> None:
+def test_absorbed_is_what_a_refit_leaves() -> None:
     """A gain of the force is other springs; a tilt at the shoulder is not."""
     fitted = base_fit(hidden(schedule="ascending"))
     robot = fitted.model.robot
     chosen = [effect(robot, "force_scale"), effect(robot, "joint_tilt", "joint_2_l")]
-    scale, tilt = swallowed(fitted, chosen)
+    scale, tilt = absorbed(fitted, chosen)
     assert scale.share > 0.9999 and scale.visible < 1e-2
     assert 0.3 < tilt.share < 0.99
     assert tilt.visible > 5.0

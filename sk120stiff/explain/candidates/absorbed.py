@@ -1,7 +1,7 @@
 """How much of an effect the fitted springs would cover up on these readings.
 
 Springs that are refitted beside a missing effect take on as much of it as they can. What they leave
-is all that any test has to go by; an effect that they swallow whole is no effect but other springs.
+is all that any test has to go by; an effect that they absorb whole is no effect but other springs.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from sk120stiff.effects import Effect
 from sk120stiff.identify import Fit
 from sk120stiff.identify.checks.left_over import orthonormal
 
-WHOLE = 0.99  # share from which an effect counts as swallowed
+WHOLE = 0.99  # share from which an effect counts as absorbed
 
 
 @dataclass(frozen=True)
-class Swallowed:
+class Absorbed:
     """One effect at its usual size.
 
     Attributes
@@ -45,7 +45,7 @@ class Swallowed:
         return 1.0 - self.remains / self.shows if self.shows else 1.0
 
 
-def swallowed(fit: Fit, effects: Sequence[Effect]) -> tuple[Swallowed, ...]:
+def absorbed(fit: Fit, effects: Sequence[Effect]) -> tuple[Absorbed, ...]:
     """Effects at their usual sizes, each alone, against a fitted model's own parameters.
 
     Parameters
@@ -76,7 +76,7 @@ def swallowed(fit: Fit, effects: Sequence[Effect]) -> tuple[Swallowed, ...]:
         weights = np.linalg.lstsq(white, seen, rcond=1e-10)[0]
         left = signature - own @ weights
         out.append(
-            Swallowed(
+            Absorbed(
                 effect=effect,
                 shows=float(np.sqrt(np.mean(signature**2))),
                 remains=float(np.sqrt(np.mean(left**2))),

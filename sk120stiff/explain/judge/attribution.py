@@ -22,7 +22,9 @@ from sk120stiff.explain.select.stepwise import Attempt, refit, with_effects
 from sk120stiff.robot.anatomy import arm_joints
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
-SHADOW = 0.35  # size beside a stronger effect of the same gear that the choice of law explains
+MISSPECIFICATION = (
+    0.35  # size beside a stronger effect of the same gear that the choice of law explains
+)
 NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 CONTENDERS = 24  # rivals looked at for every effect
@@ -38,13 +40,13 @@ class Fallen:
         ``name:where``.
     reason
         Why, in a sentence.
-    shadow
+    misspecification
         It only mends the law of a stronger effect; else other poses do not confirm it.
     """
 
     id: str
     reason: str
-    shadow: bool = False
+    misspecification: bool = False
 
 
 @dataclass(frozen=True)
@@ -65,12 +67,12 @@ class Named:
     @property
     def doubted(self) -> tuple[str, ...]:
         """Ids of effects that other poses do not confirm."""
-        return tuple(each.id for each in self.fallen if not each.shadow)
+        return tuple(each.id for each in self.fallen if not each.misspecification)
 
     @property
-    def shadows(self) -> tuple[str, ...]:
+    def misspecified(self) -> tuple[str, ...]:
         """Ids of effects that only mend the law of a stronger one."""
-        return tuple(each.id for each in self.fallen if each.shadow)
+        return tuple(each.id for each in self.fallen if each.misspecification)
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -136,13 +138,13 @@ def _objection(
 ) -> Fallen | None:
     """Why an effect may not be named beside the stronger ones; None if it may."""
     name = finding.effect.id
-    caster = _caster(found, finding, before)
-    if caster is not None:
+    stronger = _stronger(found, finding, before)
+    if stronger is not None:
         return Fallen(
             name,
             f"{name} would take away a little more of the gap, but no more than the law of "
-            f"{caster.effect.id} leaves over; it is not named.",
-            shadow=True,
+            f"{stronger.effect.id} leaves over; it is not named.",
+            misspecification=True,
         )
     if finding.effect.exchangeable and not _constant(found, finding.effect):
         return Fallen(
@@ -199,7 +201,7 @@ def _unconfirmed(finding: Finding) -> str:
     )
 
 
-def _caster(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
+def _stronger(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
     """The stronger effect whose law leaves over what this one explains.
 
     No gear follows a cubic to the last digit; what is left looks like play or friction there. No
@@ -241,9 +243,9 @@ def _length_alone(found: Attempt, effect: Effect) -> float:
 
 
 def _of_one_gear(finding: Finding, other: Finding) -> float:
-    """`SHADOW` if both effects are laws of one gear."""
+    """`MISSPECIFICATION` if both effects are laws of one gear."""
     gears = finding.effect.of_gear and other.effect.of_gear
-    return SHADOW if gears and finding.effect.where == other.effect.where else 0.0
+    return MISSPECIFICATION if gears and finding.effect.where == other.effect.where else 0.0
 
 
 def _finding(found: Attempt, effect: int, seed: int, least: float) -> Finding:

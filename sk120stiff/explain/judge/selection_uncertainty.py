@@ -23,7 +23,7 @@ REFUTED = 10.0  # twice the log-likelihood by which another law may be worse at 
 LOOKED_AT = 8  # alternatives of one name
 
 
-def with_doubt(found: Attempt, findings: Sequence[Finding]) -> Fit:
+def with_selection_uncertainty(found: Attempt, findings: Sequence[Finding]) -> Fit:
     """The final fit, its standard errors and intervals widened by the models that remain possible.
 
     Parameters

@@ -31,7 +31,7 @@ from sk120stiff.explain.localise.localisation import (
     Suspicion,
     Whole,
 )
-from sk120stiff.explain.localise.random_effects import Drawn
+from sk120stiff.explain.localise.random_effects import RandomEffects
 from sk120stiff.explain.localise.suspects import Suspect, axes_of, reach_of, suspects_of
 from sk120stiff.explain.localise.within_poses import WithinPoses, within_poses
 from sk120stiff.identify import Fit, Yardstick, lack_of_fit, yardstick
@@ -130,7 +130,7 @@ def _look(fit: Fit, noise: Yardstick) -> _Look:
     problem = fit.problem
     axes = problem.situation.reading_axes
     predicted, full = fit.model.predict_with_sensitivities(problem.situation)
-    drawn = Drawn(fit, full)
+    drawn = RandomEffects(fit, full)
     moving = ~fit.at_bound & ~drawn.columns[problem.free]
     derivative = full[:, :, problem.free[moving]] * problem.scale[moving]
     inside = orthonormal(drawn.whiten(derivative))

@@ -21,7 +21,7 @@ Pick = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class RandomEffects:
     """The exchangeable parameters of a fitted model as part of its noise.
 
     Attributes

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.explain import Explanation
-from sk120stiff.explain.candidates.absorbed import Swallowed
+from sk120stiff.explain.candidates.absorbed import Absorbed
 from sk120stiff.identify import Fit, fit
 from sk120stiff.identify.checks.one_gain import OneGain, one_gain
 from sk120stiff.measurements import NoiseModel
@@ -39,7 +39,7 @@ class Demo:
     found: Fit
     other: Fit
     answer: Explanation
-    hidden: Sequence[Swallowed]
+    hidden: Sequence[Absorbed]
 
     @property
     def model(self) -> Model:

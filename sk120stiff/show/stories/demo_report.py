@@ -313,7 +313,7 @@ def _three_poses(demo: Demo) -> Section:
     if whole:
         blocks.append(
             Note(
-                f"{listed([f'`{name}`' for name in whole])}: swallowed whole. Force, displacement "
+                f"{listed([f'`{name}`' for name in whole])}: absorbed whole. Force, displacement "
                 "and springs enter as one product: a force sensor that reads 2 % too low looks "
                 "exactly like springs that are 2 % softer. No further poses change that; a "
                 "calibrated weight does.",
