@@ -15,8 +15,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 
 if TYPE_CHECKING:
@@ -102,9 +103,7 @@ def split_header(header: str, *, where: str | None = None) -> tuple[str, str | N
     return name.strip(), rest[:-1].strip() or None
 
 
-def to_si(
-    values: ArrayLike, unit: str | None, kind: str, *, where: str | None = None
-) -> NDArray[np.float64]:
+def to_si(values: ArrayLike, unit: str | None, kind: str, *, where: str | None = None) -> Array:
     """Numbers with a unit as SI numbers of the same shape.
 
     Parameters
@@ -130,9 +129,7 @@ def to_si(
     return array / scale if divide else array * scale
 
 
-def from_si(
-    values: ArrayLike, unit: str | None, kind: str, *, where: str | None = None
-) -> NDArray[np.float64]:
+def from_si(values: ArrayLike, unit: str | None, kind: str, *, where: str | None = None) -> Array:
     """SI numbers in the given unit; the inverse of `to_si`, with the same errors."""
     array = _finite(values, where)
     scale, divide = _conversion(unit, kind, where)
@@ -153,7 +150,7 @@ def is_unit(unit: str) -> bool:
     return _quantity(unit) is not None
 
 
-def parse_values(text: str, kind: str, *, where: str | None = None) -> NDArray[np.float64]:
+def parse_values(text: str, kind: str, *, where: str | None = None) -> Array:
     """SI numbers (k,) from text like ``"10,20,-30 deg"``.
 
     A unit holds for the numbers before it that have none. Numbers are separated by commas,
@@ -176,7 +173,7 @@ def parse_pose(
     kinds: Sequence[str] | str = "angle",
     *,
     where: str | None = None,
-) -> NDArray[np.float64]:
+) -> Array:
     """Actuated coordinates (n,) in rad or m, from one number per joint or from named joints.
 
     ``"10,20,-30,0,0,0 deg"`` gives every joint in the order of `names`; ``"joint_2_l=20 deg"``
@@ -216,7 +213,7 @@ def parse_pose(
     return pose
 
 
-def parse_wrench(text: str, *, where: str | None = None) -> NDArray[np.float64]:
+def parse_wrench(text: str, *, where: str | None = None) -> Array:
     """Force and moment (6,) in N and N·m: ``"100,0,-200 N"`` or ``"100,0,-200,0,0,5 N, N*m"``.
 
     Raises
@@ -246,7 +243,7 @@ def parse_wrench(text: str, *, where: str | None = None) -> NDArray[np.float64]:
     return wrench
 
 
-def _finite(values: ArrayLike, where: str | None) -> NDArray[np.float64]:
+def _finite(values: ArrayLike, where: str | None) -> Array:
     array = np.asarray(values, dtype=np.float64)
     if not np.all(np.isfinite(array)):
         bad = array[~np.isfinite(array)].flat[0]

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument
@@ -19,7 +20,6 @@ from sk120stiff.files import will_write
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.model.prediction_table import blame_reason
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     Branch,

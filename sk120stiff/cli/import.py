@@ -11,8 +11,8 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
@@ -20,7 +20,6 @@ from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.measurements import Measurements, read_figaroh, write_measurements
 from sk120stiff.measurements.registration import Registration, register, registration_doubts
 from sk120stiff.robot.anatomy import arm_length
-from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.naming import RobotName, robot_name
 from sk120stiff.units import parse_values
 
@@ -191,7 +190,7 @@ def command(
     return Answer(document, parts)
 
 
-def _positions(readings: Measurements) -> tuple[NDArray[np.intp], Array]:
+def _positions(readings: Measurements) -> tuple[Index, Array]:
     """First row in use of each pose (P,), and the positions measured there (P, 3) [m]."""
     used = np.flatnonzero(readings.use)
     first = used[np.sort(np.unique(readings.pose_index[used], return_index=True)[1])]

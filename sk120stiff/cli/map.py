@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.map_postures import postures
 from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
@@ -26,7 +27,6 @@ from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_fill, will_write
 from sk120stiff.model import Model
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     ElasticArm,

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import note
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_write
 from sk120stiff.robot import Robot, find_robot, load_robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_pose, parse_wrench
 
 if TYPE_CHECKING:

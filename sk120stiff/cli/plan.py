@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
@@ -31,7 +32,6 @@ from sk120stiff.plan import (
     well_spread,
 )
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 
 DRAWS = 50  # random and well-spread choices that a plan is held against

@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
@@ -17,7 +18,6 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.model import Model
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     BestPosture,

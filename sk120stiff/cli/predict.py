@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
@@ -26,7 +27,6 @@ from sk120stiff.model.prediction_table import (
     prediction_table,
     unknown_reasons,
 )
-from sk120stiff.robot.coupling import Array
 from sk120stiff.slips import look
 
 LISTED = 40  # rows that people are shown

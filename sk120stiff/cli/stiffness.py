@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
@@ -25,7 +26,6 @@ from sk120stiff.model import (
     loaded_uncertainty,
 )
 from sk120stiff.model.prediction_table import blame_reason
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import Definiteness
 
 UNITS = {

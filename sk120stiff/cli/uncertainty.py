@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.model import Model
-from sk120stiff.robot.coupling import Array
 
 NOT_STORED = "no uncertainty is stored in this model"
 NO_REMAINDER = "what the model leaves unexplained could not be told from noise when it was fitted"

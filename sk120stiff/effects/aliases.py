@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Effect, LinearElastic
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.effects.situation import Situation, situation_of_load
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length, sample_poses
-from sk120stiff.robot.coupling import Array
 
 TOLERANCE = 1e-7  # share of a signature that may differ; true aliases differ by 1e-13
 

@@ -28,11 +28,11 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_length
-from sk120stiff.robot.coupling import Array
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.robot import Linkage
 
 PAIR = ","  # joint_2_l,joint_3_u: a pair of joints as one place

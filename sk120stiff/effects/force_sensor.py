@@ -13,13 +13,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
 from sk120stiff.robot.chain import skew
-from sk120stiff.robot.coupling import Array
 
 AXES = "xyz"
 

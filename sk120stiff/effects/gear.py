@@ -8,6 +8,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import (
     LOADS_GROW,
     Alias,
@@ -21,7 +22,6 @@ from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 
 STEPS = (0.1, 0.2, 0.4, 0.7)  # of the largest torque: where the gear may change its stiffness
 BELOW = "extra_below_"  # extra_below_150: softer by the value of this parameter below 150 N·m

@@ -7,12 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joint, arm_joints, sample_poses
-from sk120stiff.robot.coupling import Array
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic, Options, scale_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 
 MEANING = "torque per angle (force per way) by which the drive yields; larger is stiffer"
 

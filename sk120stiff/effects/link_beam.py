@@ -12,12 +12,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, sample_poses
-from sk120stiff.robot.coupling import Array
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
 

@@ -22,6 +22,7 @@ from functools import cached_property
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import (
     Effect,
     Elastic,
@@ -32,7 +33,6 @@ from sk120stiff.effects.base import (
 )
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Mechanism
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import complementary_stiffness
 
 

@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.robot import Robot, Screws
-from sk120stiff.robot.coupling import Array
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
@@ -55,7 +55,7 @@ class Situation:
     order: Array | None
     time: Array | None
     branch: Array
-    pose: NDArray[np.intp]
+    pose: Index
     poses: tuple[str, ...]
 
     @property
@@ -76,7 +76,7 @@ class Situation:
         """`Screws` of the unloaded, rigid robot at the measured point."""
         return self.robot.screws(self.a, point=self.point)
 
-    def rows(self, pick: slice | NDArray[np.intp] | NDArray[np.bool_]) -> Situation:
+    def rows(self, pick: slice | Index | Mask) -> Situation:
         """Part of the readings."""
 
         def part(x: Array | None) -> Array | None:

@@ -7,11 +7,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.coupling import Array
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Alias, Options, ReadingError, scale_of
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.chain import skew
-from sk120stiff.robot.coupling import Array
 
 AXES = "xyz"
 

@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.identify.solve.covariance import (
     condition_of,
     correlation_of,
@@ -21,7 +21,6 @@ from sk120stiff.identify.solve.overlaid import Overlay, overlays
 from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.model import ON_BOUND, TOGETHER, UNSEEN, Model, Parameter, parameter_frame
-from sk120stiff.robot.coupling import Array
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -63,7 +62,7 @@ class Fit:
     x: Array
     residual: Array
     jacobian: Array
-    at_bound: NDArray[np.bool_]
+    at_bound: Mask
     iterations: int
     reasons: tuple[str, ...] = ()
     spread: float | None = None
@@ -199,13 +198,13 @@ class Fit:
         return overlays(self.x, self.jacobian, self.residual, self.at_bound, bounds, span, reach)
 
     @cached_property
-    def held(self) -> NDArray[np.bool_]:
+    def held(self) -> Mask:
         """(P_free,) estimates on a bound that the readings put there.
 
         Not so those that do not show, and those that lie on others.
         """
         length = np.linalg.norm(self.jacobian, axis=0)
-        held: NDArray[np.bool_] = self.at_bound & (length * self.problem.span > FAINTEST)
+        held: Mask = self.at_bound & (length * self.problem.span > FAINTEST)
         held[[k for group in self.overlays for k in group.held]] = False
         return held
 
@@ -253,7 +252,7 @@ class Fit:
         return condition_of(self.jacobian)
 
     @cached_property
-    def identifiable(self) -> NDArray[np.bool_]:
+    def identifiable(self) -> Mask:
         """(P_free,) parameters that the readings determine at all, those on a bound included."""
         return np.asarray(
             np.isfinite(np.diag(covariance_of(self.jacobian, self.held, self.problem.span)))
@@ -294,7 +293,7 @@ class Fit:
         )
 
     @cached_property
-    def down_weighted(self) -> NDArray[np.intp]:
+    def down_weighted(self) -> Index:
         """Indices of the readings that a robust fit trusted less than the others."""
         weights = self.problem.weights
         return np.flatnonzero(weights < 1.0) if weights is not None else np.zeros(0, dtype=np.intp)

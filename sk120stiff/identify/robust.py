@@ -13,12 +13,12 @@ from dataclasses import replace
 import numpy as np
 from scipy import stats
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit, with_values
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve, solve_near
-from sk120stiff.robot.coupling import Array
 
 LIMIT = float(np.sqrt(stats.chi2.ppf(0.99, 3)))  # one clean reading in a hundred lies beyond
 MIDDLE = float(stats.chi2.ppf(0.5, 3))

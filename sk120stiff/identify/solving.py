@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit, with_values
 from sk120stiff.identify.solve.polish import Minimum, polish
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method, minimise
 from sk120stiff.measurements import EXACT
-from sk120stiff.robot.coupling import Array
 
 HALVINGS = 12
 

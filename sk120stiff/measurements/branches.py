@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from sk120stiff.arrays import Array, Integers, Mask
 
 SAME = 0.03  # share of the largest load within which a load is met again
 ONE_WAY = 0.999  # cosine of the angle between two loads of one direction, at least
@@ -14,7 +12,7 @@ TOLD = "the loads rise and then fall again"
 
 
 def branches_by_order(
-    pose: Integers, wrench: Floats, sequence: Floats
+    pose: Integers, wrench: Array, sequence: Array
 ) -> tuple[tuple[str, ...], str] | None:
     """``load`` and ``unload`` for every row, and a sentence; None where the order tells nothing.
 
@@ -53,7 +51,7 @@ def branches_by_order(
     )
 
 
-def _ways_down(force: Floats, size: Floats) -> NDArray[np.bool_] | None:
+def _ways_down(force: Array, size: Array) -> Mask | None:
     """(k,) the rows of one pose that follow the peak of their direction; None without a way."""
     alone = _way_down(force, size)
     if alone is not None:
@@ -69,7 +67,7 @@ def _ways_down(force: Floats, size: Floats) -> NDArray[np.bool_] | None:
     return np.concatenate([way for way in ways if way is not None])
 
 
-def _way_down(force: Floats, size: Floats) -> NDArray[np.bool_] | None:
+def _way_down(force: Array, size: Array) -> Mask | None:
     """(k,) the rows of one pose, in their order, that follow the peak; None without such a way."""
     slack = SAME * size.max()
     peak = int(np.argmax(size >= size.max() - slack))

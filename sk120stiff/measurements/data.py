@@ -11,16 +11,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.frame import Tabular
 from sk120stiff.measurements.poses import refuse_differing_joints, rows_by_label
 from sk120stiff.measurements.zero import since_zero
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 Frame = Literal["base", "tool"]
 Zero = Literal["shared", "separate", "unknown"]
 
@@ -105,30 +103,30 @@ class Measurements(Tabular):
 
     pose: tuple[str, ...]
     joint_names: tuple[str, ...]
-    joints: Floats
-    wrench: Floats
-    displacement: Floats | None
+    joints: Array
+    wrench: Array
+    displacement: Array | None
     path: Path | None = None
     robot: str | None = None
     base_frame: str | None = None
     tool_frame: str | None = None
     joint_kinds: tuple[str, ...] = ()
-    point: Floats = field(default_factory=lambda: np.zeros(3))
-    force_point: Floats = field(default_factory=lambda: np.zeros(0))
+    point: Array = field(default_factory=lambda: np.zeros(3))
+    force_point: Array = field(default_factory=lambda: np.zeros(0))
     force_frame: Frame = "base"
     displacement_frame: Frame = "base"
     noise: NoiseStatement = NoiseStatement()
     zero: Zero = "unknown"
-    sigma: Floats | None = None
-    order: Floats | None = None
-    time: Floats | None = None
+    sigma: Array | None = None
+    order: Array | None = None
+    time: Array | None = None
     branch: tuple[str, ...] | None = None
     repeat: Integers | None = None
     use: Mask = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     zero_group: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     zero_count: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    zero_order: Floats | None = None
-    zero_time: Floats | None = None
+    zero_order: Array | None = None
+    zero_time: Array | None = None
     line: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     source: str = ""
     extra: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -184,7 +182,7 @@ class Measurements(Tabular):
         return tuple(dict.fromkeys(self.pose))
 
     @cached_property
-    def _rows_of_each(self) -> dict[str, NDArray[np.intp]]:
+    def _rows_of_each(self) -> dict[str, Index]:
         return dict(zip(self.poses, rows_by_label(self.pose_index), strict=True))
 
     @cached_property
@@ -194,14 +192,14 @@ class Measurements(Tabular):
         return np.array([position[label] for label in self.pose], dtype=np.int64)
 
     @property
-    def order_since_zero(self) -> Floats | None:
+    def order_since_zero(self) -> Array | None:
         """(N,) order of each row minus that of its zero reading; None without an order."""
         if self.order is None:
             return None
         return since_zero(self.order, self.zero_order, self.zero_group)
 
     @property
-    def time_since_zero(self) -> Floats | None:
+    def time_since_zero(self) -> Array | None:
         """(N,) time since the zero reading of each row [s]; None without times."""
         if self.time is None:
             return None

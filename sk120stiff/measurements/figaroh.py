@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff import units
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.columns import FORCES, MOMENTS
 from sk120stiff.measurements.table import Table
-
-Floats = NDArray[np.float64]
 
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition
 _AXES = ("x", "y", "z")
@@ -70,7 +68,7 @@ def unit_of(table: Table, name: str, kind: str, told: str | None) -> str:
     return str(written or told)
 
 
-def quantity(table: Table, name: str, kind: str, unit: str) -> Floats:
+def quantity(table: Table, name: str, kind: str, unit: str) -> Array:
     """A column (N,) in SI."""
     return units.to_si(table.numbers(name), unit, kind, where=table.place(name))
 
@@ -193,8 +191,8 @@ def refuse_other_joints(table: Table, left: Sequence[str], actuated: Sequence[st
 
 
 def loads(
-    table: Table, told: Told, wrench: Floats | None
-) -> tuple[Floats, tuple[str, ...], list[str]]:
+    table: Table, told: Told, wrench: Array | None
+) -> tuple[Array, tuple[str, ...], list[str]]:
     """Wrench (N, 6) [N, N·m] of each row, the columns it is from, and what was assumed.
 
     Forces ``fx fy fz`` (``mx my mz``), or ``payload`` that hangs down, or ``load`` that counts how

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.figaroh import (
@@ -24,8 +25,6 @@ from sk120stiff.measurements.figaroh import (
 from sk120stiff.measurements.poses import SAME_JOINT
 from sk120stiff.measurements.subtraction import POSITIONS_ALONE
 from sk120stiff.measurements.table import Table, read_table
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -164,7 +163,7 @@ def read_figaroh(
     return Imported(measurements, tuple(assumed), count, useful, words)
 
 
-def _label(q: Floats) -> tuple[str, ...]:
+def _label(q: Array) -> tuple[str, ...]:
     """P1, P2, ... in the order in which sets of joint values first appear."""
     firsts: dict[tuple[int, ...], str] = {}
     return tuple(
@@ -173,7 +172,7 @@ def _label(q: Floats) -> tuple[str, ...]:
     )
 
 
-def _use(table: Table) -> NDArray[np.bool_]:
+def _use(table: Table) -> Mask:
     if "use" not in table.headers:
         return np.ones(len(table.lines), dtype=np.bool_)
     values = table.numbers("use")
@@ -185,13 +184,11 @@ def _use(table: Table) -> NDArray[np.bool_]:
             where=table.place("use", row),
             remedy="Write 0 to mask the row, 1 to use it.",
         )
-    used: NDArray[np.bool_] = values == 1.0
+    used: Mask = values == 1.0
     return used
 
 
-def _pair(
-    pose: NDArray[np.str_], W: Floats, use: NDArray[np.bool_]
-) -> tuple[Floats, NDArray[np.bool_], int]:
+def _pair(pose: NDArray[np.str_], W: Array, use: Mask) -> tuple[Array, Mask, int]:
     """Loads less the lightest one of their pose; rows in use that differ from it; poses shifted."""
     differences, shifted = W.copy(), 0
     for label in np.unique(pose):

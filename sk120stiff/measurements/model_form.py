@@ -16,14 +16,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.whitening import Whitener
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -69,7 +67,7 @@ class ModelForm:
 EXACT = ModelForm()
 
 
-def form_columns(measurements: Measurements) -> tuple[Floats, Floats]:
+def form_columns(measurements: Measurements) -> tuple[Array, Array]:
     """Columns of the two random effects at every pose, for sizes of one.
 
     Returns
@@ -99,7 +97,7 @@ def form_columns(measurements: Measurements) -> tuple[Floats, Floats]:
     return proportional, constant
 
 
-def _rms_of_pose(vectors: Floats, pose: Integers) -> Floats:
+def _rms_of_pose(vectors: Array, pose: Index) -> Array:
     """(N,) root mean square length of the vectors (N, 3) at each row's pose."""
     square = (vectors**2).sum(axis=1)
     return np.asarray(np.sqrt(np.bincount(pose, square) / np.bincount(pose))[pose])
@@ -124,7 +122,7 @@ class FormWhitener:
         proportional, constant = form_columns(measurements)
         columns = [form.proportional * proportional, form.constant * constant]
         white = noise.apply(np.concatenate(columns, axis=2))
-        self._poses: list[tuple[Integers, Floats, Floats]] = []
+        self._poses: list[tuple[Index, Array, Array]] = []
         logdet = noise.logdet
         for rows in rows_of_poses(measurements):
             U, singular, _ = np.linalg.svd(white[rows], full_matrices=False)
@@ -133,7 +131,7 @@ class FormWhitener:
         self.logdet = logdet
         """Natural logarithm of det V, over all 3N readings; V in m²."""
 
-    def apply(self, x: ArrayLike) -> Floats:
+    def apply(self, x: ArrayLike) -> Array:
         """As `Whitener.apply`."""
         white = self._noise.apply(x)
         flat = white.reshape(len(white), -1)
@@ -142,7 +140,7 @@ class FormWhitener:
         return flat.reshape(white.shape)
 
 
-def rows_of_poses(measurements: Measurements) -> list[Integers]:
+def rows_of_poses(measurements: Measurements) -> list[Index]:
     """Of each pose its rows among the 3N whitened readings; a zero reading belongs to one pose."""
     pose = np.repeat(measurements.pose_index, 3)
     order = np.argsort(pose, kind="stable")

@@ -16,16 +16,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.branches import TOLD
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.repeats import ENOUGH, Repeated, repeated
 from sk120stiff.measurements.whitening import Whitener
-
-Floats = NDArray[np.float64]
 
 # Where nothing says how large the noise is, a model needs a scale to start from: a laser tracker's.
 _START = 10e-6  # m
@@ -97,7 +96,7 @@ class NoiseModel:
 
     def variances(
         self, measurements: Measurements, sizes: ArrayLike | None = None
-    ) -> tuple[Floats, Floats]:
+    ) -> tuple[Array, Array]:
         """Variance of the loaded reading (N, 3) and of its zero reading (N, 3), m².
 
         Parameters
@@ -126,7 +125,7 @@ class NoiseModel:
         self,
         measurements: Measurements,
         sizes: ArrayLike | None = None,
-        weights: Floats | None = None,
+        weights: Array | None = None,
     ) -> Whitener | FormWhitener:
         """The whitener of these readings; parameters and errors as in `variances`.
 
@@ -141,13 +140,13 @@ class NoiseModel:
         noise = Whitener(own, zero, group)
         return FormWhitener(noise, self.form, measurements) if self.form else noise
 
-    def covariance(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Floats:
+    def covariance(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Array:
         """Dense covariance (3, N, N) per axis, m²: for a look at few readings, not for fits."""
         own, zero = self.variances(measurements, sizes)
         same = np.eye(len(own), dtype=bool)
         if self.zero == "shared":
             same = measurements.zero_group[:, None] == measurements.zero_group[None, :]
-        full: Floats = np.where(same, zero.T[:, :, None], 0.0)
+        full: Array = np.where(same, zero.T[:, :, None], 0.0)
         return full + np.eye(len(own)) * own.T[:, :, None]
 
     def describe(self) -> str:
@@ -227,7 +226,7 @@ def _from_repeats(found: Repeated | None) -> tuple[float, float]:
     return found.sigma, found.freedom
 
 
-def _sizes(measurements: Measurements, sizes: ArrayLike | None) -> Floats:
+def _sizes(measurements: Measurements, sizes: ArrayLike | None) -> Array:
     if sizes is None:
         if measurements.displacement is None:
             raise InputError(

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff import units
+from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 
 # Joint values of one pose that differ by less are the same value written twice.
 SAME_JOINT = 1e-9  # rad or m
 
 
-def rows_by_label(labels: NDArray[np.integer]) -> list[NDArray[np.intp]]:
+def rows_by_label(labels: NDArray[np.integer]) -> list[Index]:
     """Rows of each label that occurs, in ascending order of the label.
 
     One sort serves all labels: looking for each on its own would cost rows times labels.
@@ -28,11 +29,11 @@ def rows_by_label(labels: NDArray[np.integer]) -> list[NDArray[np.intp]]:
 
 def refuse_differing_joints(
     pose: Sequence[str],
-    pose_index: NDArray[np.int64],
-    joints: NDArray[np.float64],
+    pose_index: Integers,
+    joints: Array,
     names: Sequence[str],
     kinds: Sequence[str],
-    lines: NDArray[np.int64],
+    lines: Integers,
     file: str | None,
 ) -> None:
     """Compare every row with the first row of its pose.

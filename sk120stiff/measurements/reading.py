@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff import files, units
 from sk120stiff.errors import InputError, ToolkitWarning
@@ -26,7 +25,6 @@ from sk120stiff.measurements.table import Table, read_table
 if TYPE_CHECKING:
     from sk120stiff.measurements.settings import Settings, SettingsFile
 
-Floats = NDArray[np.float64]
 
 _YAML = {".yaml", ".yml"}
 _ROBOT_FILES = {".urdf", ".xacro", ".xml", *_YAML}

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from sk120stiff.arrays import Array
 
 # A marker that sits off the assumed point turns and stretches the cloud a little; beyond these
 # bounds a turned tracker or a wrong unit is likelier.
@@ -42,13 +41,11 @@ class Registration:
     largest: float
     worst: int
     poses: int
-    marker: Floats
+    marker: Array
     marker_fitted: bool
 
 
-def register(
-    measured: Floats, flange: Floats, rotation: Floats, point: Floats
-) -> Registration | None:
+def register(measured: Array, flange: Array, rotation: Array, point: Array) -> Registration | None:
     """Fit x = R (p + Q m) + t to positions: the tracker's frame R, t and the marker m.
 
     The turn is that of least squares (Kabsch, Acta Cryst. A32, 1976, p. 922) to begin with; then
@@ -93,7 +90,7 @@ def register(
     return Registration(rms, float(distance[worst]), worst, count, marker, fit_marker)
 
 
-def _kabsch(reached: Floats, measured: Floats) -> tuple[Floats, Floats]:
+def _kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
     """Turn (3, 3) and shift (3,) that bring one cloud (P, 3) nearest to the other."""
     middle, goal = reached.mean(axis=0), measured.mean(axis=0)
     u, _, vt = np.linalg.svd((measured - goal).T @ (reached - middle))
@@ -101,14 +98,14 @@ def _kabsch(reached: Floats, measured: Floats) -> tuple[Floats, Floats]:
     return turn, goal - turn @ middle
 
 
-def _crossed(x: Floats) -> Floats:
+def _crossed(x: Array) -> Array:
     """(P, 3, 3) derivative of ω × x by ω."""
     zero = np.zeros(len(x))
     rows = [[zero, x[:, 2], -x[:, 1]], [-x[:, 2], zero, x[:, 0]], [x[:, 1], -x[:, 0], zero]]
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-def registration_doubts(measured: Floats, reached: Floats) -> list[str]:
+def registration_doubts(measured: Array, reached: Array) -> list[str]:
     """What speaks against positions in metres and base axes, in sentences; empty if nothing.
 
     Parameters

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from sk120stiff.arrays import Integers
 from sk120stiff.measurements.branches import branches_by_order
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.whitening import Whitener
@@ -105,7 +105,7 @@ def repeated(
     return Repeated(sigma, min(ratio * sigma, 0.99), freedom)
 
 
-def cells_of(m: Measurements) -> NDArray[np.int64]:
+def cells_of(m: Measurements) -> Integers:
     """(N,) equal numbers for rows with the same joint values, wrench and branch.
 
     Where no branch is written, loads that rise and then fall tell it.
@@ -121,12 +121,12 @@ def cells_of(m: Measurements) -> NDArray[np.int64]:
     if words is not None:
         branch = np.array([branches.index(b) for b in words], dtype=np.float64)
     keys = np.column_stack([place, np.round(m.wrench, 9), branch])
-    cells: NDArray[np.int64] = np.unique(keys, axis=0, return_inverse=True)[1]
+    cells: Integers = np.unique(keys, axis=0, return_inverse=True)[1]
     return cells
 
 
 def _left(
-    m: Measurements, cell: NDArray[np.int64], ratio: float, separate: bool
+    m: Measurements, cell: Integers, ratio: float, separate: bool
 ) -> tuple[float, int, float]:
     """Weighted squares that the means of the cells leave, their freedom, and what V costs.
 
@@ -156,9 +156,7 @@ def _left(
     return squares, freedom, price
 
 
-def _places(
-    m: Measurements, cell: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _places(m: Measurements, cell: Integers) -> tuple[Integers, Integers]:
     """(N,) number of the joint values of each row, and of its cell among those at its place."""
     place = np.unique(np.round(m.joints, 9), axis=0, return_inverse=True)[1]
     order = np.lexsort((cell, place))

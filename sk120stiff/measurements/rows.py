@@ -5,15 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.columns import FORCES, MOMENTS, UNCERTAINTIES, Roles
 from sk120stiff.measurements.table import Table
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 SMALLEST_SIGMA = 1e-15  # m; its inverse square still is a number to compute with
 _FLAGS = {"1": True, "0": False, "true": True, "false": False, "1.0": True, "0.0": False}
@@ -43,13 +39,13 @@ class Rows:
 
     pose: tuple[str, ...]
     pose_index: Integers
-    joints: Floats
-    wrench: Floats
+    joints: Array
+    wrench: Array
     loaded: Mask
-    measured: Floats | None
-    sigma: Floats | None
-    order: Floats | None
-    time: Floats | None
+    measured: Array | None
+    sigma: Array | None
+    order: Array | None
+    time: Array | None
     branch: tuple[str, ...] | None
     repeat: Integers | None
     use: Mask
@@ -88,7 +84,7 @@ def read_rows(table: Table, roles: Roles) -> Rows:
     )
 
 
-def quantities(table: Table, names: tuple[str, ...], kind: str) -> Floats:
+def quantities(table: Table, names: tuple[str, ...], kind: str) -> Array:
     """Several columns of one kind side by side (N, k), SI."""
     return np.column_stack([table.quantity(name, kind) for name in names])
 
@@ -149,7 +145,7 @@ def _branches(table: Table, loaded: Mask) -> tuple[str, ...]:
     return table.cells["branch"]
 
 
-def _uncertainties(table: Table) -> Floats:
+def _uncertainties(table: Table) -> Array:
     values = quantities(table, UNCERTAINTIES, "length")
     if np.any(values < SMALLEST_SIGMA):
         row, column = (int(k) for k in np.argwhere(values < SMALLEST_SIGMA)[0])

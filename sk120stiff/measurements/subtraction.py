@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.columns import POSITIONS, ZEROS, Roles
 from sk120stiff.measurements.data import Zero
 from sk120stiff.measurements.rows import Rows, counts
 from sk120stiff.measurements.table import Table
 from sk120stiff.measurements.zero import find_zero_readings, group_by_run
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 POSITIONS_ALONE = (
     "positions without a difference in load hold no information on stiffness: no spring and no "
@@ -33,13 +30,13 @@ class Displacements:
     """
 
     rows: Integers
-    displacement: Floats | None
+    displacement: Array | None
     zero: Zero
     group: Integers
     count: Integers
-    order: Floats | None
-    time: Floats | None
-    use: NDArray[np.bool_]
+    order: Array | None
+    time: Array | None
+    use: Mask
     notes: tuple[str, ...]
 
 
@@ -97,7 +94,7 @@ def _as_written(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacem
     )
 
 
-def _mean_without_load(rows: Rows, when: Floats | None) -> Floats | None:
+def _mean_without_load(rows: Rows, when: Array | None) -> Array | None:
     """Mean order or time of the rows without load of each row's pose; None where there is none."""
     if when is None or rows.loaded.all():
         return None

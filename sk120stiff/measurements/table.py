@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff import files, units
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
@@ -50,7 +50,7 @@ class Table:
         line = self.header_line if row is None else self.lines[row]
         return f"{self.path}, line {line}, column {self.headers.get(name, name)}"
 
-    def numbers(self, name: str, *, allow_blank: bool = False) -> NDArray[np.float64]:
+    def numbers(self, name: str, *, allow_blank: bool = False) -> Array:
         """The column (N,) as finite numbers, as written; an allowed empty cell becomes NaN.
 
         Raises
@@ -74,7 +74,7 @@ class Table:
                 raise InputError(what, where=self.place(name, row), remedy=remedy)
         return np.array([float(cell) if cell else np.nan for cell in cells])
 
-    def quantity(self, name: str, kind: str, *, allow_blank: bool = False) -> NDArray[np.float64]:
+    def quantity(self, name: str, kind: str, *, allow_blank: bool = False) -> Array:
         """The column (N,) in SI; `numbers` with the unit of the header.
 
         Raises

@@ -10,12 +10,10 @@ and the variance left is d_i + g. Hence L⁻¹x = (x_i − g·s)/√(d_i + g).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import InputError
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 class Whitener:
@@ -31,13 +29,13 @@ class Whitener:
         (N,) number of the group of each row.
     """
 
-    def __init__(self, own: Floats, shared: Floats, group: Integers) -> None:
+    def __init__(self, own: Array, shared: Array, group: Integers) -> None:
         if own.ndim != 2 or own.shape[1] != 3 or shared.shape != own.shape:
             raise InputError(f"variances of shapes {own.shape} and {shared.shape} are no (N, 3)")
         if not (np.all(own > 0) and np.all(np.isfinite(own)) and np.all(shared >= 0)):
             raise InputError("a variance is not positive")
         self.n_readings = len(own)
-        self._blocks: list[tuple[Integers, Floats, Floats, Floats]] = []
+        self._blocks: list[tuple[Integers, Array, Array, Array]] = []
         logdet = 0.0
         for rows in _blocks(np.asarray(group)):
             own_inverse = 1.0 / own[rows]  # (g, L, 3)
@@ -49,7 +47,7 @@ class Whitener:
         self.logdet = logdet
         """Natural logarithm of det V, over all 3N readings; V in m²."""
 
-    def apply(self, x: ArrayLike) -> Floats:
+    def apply(self, x: ArrayLike) -> Array:
         """L⁻¹x: (N, 3) becomes (3N,), and (N, 3, k) becomes (3N, k), row by row.
 
         `x` is in the axes in which the displacements were reported.
@@ -77,7 +75,7 @@ def _blocks(group: Integers) -> list[Integers]:
     return [order[start[size == k][:, None] + np.arange(k)] for k in np.unique(size)]
 
 
-def _sum_before(x: Floats) -> Floats:
+def _sum_before(x: Array) -> Array:
     """Sums over the rows before each row of a block, along axis 1."""
     sums = np.zeros_like(x)
     np.cumsum(x[:, :-1], axis=1, out=sums[:, 1:])

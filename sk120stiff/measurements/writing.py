@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 import yaml
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from sk120stiff import files, units
+from sk120stiff.arrays import Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.columns import (
     DISPLACEMENTS,
@@ -152,7 +153,7 @@ def _zero_columns(m: Measurements) -> Iterable[_Column]:
         yield "zero_time[s]", map(_digits, m.zero_time)
 
 
-def _same_grouping(a: NDArray[np.int64], b: NDArray[np.int64]) -> bool:
+def _same_grouping(a: Integers, b: Integers) -> bool:
     pairs = len(set(zip(a.tolist(), b.tolist(), strict=True)))
     return pairs == len(np.unique(a)) == len(np.unique(b))
 

@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.measurements.poses import rows_by_label
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -32,12 +28,12 @@ class ZeroReadings:
     counted: Mask
     count: Integers
 
-    def mean(self, values: Floats) -> Floats:
+    def mean(self, values: Array) -> Array:
         """Mean of `values` (N, ...) over the zero rows of each row's group; NaN without any."""
         sums = np.zeros((int(self.group.max()) + 1, *values.shape[1:]))
         np.add.at(sums, self.group[self.counted], values[self.counted])
         count = np.where(self.count > 0, self.count, np.nan)
-        mean: Floats = sums[self.group] / count.reshape(-1, *(1,) * (values.ndim - 1))
+        mean: Array = sums[self.group] / count.reshape(-1, *(1,) * (values.ndim - 1))
         return mean
 
 
@@ -54,7 +50,7 @@ def find_zero_readings(group: Integers, loaded: Mask, use: Mask) -> ZeroReadings
     return ZeroReadings(group, counted, count[group].astype(np.int64))
 
 
-def group_by_run(pose: Integers, loaded: Mask, use: Mask, sequence: Floats) -> Integers:
+def group_by_run(pose: Integers, loaded: Mask, use: Mask, sequence: Array) -> Integers:
     """Groups (N,) where each row subtracts the zero reading that was taken last before it.
 
     Zero rows that follow one another without a loaded row between are one reading. Rows before
@@ -76,7 +72,7 @@ def group_by_run(pose: Integers, loaded: Mask, use: Mask, sequence: Floats) -> I
     return group
 
 
-def since_zero(clock: Floats, zero: Floats | None, group: Integers) -> Floats:
+def since_zero(clock: Array, zero: Array | None, group: Integers) -> Array:
     """(N,) clock (order, or time) of each row minus that of the zero reading it subtracts.
 
     Where the file does not tell when the zero was read (`zero` None or NaN), it is taken to be one
@@ -88,5 +84,5 @@ def since_zero(clock: Floats, zero: Floats | None, group: Integers) -> Floats:
     first = np.full(index.max() + 1, np.inf)
     np.minimum.at(first, index, clock)
     known = np.full(len(clock), np.nan) if zero is None else zero
-    since: Floats = clock - np.where(np.isnan(known), first[index] - interval, known)
+    since: Array = clock - np.where(np.isnan(known), first[index] - interval, known)
     return since

@@ -21,8 +21,8 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import (
     Effect,
     Elastic,
@@ -35,10 +35,7 @@ from sk120stiff.effects import (
 )
 from sk120stiff.effects.base import Misreading, Switching
 from sk120stiff.robot import Mechanism, Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
-
-Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Situation
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model.model import Model
 from sk120stiff.robot.anatomy import arm_length
-from sk120stiff.robot.coupling import Array
 
 FAR = 0.05  # of the arm's length: a gear that yields by more than some mrad is no gear of a robot
 
@@ -36,7 +35,7 @@ def warn_of_far_bend(model: Model, displacement: Array) -> None:
         )
 
 
-def held_loads(model: Model, situation: Situation) -> NDArray[np.bool_]:
+def held_loads(model: Model, situation: Situation) -> Mask:
     """(N,) readings for which a static equilibrium exists, found by halving.
 
     Parameters

@@ -6,14 +6,14 @@ import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.model.holding import warn_of_far_bend
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import (
     Definiteness,
     Principal,
@@ -23,8 +23,6 @@ from sk120stiff.stiffness import (
     principal_stiffness,
     symmetric_part,
 )
-
-Index = NDArray[np.intp]
 
 _SINGULAR = 1e-12  # smallest eigenvalue of a compliance over the largest: a direction is rigid
 

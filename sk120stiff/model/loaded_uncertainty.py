@@ -10,16 +10,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import Refusal
 from sk120stiff.model.loaded import LoadedStiffness, seen_from
 from sk120stiff.model.model import Model
 from sk120stiff.model.predicted import Predicted, blamed, predict_with_uncertainty
 from sk120stiff.model.uncertainty import spread
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import complementary_stiffness, symmetric_part
 
 STEP = 1e-3  # of a usual size; compliances enter linearly, so it does not matter
@@ -129,7 +129,7 @@ def _derivative(model: Model, a: ArrayLike, load: Array, point: Array) -> list[A
     return changes
 
 
-def _reciprocals(softness: Array, low: Array, high: Array, lost: NDArray[np.bool_]) -> Array:
+def _reciprocals(softness: Array, low: Array, high: Array, lost: Mask) -> Array:
     """(3, 2) stiffness of an interval of compliance.
 
     Open where that reaches to a compliance of zero: upwards from the stable side; from the

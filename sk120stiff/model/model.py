@@ -9,8 +9,9 @@ from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import (
     Effect,
     LoadError,
@@ -24,7 +25,6 @@ from sk120stiff.model.assembly import Assembly, Solution
 from sk120stiff.model.frame import parameter_frame
 from sk120stiff.model.uncertainty import Uncertainty
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -165,7 +165,7 @@ class Model:
         return tuple(parameter for parameter in self.parameters if not parameter.trusted)
 
     @cached_property
-    def free(self) -> NDArray[np.intp]:
+    def free(self) -> Index:
         """Indices of the free parameters."""
         return np.flatnonzero([parameter.free for parameter in self.parameters])
 

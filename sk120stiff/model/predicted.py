@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Situation, situation_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.model import Model
 from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
-from sk120stiff.robot.coupling import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +49,7 @@ class Predicted:
         left = 0.0 if self.std_remainder is None else self.std_remainder
         return np.asarray(np.hypot(self.std_parameters, left))
 
-    def among(self, held: NDArray[np.bool_]) -> Predicted:
+    def among(self, held: Mask) -> Predicted:
         """The same readings among others (M,) that have no prediction: NaN there."""
 
         def placed(x: Array) -> Array:

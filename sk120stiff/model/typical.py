@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import effect
 from sk120stiff.model.model import Model, Parameter, joint_spring_model
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joints, arm_length
-from sk120stiff.robot.coupling import Array
 
 TYPICAL = "typical of an arm of this size, not measured"
 

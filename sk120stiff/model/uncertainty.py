@@ -20,8 +20,8 @@ from functools import cached_property
 import numpy as np
 from scipy import stats
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.robot.coupling import Array
 
 HIDDEN = 0.1  # variance that an unseen change may bring, over what is known of it, before it counts
 ROUNDED = 1e-8  # least eigenvalue of a correlation matrix that rounding may have made of zero

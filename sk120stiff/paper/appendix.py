@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import DIMENSIONS, FIXTURE
 from sk120stiff.paper.setting import Setting, random_poses
-from sk120stiff.robot.coupling import Array
 
 #: Every length that Appendix I names.
 LENGTHS = ("L1", "L2", "L3", "L4", "L5", "L6", "D1", "D3", "D4", "D5", "D6")

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.paper.parts import parts_at
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE, DIMENSIONS
 from sk120stiff.paper.setting import Setting, motion_axes, motion_grid, wrench_of
 from sk120stiff.robot import Screws
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import (
     complementary_stiffness,
     critical_load,

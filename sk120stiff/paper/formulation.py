@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.paper.critical import even_directions
 from sk120stiff.paper.setting import Setting, motion_grid, random_poses, wrench_of
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import (
     cartesian_compliance,
     cartesian_stiffness,

@@ -10,11 +10,11 @@ from typing import Literal
 import numpy as np
 from scipy import stats
 
+from sk120stiff.arrays import Array
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.paper.setting import Setting
-from sk120stiff.robot.coupling import Array
 
 #: Starting values for all three springs [N·m/rad]: 1e5 to 1e10 N·mm/rad; the paper starts from 1e8.
 STARTS = (1e2, 1e4, 1e5, 1e7)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import LOWER, UPPER
 from sk120stiff.paper.setting import Setting, motion_grid
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import complementary_stiffness
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import DEADWEIGHTS, FIGURE_POSES, PrintedLoads
 from sk120stiff.paper.setting import Setting, motion_grid
 from sk120stiff.robot import STANDARD_GRAVITY
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import cartesian_compliance, principal_stiffness
 
 

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.files import read_text
 from sk120stiff.robot.bundled import bundled_robots
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import split_header, to_si
 
 #: Section VI: ranges of the first three joints, and the step through them [rad].
@@ -78,7 +77,7 @@ class PrintedLoads:
         """Labels in the order of first appearance."""
         return tuple(dict.fromkeys(self.pose))
 
-    def rows(self, pose: str) -> NDArray[np.intp]:
+    def rows(self, pose: str) -> Index:
         """Indices of the rows of a pose."""
         return np.flatnonzero([label == pose for label in self.pose])
 
@@ -121,7 +120,7 @@ def printed_loads(table: int) -> PrintedLoads:
     )
 
 
-def printed_counts() -> tuple[Array, NDArray[np.intp]]:
+def printed_counts() -> tuple[Array, Index]:
     """Table IV: signs of the force components (8, 3), and counts (8, 5) PD, PSD, ND, NSD, ID."""
     rows = _rows(4)
     signs = [[1.0 if sign == "+" else -1.0 for sign in row["force_signs_xyz"]] for row in rows]

@@ -9,10 +9,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.model import Model, base_model
 from sk120stiff.paper.printed import LOWER, STEP, UPPER
 from sk120stiff.robot import Mechanism, Robot, Screws, load_robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import spring_matrix
 
 

@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements, read_measurements
 from sk120stiff.paper.printed import PrintedLoads, data_folder, printed_loads
 from sk120stiff.paper.setting import Setting, rms
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import Deflection, deflection
 
 #: The formulas of `Deflection`, from crude to exact.
@@ -161,5 +160,5 @@ def _displacement(measurements: Measurements) -> Array:
     return measurements.displacement
 
 
-def _negated(printed: Array, converted: NDArray[np.float64]) -> bool:
+def _negated(printed: Array, converted: Array) -> bool:
     return bool(np.allclose(printed, -converted, rtol=1e-12, atol=0.0))

@@ -11,9 +11,9 @@ from functools import cached_property
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import PrintedLoads, printed_loads
 from sk120stiff.paper.setting import Setting, wrench_of
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import (
     PaperWork,
     cartesian_compliance,

@@ -7,14 +7,11 @@ from functools import cached_property
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.paper.printed import COMPONENT, printed_counts
 from sk120stiff.paper.setting import Setting, motion_grid, wrench_of
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import CLASSES, complementary_stiffness, definiteness
-
-Counts = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +33,10 @@ class Table4:
     """
 
     signs: Array
-    printed: Counts
-    classes: Counts
-    determinant: Counts
-    difference_positive: Counts
+    printed: Index
+    classes: Index
+    determinant: Index
+    difference_positive: Index
 
     @property
     def configurations(self) -> int:
@@ -47,12 +44,12 @@ class Table4:
         return int(self.classes.shape[1])
 
     @cached_property
-    def counts(self) -> Counts:
+    def counts(self) -> Index:
         """(8, 5) our counts by the definition of the classes."""
         return np.array([np.bincount(row, minlength=len(CLASSES)) for row in self.classes])
 
     @cached_property
-    def determinant_counts(self) -> Counts:
+    def determinant_counts(self) -> Index:
         """(8, 3) what the paper seems to have counted: det(K_C) > 0, ND, and the rest."""
         negative = self.counts[:, 2]
         rest = self.configurations - self.determinant - negative
@@ -78,7 +75,7 @@ class Table4:
             if (self.signs[i] == -self.signs[k]).all()
         )
 
-    def mirrored(self, counts: Counts) -> dict[tuple[int, int], bool]:
+    def mirrored(self, counts: Index) -> dict[tuple[int, int], bool]:
         """For each pair of opposite forces: is PD(F) = ND(−F) and ND(F) = PD(−F)?
 
         K_C is linear in F, so it must be.

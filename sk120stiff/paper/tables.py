@@ -10,10 +10,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import CLASSES
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ class Column:
     """
 
     name: str
-    values: Sequence[str] | Array | NDArray[np.intp]
+    values: Sequence[str] | Array | Index
     unit: str = ""
     decimals: int | None = None
     brief: bool = True

@@ -13,12 +13,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.plan.pool import Pool
-from sk120stiff.robot.coupling import Array
 
 #: information (M, k, k) → what it is worth (M,); more is better
 Worth = Callable[[Array], Array]
@@ -54,7 +53,7 @@ class Design:
     worth: float
     gains: Array
     known: Array
-    interest: NDArray[np.intp]
+    interest: Index
 
     def worth_of(self, rows: Sequence[int]) -> float:
         """Worth of another choice from the same pool."""
@@ -133,7 +132,7 @@ def information(model: Model, pool: Pool, span: Array) -> Array:
     return np.asarray(np.einsum("mik,mil->mkl", A, A))
 
 
-def determinant_worth(interest: NDArray[np.intp]) -> Worth:
+def determinant_worth(interest: Index) -> Worth:
     """Half the logarithm of the determinant of the information on some parameters, per parameter.
 
     The information on some of them is the Schur complement of the others.
@@ -175,5 +174,5 @@ def best_choice(worth: Worth, gains: Array, known: Array, count: int) -> list[in
     return rows
 
 
-def _best(found: Array, free: NDArray[np.bool_]) -> int:
+def _best(found: Array, free: Mask) -> int:
     return int(np.argmax(np.where(free, found, -np.inf)))

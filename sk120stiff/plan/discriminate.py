@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.plan.design import DISPLACEMENT, best_choice
 from sk120stiff.plan.pool import Pool
-from sk120stiff.robot.coupling import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joints, arm_length
-from sk120stiff.robot.coupling import Array
 
 # Of the stretched arm: the base, and half a link's thickness, which the line through the joints
 # lacks. A UR10 has 0.10 m and 0.06 m on 1.75 m (0.09), a Panda 0.10 m and 0.06 m on 1.3 m (0.12).
@@ -45,7 +44,7 @@ class Column:
     down: Array
     radius: float
 
-    def holds(self, points: Array) -> NDArray[np.bool_]:
+    def holds(self, points: Array) -> Mask:
         """(...,) which of the points (..., 3) [m] lie inside."""
         from_top = points - self.shoulder
         below = np.maximum(from_top @ self.down, 0.0)
@@ -69,7 +68,7 @@ def base_column(robot: Robot) -> Column | None:
     return Column(shoulder, np.sign(towards_base) * axis, radius)
 
 
-def clear_of(column: Column, robot: Robot, a: Array, point: Array) -> NDArray[np.bool_]:
+def clear_of(column: Column, robot: Robot, a: Array, point: Array) -> Mask:
     """(N,) poses at which nothing beyond the shoulder lies in the column: elbow, wrist, tool."""
     line = _centre_line(robot, a, point)  # (N, k, 3), shoulder to point
     from_shoulder = np.cumsum(np.linalg.norm(np.diff(line[0], axis=0), axis=1))
@@ -141,7 +140,7 @@ class Held:
         What was done and what nobody stated, in sentences.
     """
 
-    rows: NDArray[np.intp]
+    rows: Index
     wrench: Array
     remarks: tuple[str, ...]
 

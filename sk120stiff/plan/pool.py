@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Situation, situation_of_load
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.plan.feasible import Column, base_column, clear_of, held_loads_of, lowest_points
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 
 REACH_OF_UNLIMITED = np.pi  # rad; a joint without limits is used over one turn
 REACH_OF_UNLIMITED_SLIDE = 0.5  # m
@@ -70,7 +70,7 @@ class Region:
                 "the box has no inside", remedy="Give the smaller corner first: x, y, z each."
             )
 
-    def holds(self, robot: Robot, a: Array, point: Array) -> NDArray[np.bool_]:
+    def holds(self, robot: Robot, a: Array, point: Array) -> Mask:
         """(N,) poses a (N, n) that lie in the region, coupled joints within their limits too."""
         at = robot.screws(a, point=point).position
         good = np.ones(len(a), dtype=bool)
@@ -230,7 +230,7 @@ def poses_in(
     )
 
 
-def _open(robot: Robot, a: Array) -> NDArray[np.bool_]:
+def _open(robot: Robot, a: Array) -> Mask:
     """(M,) crank and rod of every linkage stand at an angle whose sine exceeds `FOLDED`."""
     good = np.ones(len(a), dtype=bool)
     for linkage in robot.linkages:
@@ -241,7 +241,7 @@ def _open(robot: Robot, a: Array) -> NDArray[np.bool_]:
     return good
 
 
-def _coupled_within_limits(robot: Robot, a: Array) -> NDArray[np.bool_]:
+def _coupled_within_limits(robot: Robot, a: Array) -> Mask:
     good = np.ones(len(a), dtype=bool)
     if not robot.followers:
         return good

@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.data import NoiseStatement
 from sk120stiff.model import Model
 from sk120stiff.plan.schedule import Schedule, scheduled
-from sk120stiff.robot.coupling import Array
 
 OUTLIER = (5.0, 20.0)  # least and largest size of an outlier, over the noise of its reading
 
@@ -37,7 +36,7 @@ class Simulated:
     measurements: Measurements
     exact: Array
     zero_error: Array
-    outliers: NDArray[np.bool_]
+    outliers: Mask
 
 
 def simulate(

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.plan.pool import Pool, usable_range
-from sk120stiff.robot.coupling import Array
 
 
 def random_choice(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:

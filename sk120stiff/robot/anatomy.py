@@ -7,8 +7,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
-from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.loops import LoopCoupling
 from sk120stiff.robot.robot import Robot
 

@@ -12,9 +12,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sk120stiff.robot.coupling import Array
+from sk120stiff.arrays import Array, Index, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +71,8 @@ class Chain:
     names: tuple[str, ...]
     placements: Array
     axes: Array
-    revolute: NDArray[np.bool_]
-    coordinates: NDArray[np.intp]
+    revolute: Mask
+    coordinates: Index
     masses: Array = field(default_factory=lambda: np.zeros(0))
     centres: Array = field(default_factory=lambda: np.zeros((0, 3)))
 

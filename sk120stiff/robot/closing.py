@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.robot.constraint import Constraint, Gap
-from sk120stiff.robot.coupling import Array, LinearCoupling
-
-Mask = NDArray[np.bool_]
+from sk120stiff.robot.coupling import LinearCoupling
 
 STEP = 0.35  # how far the driven joints go in one step: rad, or parts of the loop's length
 TRUST = 0.15  # how far Newton may correct a step along the tangent, in the same units

@@ -8,12 +8,10 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.robot.chain import Chain, VirtualJoint
-from sk120stiff.robot.coupling import Array
 
-Index = NDArray[np.intp]
 ELSEWHERE = -2  # the body of a virtual joint that is no part of a chain
 
 

@@ -16,14 +16,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 
 if TYPE_CHECKING:
     from sk120stiff.robot.chain import VirtualJoint
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +38,11 @@ class Curvature:
         (..., r, s, s) d²q[joints]/da[coordinates]².
     """
 
-    joints: NDArray[np.intp]
-    coordinates: NDArray[np.intp]
+    joints: Index
+    coordinates: Index
     hessian: Array
 
-    def picked(self, order: NDArray[np.intp]) -> Curvature | None:
+    def picked(self, order: Index) -> Curvature | None:
         """The same for the joints q[order], or None if none of them bends."""
         place = {int(joint): k for k, joint in enumerate(self.joints)}
         found = [(k, place[int(joint)]) for k, joint in enumerate(order) if int(joint) in place]

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.bundled import bundled_robots
-from sk120stiff.robot.coupling import Array, Coupling, Follower, linear_coupling
+from sk120stiff.robot.coupling import Coupling, Follower, linear_coupling
 from sk120stiff.robot.description import RobotDescription, read_description, xacro_value
 from sk120stiff.robot.loop_building import closures_of, loop_coupling, loop_drivers
 from sk120stiff.robot.naming import robot_name

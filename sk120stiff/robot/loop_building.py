@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.chain import Chain
 from sk120stiff.robot.closing import Closer
 from sk120stiff.robot.constraint import Closure, Constraint
-from sk120stiff.robot.coupling import Array, Follower, LinearCoupling, linear_coupling
+from sk120stiff.robot.coupling import Follower, LinearCoupling, linear_coupling
 from sk120stiff.robot.description import RobotDescription
 from sk120stiff.robot.loops import CLOSED, LoopCoupling
 from sk120stiff.robot.tree import Tree

@@ -15,13 +15,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import Refusal
 from sk120stiff.robot.chain import VirtualJoint
-from sk120stiff.robot.closing import Closer, Mask
+from sk120stiff.robot.closing import Closer
 from sk120stiff.robot.constraint import Closure, Gap
-from sk120stiff.robot.coupling import Array, Curvature, JointMotion, LinearCoupling
+from sk120stiff.robot.coupling import Curvature, JointMotion, LinearCoupling
 
 CLOSED = 1e-9  # parts of a loop's length: a larger gap is open
 NEARLY = 1e-4  # parts of a loop's length: a gap that Newton closes no further at a dead point
@@ -38,7 +38,7 @@ class OpenLoop(Refusal):
         (k,) which of the poses, counted over the flattened batch.
     """
 
-    def __init__(self, what: str, *, where: str, remedy: str, rows: NDArray[np.intp]) -> None:
+    def __init__(self, what: str, *, where: str, remedy: str, rows: Index) -> None:
         super().__init__(what, where=where, remedy=remedy)
         self.rows = rows
 
@@ -238,7 +238,7 @@ class LoopCoupling:
         return G_d, Curvature(followers, felt, hessian.reshape(count, len(followers), s, s))
 
     @cached_property
-    def _felt(self) -> NDArray[np.intp]:
+    def _felt(self) -> Index:
         """Coordinates that any loop feels."""
         return np.flatnonzero(np.isfinite(self.closer.scale[: self.n]))
 
@@ -274,7 +274,7 @@ class LoopCoupling:
                     rows=rows,
                 )
 
-    def _open(self, z: Array, rows: NDArray[np.intp]) -> OpenLoop:
+    def _open(self, z: Array, rows: Index) -> OpenLoop:
         """Why a pose cannot be reached: it cannot be closed at all, or only beyond a dead point."""
         bad = z[rows[0]]
         rng = np.random.default_rng(0)

@@ -9,11 +9,12 @@ from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.constraint import Closure
-from sk120stiff.robot.coupling import Array, Coupling, Follower
+from sk120stiff.robot.coupling import Coupling, Follower
 from sk120stiff.robot.loops import LoopCoupling
 from sk120stiff.robot.screws import Mechanism, Screws
 from sk120stiff.robot.tree import Tree
@@ -198,7 +199,7 @@ class Robot:
         T_root = self.tree.body(root)[1]
         return np.asarray(swept.rotation.T @ T_root[:3, :3].T @ self.gravity)
 
-    def closes(self, a: ArrayLike, margin: float | None = None) -> NDArray[np.bool_]:
+    def closes(self, a: ArrayLike, margin: float | None = None) -> Mask:
         """(...,) where the closed loops can be closed; everywhere if there are none.
 
         `margin` keeps away from dead points, see `LoopCoupling.closes`.

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.robot.chain import Chain, Sweep, VirtualJoint
-from sk120stiff.robot.coupling import Array, Coupling, Curvature
+from sk120stiff.robot.coupling import Coupling, Curvature
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Screws:
 
     axes: Array
     origins: Array
-    revolute: NDArray[np.bool_]
+    revolute: Mask
     rotation: Array
     frame_position: Array
     point: Array

@@ -12,11 +12,10 @@ from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.robot.chain import Chain
-from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.urdf import captured_stderr
 
 
@@ -55,7 +54,7 @@ class Tree:
         return np.asarray(self._local_twists[:, :3] + self._local_twists[:, 3:])
 
     @cached_property
-    def revolute(self) -> NDArray[np.bool_]:
+    def revolute(self) -> Mask:
         """(m,) true where the joint turns."""
         return np.asarray(np.linalg.norm(self._local_twists[:, 3:], axis=1) > 0.5)
 

@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Integers
 from sk120stiff.files import note_read
-from sk120stiff.robot.coupling import Array
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import Finding, UrdfDocument, VisualSpec, resolve
 
@@ -56,7 +55,7 @@ class Visual:
     kind: str
     size: tuple[float, ...]
     vertices: Array | None
-    faces: NDArray[np.int64] | None
+    faces: Integers | None
     rgba: Colour | None
 
 
@@ -77,7 +76,7 @@ class Appearance:
 @dataclass(frozen=True, eq=False)
 class _Mesh:
     vertices: Array
-    faces: NDArray[np.int64]
+    faces: Integers
     rgba: Colour | None
 
 

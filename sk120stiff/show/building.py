@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.show.elastic import Elastic
 from sk120stiff.show.scene import Reading, Scene, ScenePose
 
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
     from sk120stiff.model import Model
     from sk120stiff.robot import Robot
-
-Array = NDArray[np.float64]
 
 
 def scene_of_model(

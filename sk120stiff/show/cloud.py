@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from sk120stiff.robot import Robot
 
-Array = NDArray[np.float64]
 SCRIPTS = (
     "algebra.js",
     "materials.js",

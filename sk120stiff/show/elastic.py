@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ElasticLaw, equilibrium
@@ -16,7 +17,6 @@ from sk120stiff.stiffness import ElasticLaw, equilibrium
 if TYPE_CHECKING:
     from sk120stiff.model import Model
 
-Array = NDArray[np.float64]
 
 ASSUMED = "springs assumed: typical of an arm of this size, not measured"
 

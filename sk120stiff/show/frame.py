@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.show.elastic import Elastic
 from sk120stiff.show.links import LinkTree, joint_motion
@@ -21,7 +21,6 @@ from sk120stiff.stiffness import (
     symmetric_part,
 )
 
-Array = NDArray[np.float64]
 RIGID = 1e-12  # share of the largest principal compliance below which a direction is rigid
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.robot import Robot
 from sk120stiff.robot.chain import skew
 
-Array = NDArray[np.float64]
 FIXED, REVOLUTE, PRISMATIC = 0, 1, 2
 _KINDS = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
 
@@ -41,11 +40,11 @@ class LinkTree:
 
     names: tuple[str, ...]
     joints: tuple[str, ...]
-    parents: NDArray[np.intp]
+    parents: Index
     origins: Array
     axes: Array
-    kinds: NDArray[np.intp]
-    coordinates: NDArray[np.intp]
+    kinds: Index
+    coordinates: Index
     base: int
 
     def place(self, q: Array) -> Array:
@@ -62,7 +61,7 @@ class LinkTree:
                 )
         return np.asarray(np.linalg.inv(T[self.base]) @ T)
 
-    def anchors(self, chain_joints: tuple[str, ...]) -> NDArray[np.intp]:
+    def anchors(self, chain_joints: tuple[str, ...]) -> Index:
         """(L,) for each link the last joint of a chain that moves it, -1 where none does."""
         index = {name: k for k, name in enumerate(chain_joints)}
         found = np.full(len(self.names), -1, dtype=np.intp)

@@ -9,8 +9,8 @@ from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show.figures import definiteness_map, stiffness_slice
 from sk120stiff.show.wording import load_in_words
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 _UNITS = {"rad": "deg", "m": "mm"}  # of a map → of a figure
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.robot import LinearCoupling
 from sk120stiff.show import palette
@@ -17,7 +18,6 @@ from sk120stiff.show.frame import Frame, PrincipalAxes, Request, compute_frame
 from sk120stiff.show.scene import Reading, Scene, ScenePose
 from sk120stiff.show.shapes import Body, Mesh, reach_of
 
-Array = NDArray[np.float64]
 SAMPLES = 64  # poses from which the scale of the ellipsoids is taken
 DEFAULT_LOAD = 1000.0  # N, upper end of the load sliders without data
 EXAGGERATION = (1.0, 10000.0)

@@ -7,14 +7,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 from sk120stiff.show.elastic import Elastic
 from sk120stiff.show.links import LinkTree, link_tree
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.robot import Robot
 from sk120stiff.show.links import FIXED, LinkTree
 
-Array = NDArray[np.float64]
 Colour = tuple[float, float, float, float]
 
 PLAIN: Colour = (0.80, 0.83, 0.86, 1.0)  # visuals that state no colour

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Index
 from sk120stiff.measurements import Measurements
 
 
-def repeated_rows(measurements: Measurements) -> NDArray[np.intp]:
+def repeated_rows(measurements: Measurements) -> Index:
     """(k,) rows that repeat an earlier one to the last digit, load and all three axes.
 
     Such rows are copies, not repeats: the noise that they claim to show is zero. Rows that the file

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from sk120stiff.robot.coupling import Array
+from sk120stiff.arrays import Array
 from sk120stiff.slips.correction import Correction
 from sk120stiff.slips.sheet import Sheet
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Index
 from sk120stiff.slips.correction import Correction
 from sk120stiff.slips.sheet import Sheet
 
@@ -39,11 +39,11 @@ def of_rows(sheet: Sheet) -> Iterator[Correction]:
         )
 
 
-def shifted(count: int, shift: int) -> NDArray[np.intp]:
+def shifted(count: int, shift: int) -> Index:
     """(count,) the row whose values belong into each row; -1: none."""
     rows = np.arange(count) + shift
     return np.where((rows >= 0) & (rows < count), rows, -1)
 
 
-def _moved(rows: NDArray[np.intp], which: dict[str, bool], said: str, remedy: str) -> Correction:
+def _moved(rows: Index, which: dict[str, bool], said: str, remedy: str) -> Correction:
     return Correction(said, remedy, lambda s: s.moved(rows, **which))

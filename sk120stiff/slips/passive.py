@@ -16,8 +16,8 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
+from sk120stiff.arrays import Array
 from sk120stiff.robot import Screws
-from sk120stiff.robot.coupling import Array
 
 ROUNDING = 1e-12  # of a column's square: compliances that are one to the readings stay solvable
 UNSEEN = 1e-9  # of the largest column: a compliance that the readings do not show

@@ -13,10 +13,10 @@ from itertools import product
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import ToolkitError
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.slips.correction import Correction
 from sk120stiff.slips.of_axes import of_axes
 from sk120stiff.slips.of_joints import floor, floors, of_joints, sign_of

@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.data import Frame
 from sk120stiff.robot import Robot, Screws
-from sk120stiff.robot.coupling import Array
 from sk120stiff.slips.passive import unit_displacements
 
 
@@ -48,7 +47,7 @@ class Sheet:
     displacement_frame: Frame
     point: Array
     force_point: Array
-    kept: NDArray[np.bool_]
+    kept: Mask
     stretch: float = 0.0
 
     @property
@@ -109,7 +108,7 @@ class Sheet:
         kept[rows[np.linspace(0, len(rows) - 1, most).astype(np.intp)]] = True
         return replace(self, kept=kept)
 
-    def moved(self, rows: NDArray[np.intp], *, joints: bool = False, wrench: bool = False) -> Sheet:
+    def moved(self, rows: Index, *, joints: bool = False, wrench: bool = False) -> Sheet:
         """The displacements (or these columns) of row `rows[i]` in row i; -1: of no row."""
         known = rows >= 0
         kept = self.kept & known & self.kept[rows]

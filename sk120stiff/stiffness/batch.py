@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Mechanism, Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.equilibrium import Weight
 from sk120stiff.stiffness.lanes.folding import Fold, fold
 
@@ -78,7 +78,7 @@ class StiffnessBatch:
         (N,) factor on the load at which stability is lost, see `critical_load`.
     """
 
-    soft: NDArray[np.int64]
+    soft: Integers
     position: Array | None = None
     rotation: Array | None = None
     jacobian: Array | None = None

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
-from sk120stiff.robot.coupling import Array
 
 
 def cartesian_compliance(jacobian: Array, joint_stiffness: Array) -> Array:

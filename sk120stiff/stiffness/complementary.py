@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.robot import Screws
-from sk120stiff.robot.coupling import Array
 
 
 def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:

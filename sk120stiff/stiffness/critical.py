@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.robot import Screws
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.complementary import complementary_stiffness, symmetric_part
 
 ZERO = 1e-12  # share of the largest below which an eigenvalue is rounding noise of either sign

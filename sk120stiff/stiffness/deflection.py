@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Mechanism, Screws
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.cartesian import cartesian_compliance, spring_matrix
 from sk120stiff.stiffness.complementary import complementary_stiffness
 from sk120stiff.stiffness.equilibrium import equilibrium, linear_springs
@@ -96,7 +96,7 @@ def deflection(
     )
 
 
-def _path_curvature(screws: Screws, soft: NDArray[np.bool_], step: Array) -> Array:
+def _path_curvature(screws: Screws, soft: Mask, step: Array) -> Array:
     """δᵀ (∂²x/∂z²) δ of the point for each axis: K_C of a unit force along it is that Hessian."""
     delta = np.zeros((*step.shape[:-1], len(soft)))
     delta[..., soft] = step

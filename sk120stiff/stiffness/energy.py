@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.robot import Mechanism, Screws
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.complementary import complementary_stiffness
 from sk120stiff.stiffness.equilibrium import equilibrium, linear_springs
 

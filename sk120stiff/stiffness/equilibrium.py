@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Mechanism, Screws
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.complementary import (
     complementary_stiffness,
     gravity_stiffness,
@@ -98,7 +98,7 @@ def equilibrium(
     *,
     point: Array | None = None,
     force_point: Array | None = None,
-    soft: NDArray[np.intp] | None = None,
+    soft: Index | None = None,
     weight: Weight | None = None,
 ) -> Equilibrium:
     """Exact static equilibrium z = z_0 + e(J(z)ᵀ W) by Newton's method on compliances.
@@ -177,7 +177,7 @@ class _Statics:
     load: Array
     law: ElasticLaw
     point: Array | None
-    pick: NDArray[np.intp]
+    pick: Index
     weight: Weight | None
 
     def at(self, z: Array, loaded: Array, hung: Array) -> _State:
@@ -206,7 +206,7 @@ class _Statics:
         hung: Array,
         iterations: int = MAX_ITERATIONS,
         tolerance: float = TOLERANCE,
-    ) -> tuple[Array, NDArray[np.bool_], _State, int]:
+    ) -> tuple[Array, Mask, _State, int]:
         """Coordinates from z on, where they can be trusted (...,), their state, the steps taken.
 
         Not to be trusted is an answer that did not settle, or on the way to which the balance was
@@ -234,7 +234,7 @@ class _Statics:
         return z, good, state, step
 
 
-def _followed(statics: _Statics, found: Array, trusted: NDArray[np.bool_]) -> Array:
+def _followed(statics: _Statics, found: Array, trusted: Mask) -> Array:
     """Coordinates (..., n) on the way from no weight and no load: first the weight, then the load.
 
     Rows that are trusted keep what was found. The steps of the others shrink where the balance
@@ -273,7 +273,7 @@ def _followed(statics: _Statics, found: Array, trusted: NDArray[np.bool_]) -> Ar
     raise _beyond(reached - (legs - 1.0))
 
 
-def _stable(feedback: Array) -> NDArray[np.bool_]:
+def _stable(feedback: Array) -> Mask:
     """(...,) does the arm stay when pushed a little: has C K_C no eigenvalue ≥ 1?
 
     With springs K_θ = C⁻¹ that is where K_θ − K_C is positive definite. A matrix whose Frobenius

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sk120stiff.robot.coupling import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.stiffness.complementary import symmetric_part
 
 
@@ -66,7 +65,7 @@ def principal_stiffness(compliance: Array) -> Principal:
     return Principal(values, np.swapaxes(vectors, -1, -2))
 
 
-def definiteness(matrix: Array, *, tolerance: float = 1e-12) -> NDArray[np.intp]:
+def definiteness(matrix: Array, *, tolerance: float = 1e-12) -> Index:
     """Class of each symmetric part of (..., n, n), as indices into `CLASSES`.
 
     An eigenvalue counts as zero below `tolerance` times the largest magnitude among them; the zero

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import LinearElastic, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.robot import LinearCoupling, Mechanism
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import CLASSES, Definiteness, Weight, symmetric_part
 from sk120stiff.stiffness.batch import StiffnessBatch, run_folded
 from sk120stiff.stiffness.lanes.folding import Fold, fold
@@ -155,13 +155,13 @@ class ElasticArm:
         """Do closed loops couple joints otherwise than linearly?"""
         return self._rigid is None
 
-    def closes(self, a: Array) -> NDArray[np.bool_]:
+    def closes(self, a: Array) -> Mask:
         """(N,) can the closed loops be closed at coordinates (N, n)?"""
         if self.slow is None:
             return np.ones(len(a), dtype=bool)
         return np.asarray(self.slow.robot.closes(a), dtype=bool)
 
-    def within_limits(self, a: Array) -> NDArray[np.bool_]:
+    def within_limits(self, a: Array) -> Mask:
         """(N,) are all joints (N, n) within their limits?"""
         return np.asarray(((a >= self.lower) & (a <= self.upper)).all(axis=-1), dtype=bool)
 

@@ -14,12 +14,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.effects import situation_of_load
 from sk120stiff.model import Model, Remainder
 from sk120stiff.model.uncertainty import spread
-from sk120stiff.robot.coupling import Array
 
 STEP = 1e-3  # of a usual size; compliances are linear in their parameters
 
@@ -111,8 +110,8 @@ def bending(
     jacobian: Array,
     C: Array,
     K_C: Array,
-    soft: NDArray[np.int64],
-    stable: NDArray[np.bool_],
+    soft: Integers,
+    stable: Mask,
     wrench: Array,
     doubt: Doubt | None,
 ) -> Bending:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 
 JUMP = 0.5  # rad or m between neighbouring points; a path is not meant to do that
 BLOCK = 4096  # points looked at together
@@ -62,7 +62,7 @@ def joint_heights(robot: Robot, a: Array) -> Array:
     return np.concatenate(parts)
 
 
-def stays_above(robot: Robot, a: Array, floor: float) -> NDArray[np.bool_]:
+def stays_above(robot: Robot, a: Array, floor: float) -> Mask:
     """(N,) poses (N, n) at which no joint lies below the floor [m]."""
     return np.asarray((joint_heights(robot, a) >= floor - 1e-9).all(axis=1), dtype=bool)
 
@@ -113,7 +113,7 @@ def _elbow(robot: Robot, a: Array) -> tuple[str | None, float, bool]:
     return robot.mechanism().chain.names[1:][k], float(origins[k, 2]), height > 0.0
 
 
-def _elbows(robot: Robot, a: Array) -> tuple[NDArray[np.intp], Array]:
+def _elbows(robot: Robot, a: Array) -> tuple[Index, Array]:
     """(N,) which joint after the first is the elbow, and how far it lies above the way [m].
 
     Above the line from shoulder to wrist, in their upright plane: a shoulder set to the side is no

@@ -11,13 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.workspace.arm import seen_from
 from sk120stiff.workspace.inverse import rotation_vector
 
@@ -50,7 +50,7 @@ class Standing:
         return np.asarray(np.linalg.norm(self.away, axis=1))
 
     @property
-    def exists(self) -> NDArray[np.bool_]:
+    def exists(self) -> Mask:
         """(N,) is there an equilibrium?"""
         return np.asarray(np.isfinite(self.away).all(axis=1), dtype=bool)
 
@@ -83,7 +83,7 @@ def compensate(
     frame: str | None = None,
     point: ArrayLike | None = None,
     orientation: bool = False,
-    movable: NDArray[np.bool_] | None = None,
+    movable: Mask | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Compensation:
     """Correct joint commands for the deflection under load.
@@ -176,7 +176,7 @@ class _Target:
         screws = robot.screws(a, point=point)
         return _Target(screws.position, screws.rotation)
 
-    def rows(self, pick: NDArray[np.intp]) -> _Target:
+    def rows(self, pick: Index) -> _Target:
         return _Target(self.position[pick], self.rotation[pick])
 
 
@@ -186,7 +186,7 @@ def _compensated(
     load: Array,
     point: Array,
     orientation: bool,
-    movable: NDArray[np.bool_] | None,
+    movable: Mask | None,
 ) -> Compensation:
     robot = model.robot
     target = _Target.of(robot, given, point)
@@ -223,7 +223,7 @@ def _step(
     a: Array,
     point: Array,
     error: Array,
-    free: NDArray[np.bool_],
+    free: Mask,
     lower: Array,
     upper: Array,
 ) -> Array:
@@ -264,10 +264,10 @@ def _reasons(
     model: Model,
     a: Array,
     now: Standing,
-    held: NDArray[np.bool_],
-    lost: NDArray[np.bool_],
+    held: Mask,
+    lost: Mask,
     orientation: bool,
-    moves: NDArray[np.bool_],
+    moves: Mask,
 ) -> tuple[str, ...]:
     robot = model.robot
     left = now.distance > ENOUGH
@@ -302,11 +302,11 @@ def _joined(parts: list[Standing]) -> Standing:
     )
 
 
-def _replaced(old: Standing, rows: NDArray[np.intp], new: Standing) -> Standing:
+def _replaced(old: Standing, rows: Index, new: Standing) -> Standing:
     away, turned = old.away.copy(), old.turned.copy()
     away[rows], turned[rows] = new.away, new.turned
     return Standing(away, turned)
 
 
-def _picked(old: Standing, rows: NDArray[np.bool_]) -> Standing:
+def _picked(old: Standing, rows: Mask) -> Standing:
     return Standing(old.away[rows], old.turned[rows])

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.robot.coupling import Array
 from sk120stiff.workspace.springs import Body, Follower, SpringArm
 
 # Where the robot states no masses, or a virtual joint stands between two bodies: simulators want

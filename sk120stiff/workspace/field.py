@@ -8,8 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import CLASSES
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.bending import Bending
@@ -162,7 +162,7 @@ class PositionGrid:
     rest: Array
     axis: Array | None = None
     rotation: Array | None = None
-    movable: NDArray[np.bool_] | None = None
+    movable: Mask | None = None
     starts: int = 12
     start: Array | None = None
     cartesian: bool = field(default=True, init=False)

@@ -10,8 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import to_si
 
 _NUMBERS = r"(?:[^\sA-Za-z°µ]|(?<=[\d.])[eE](?=[+-]?\d))*"

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sk120stiff.robot.coupling import Array
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.workspace.arm import ElasticArm, Kinematics
 
 POSITION_TOLERANCE = 1e-9  # m
@@ -44,7 +43,7 @@ class Task:
         """Number of targets N."""
         return len(self.position)
 
-    def rows(self, pick: NDArray[np.intp]) -> Task:
+    def rows(self, pick: Index) -> Task:
         """Some of the targets."""
 
         def part(x: Array | None, single: int) -> Array | None:
@@ -134,7 +133,7 @@ class Reached:
     """
 
     a: Array
-    found: NDArray[np.bool_]
+    found: Mask
 
 
 def solve_inverse(
@@ -142,7 +141,7 @@ def solve_inverse(
     task: Task,
     start: Array,
     *,
-    movable: NDArray[np.bool_] | None = None,
+    movable: Mask | None = None,
     limits: bool = True,
     iterations: int = ITERATIONS,
 ) -> Reached:
@@ -200,7 +199,7 @@ def solve_inverse(
 
 
 def lead_straight(
-    arm: ElasticArm, task: Task, start: Array, *, movable: NDArray[np.bool_] | None = None
+    arm: ElasticArm, task: Task, start: Array, *, movable: Mask | None = None
 ) -> Reached:
     """Lead the arm from one pose along straight lines to N targets, all at once.
 
@@ -239,7 +238,7 @@ def lead_straight(
 
 
 def _turned_first(
-    arm: ElasticArm, task: Task, start: Array, begin: Kinematics, movable: NDArray[np.bool_] | None
+    arm: ElasticArm, task: Task, start: Array, begin: Kinematics, movable: Mask | None
 ) -> tuple[Array, bool]:
     """(n,) the start with its tool as the task wants it, all targets alike; and is that reached?"""
     if task.axis is None and task.rotation is None:

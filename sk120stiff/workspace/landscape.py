@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.robot.coupling import Array
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 from sk120stiff.workspace.posture import BestPosture, Judge, PathTask, Placement

@@ -18,13 +18,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.files import guarded_cell, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
-from sk120stiff.robot.coupling import Array
 from sk120stiff.units import from_si
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, rotation_of, solve_inverse, starting_poses
@@ -114,7 +113,7 @@ def joints_along(
     arm: ElasticArm,
     start: Array | None = None,
     *,
-    stays_above: Callable[[Array], NDArray[np.bool_]] | None = None,
+    stays_above: Callable[[Array], Mask] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Array:
     """(N, n) joint coordinates of a path, found by inverse kinematics where it gives positions.
@@ -167,7 +166,7 @@ def _branches(
     arm: ElasticArm,
     first: Task,
     start: Array | None,
-    stays_above: Callable[[Array], NDArray[np.bool_]] | None,
+    stays_above: Callable[[Array], Mask] | None,
 ) -> Array:
     """(M, n) different coordinates that reach the first point, the wanted one first."""
     rest = np.clip(np.zeros(arm.n) if start is None else start, arm.lower, arm.upper)

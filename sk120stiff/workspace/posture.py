@@ -12,10 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import StiffnessBatch
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, rotation_of, solve_inverse, starting_poses
@@ -248,7 +248,7 @@ class Pool:
 @dataclass(frozen=True, eq=False)
 class _Improved:
     pool: Pool
-    improved: NDArray[np.bool_]
+    improved: Mask
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import situation_of_load
 from sk120stiff.model import Model
 from sk120stiff.robot import Screws
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness import (
     StiffnessBatch,
     complementary_stiffness,

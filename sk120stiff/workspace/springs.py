@@ -11,13 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.robot import LinearCoupling
-from sk120stiff.robot.coupling import Array
 from sk120stiff.workspace.arm import seen_from, springs_of
 
 _SMALL = 1e-12  # share of a row below which a number is a zero that was computed
@@ -221,9 +221,7 @@ def spring_arm(model: Model, pose: ArrayLike, *, frame: str | None = None) -> Sp
     )
 
 
-def _owners(
-    rows: Array, soft: NDArray[np.intp], names: tuple[str, ...], robot: str
-) -> dict[int, int]:
+def _owners(rows: Array, soft: Index, names: tuple[str, ...], robot: str) -> dict[int, int]:
     """Coordinate → index of the chain joint that stands for it, depending on nothing else."""
     own: dict[int, int] = {}
     for coordinate in soft:
@@ -248,7 +246,7 @@ def _follower(
     k: int,
     rows: Array,
     values: Array,
-    soft: NDArray[np.intp],
+    soft: Index,
     own: dict[int, int],
     names: tuple[str, ...],
 ) -> Follower:
@@ -264,7 +262,7 @@ def _follower(
 
 def _springs(
     springs: Array,
-    soft: NDArray[np.intp],
+    soft: Index,
     own: dict[int, int],
     rows: Array,
     values: Array,

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import Refusal
 from sk120stiff.model import Model, held_loads
 from sk120stiff.model.predicted import blamed
 from sk120stiff.model.uncertainty import spread
-from sk120stiff.robot.coupling import Array
 from sk120stiff.workspace.arm import seen_from
 
 BLOCK = 1024  # points solved together

@@ -15,11 +15,11 @@ from functools import cache
 import numpy as np
 from scipy import optimize, stats
 
+from sk120stiff.arrays import Array
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import Detectable
 from sk120stiff.explain.select.score import entry_fall, score_set
-from sk120stiff.robot.coupling import Array
 
 POWER = 0.8  # share of cases in which an effect of the size given is named
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
 from sk120stiff.explain.answer.notebook import summary_html
 from sk120stiff.explain.findings import Contender, Detectable, Finding, Step
@@ -15,7 +16,6 @@ from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.identify import Fit, Yardstick, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.robot.coupling import Array
 
 Verdict = Literal["none", "named", "ambiguous", "outside"]
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect
 from sk120stiff.model import Model
 from sk120stiff.plan import random_pool
-from sk120stiff.robot.coupling import Array
 
 SAME = 1e-3  # share of the signature that may differ
 

@@ -14,15 +14,12 @@ from functools import cached_property
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
-from sk120stiff.robot.coupling import Array
-
-Index = NDArray[np.intp]
 
 DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
 
@@ -79,7 +76,7 @@ class Regression:
         return len(self.y)
 
     @cached_property
-    def in_base(self) -> NDArray[np.bool_]:
+    def in_base(self) -> Mask:
         """(P,) which columns belong to the base model."""
         out = np.zeros(self.X.shape[1], dtype=bool)
         out[self.base] = True

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Index
 from sk120stiff.errors import Refusal
-from sk120stiff.explain.candidates.regression import Index, Regression
+from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.judge.scatter_at_poses import unlike_scatter
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.identify import Fit, LackOfFit, Yardstick, lack_of_fit, yardstick

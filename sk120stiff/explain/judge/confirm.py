@@ -7,12 +7,12 @@ from collections.abc import Collection
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression, Sums
 from sk120stiff.explain.findings import Confirmation
 from sk120stiff.explain.select.beam import gains
 from sk120stiff.explain.select.score import score_set
 from sk120stiff.identify import drawn_parts
-from sk120stiff.robot.coupling import Array
 
 FOLDS = 5
 RESAMPLES = 100

@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.identify.checks.yardstick import Source
-from sk120stiff.robot.coupling import Array
 
 Whole = Literal["excess", "gap"]
 

@@ -18,9 +18,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.localise.localisation import (
     MOSTLY_NOISE,
     DirectionShare,
@@ -36,9 +36,6 @@ from sk120stiff.explain.localise.suspects import Suspect, axes_of, reach_of, sus
 from sk120stiff.explain.localise.within_poses import WithinPoses, within_poses
 from sk120stiff.identify import Fit, Yardstick, lack_of_fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
-from sk120stiff.robot.coupling import Array
-
-Index = NDArray[np.intp]
 
 SHOWN = 8  # suspects that are worked out for figures
 FEWEST_POSES = 8  # for a trend over poses

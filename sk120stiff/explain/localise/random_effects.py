@@ -11,13 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.identify import Fit
 from sk120stiff.measurements.poses import rows_by_label
-from sk120stiff.robot.coupling import Array
-
-Pick = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +33,7 @@ class RandomEffects:
     derivative: Array
 
     @cached_property
-    def columns(self) -> Pick:
+    def columns(self) -> Mask:
         """(P,) which parameters are draws; offsets that are known and held are none."""
         return np.array([p.effect.exchangeable and p.free for p in self.fit.model.parameters])
 
@@ -56,7 +53,7 @@ class RandomEffects:
         return white
 
     @cached_property
-    def _blocks(self) -> list[tuple[NDArray[np.intp], Array, Array]]:
+    def _blocks(self) -> list[tuple[Index, Array, Array]]:
         if not self.columns.any():
             return []
         size = float(np.sqrt(np.mean(self.fit.model.values[self.columns] ** 2)))

@@ -13,10 +13,10 @@ from itertools import combinations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Situation
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import ArmJoint, arm_joints
-from sk120stiff.robot.coupling import Array
 
 SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
 

@@ -13,12 +13,12 @@ from typing import Literal
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Situation
 from sk120stiff.explain.localise.localisation import OrderShare, OwnAtPoses
 from sk120stiff.identify import Fit, Yardstick
 from sk120stiff.identify.checks.left_over import left_over
 from sk120stiff.identify.checks.saturated import load_basis, pose_columns
-from sk120stiff.robot.coupling import Array
 
 _LOOKS = 3
 Own = Literal["constant", "drift", "branches"]

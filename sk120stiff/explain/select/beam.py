@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression, Solved, Sums
 from sk120stiff.explain.select.score import Scored, score_set
-from sk120stiff.robot.coupling import Array
 
 BEAM = 12
 

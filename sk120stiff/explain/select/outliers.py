@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.measurements import FormWhitener, Whitener
-from sk120stiff.robot.coupling import Array
 
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
 NEXT = 3.7  # the same once one outlier is certain
@@ -15,7 +14,7 @@ LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to te
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
 
 
-def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> NDArray[np.intp]:
+def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> Index:
     """Rows (readings) whose own shift would be significant beyond the whole catalogue together.
 
     The catalogue is fitted with every parameter drawn towards zero by its plausible range, which is
@@ -61,8 +60,8 @@ def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> 
 
 
 def _shift_columns(
-    whitener: Whitener | FormWhitener, count: int, pose: NDArray[np.intp]
-) -> list[tuple[NDArray[np.intp], Array]]:
+    whitener: Whitener | FormWhitener, count: int, pose: Index
+) -> list[tuple[Index, Array]]:
     """For each reading the rows of its pose and their whitened shifts (rows, 3).
 
     Whitening mixes rows of one pose only.

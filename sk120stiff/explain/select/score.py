@@ -19,7 +19,8 @@ from itertools import product
 
 import numpy as np
 
-from sk120stiff.explain.candidates.regression import Index, Regression, Solved, Sums, solve_columns
+from sk120stiff.arrays import Index
+from sk120stiff.explain.candidates.regression import Regression, Solved, Sums, solve_columns
 
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
 PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Index
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
-from sk120stiff.explain.candidates.regression import Index, Regression, regression_at
+from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.outliers import outlying_rows
 from sk120stiff.explain.select.score import Scored, score_set

@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify.estimate import fit
@@ -19,7 +19,6 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
-from sk120stiff.robot.coupling import Array
 
 FOLDS = 10
 SAME = 9  # decimals to which joint values of one and the same posture agree [rad or m]
@@ -46,7 +45,7 @@ class HeldOut:
 
     poses: tuple[str, ...]
     squares: Array
-    counts: NDArray[np.int64]
+    counts: Integers
     folds: int
 
     def __post_init__(self) -> None:
@@ -147,7 +146,7 @@ def held_out(
     )
 
 
-def pose_parts(measurements: Measurements, *, folds: int, seed: int) -> NDArray[np.intp]:
+def pose_parts(measurements: Measurements, *, folds: int, seed: int) -> Index:
     """(g,) part of each pose, as equal as can be; poses of one posture are in one part.
 
     A posture may have been measured under two labels. What is left out must not be known from the
@@ -161,12 +160,12 @@ def pose_parts(measurements: Measurements, *, folds: int, seed: int) -> NDArray[
     return drawn_parts(number, folds, np.random.default_rng(seed))[posture]
 
 
-def drawn_parts(number: int, folds: int, rng: np.random.Generator) -> NDArray[np.intp]:
+def drawn_parts(number: int, folds: int, rng: np.random.Generator) -> Index:
     """(number,) part of each of some things, drawn; parts are as equal as can be."""
     return np.asarray(rng.permutation(np.arange(number) % max(min(folds, number), 1)), np.intp)
 
 
-def _std_of_mean(values: Array, counts: NDArray[np.int64]) -> float:
+def _std_of_mean(values: Array, counts: Integers) -> float:
     """Standard error of the weighted mean of independent values (g,)."""
     weights = counts / counts.sum()
     mean = float(weights @ values)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.measurements.poses import rows_by_label
-from sk120stiff.robot.coupling import Array
 
 # Length of a unit column beyond the regression below which it tells nothing: what a parameter does
 # within a pose beyond lines is of second order, and the lines have fixed the parameter long before.
@@ -26,9 +25,7 @@ def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
     return np.asarray(U[:, singular > 1e-8 * singular[0]])
 
 
-def left_over(
-    white: Array, inside: Array, local: Array, group: NDArray[np.intp]
-) -> tuple[float, int]:
+def left_over(white: Array, inside: Array, local: Array, group: Index) -> tuple[float, int]:
     """Sum of squares that is left, and the rank of what was taken out.
 
     Parameters

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects.base import SPRINGS
 from sk120stiff.identify.checks.unseen import why_unseen
 from sk120stiff.identify.fit import Fit
@@ -14,7 +14,6 @@ from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.overlaid import Overlay, separating
 from sk120stiff.identify.solve.polish import seen_directions
 from sk120stiff.model import Parameter
-from sk120stiff.robot.coupling import Array
 
 VAGUE = 0.5  # relative standard error beyond which a value is no knowledge
 TOGETHER = 0.95  # correlation beyond which two estimates are said to move together
@@ -207,7 +206,7 @@ def _std_of(fit: Fit, weights: Array) -> float:
 
 def _correlated(fit: Fit) -> list[tuple[int, int]]:
     known = np.isfinite(np.diag(fit.covariance)) & ~fit.held
-    upper: NDArray[np.bool_] = np.triu(np.abs(fit.correlation) > TOGETHER, k=1)
+    upper: Mask = np.triu(np.abs(fit.correlation) > TOGETHER, k=1)
     return [(int(i), int(j)) for i, j in np.argwhere(upper & np.outer(known, known))]
 
 

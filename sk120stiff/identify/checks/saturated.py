@@ -9,11 +9,10 @@ differs between loading and unloading (friction), which have columns of their ow
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Situation
 from sk120stiff.measurements.poses import rows_by_label
-from sk120stiff.robot.coupling import Array
 
 
 def load_basis(
@@ -28,7 +27,7 @@ def load_basis(
     scale = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # a moment of 1 N·m counts like 2 N
     loads = situation.wrench * scale
     size = max(float(np.abs(loads).max(initial=0.0)), 1e-300)
-    parts: list[tuple[NDArray[np.intp], Array]] = []
+    parts: list[tuple[Index, Array]] = []
     for rows in rows_by_label(situation.pose):
         _, singular, Vt = np.linalg.svd(loads[rows] / size, full_matrices=False)
         rank = int((singular > 0.02 * singular[0]).sum()) if singular[0] > 0.0 else 0

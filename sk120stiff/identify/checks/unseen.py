@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Situation
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.model import Parameter
 from sk120stiff.robot.anatomy import arm_length
-from sk120stiff.robot.coupling import Array
 
 ON_AXIS = 1e-6  # share of the arm's length below which a lever is rounding of the URDF's numbers
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import ParameterSpec
 from sk120stiff.identify.solve.polish import seen_directions
 from sk120stiff.identify.solve.profile_likelihood import linear_valley
-from sk120stiff.robot.coupling import Array
 
 HIDDEN = 0.1  # variance by which blind directions may move an estimate, over its own
 
 
-def covariance_of(jacobian: Array, held: NDArray[np.bool_], span: Array) -> Array:
+def covariance_of(jacobian: Array, held: Mask, span: Array) -> Array:
     """(JᵀJ)⁻¹ over the columns that are not held; infinite along directions without information.
 
     Parameters
@@ -68,7 +67,7 @@ def internal_intervals(
     x: Array,
     jacobian: Array,
     residual: Array,
-    held: NDArray[np.bool_],
+    held: Mask,
     bounds: tuple[Array, Array],
     span: Array,
     reach: float,

@@ -10,14 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import situation_of_load
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.polish import seen_directions
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.profile_likelihood import linear_valley
-from sk120stiff.robot.coupling import Array
 
 INFLATED = 3.0  # growth of an interval; a correlation of 0.95 makes as much
 READINGS = 24  # measured readings of which one joint is turned in thought
@@ -70,7 +69,7 @@ def overlays(
     x: Array,
     jacobian: Array,
     residual: Array,
-    at_bound: NDArray[np.bool_],
+    at_bound: Mask,
     bounds: tuple[Array, Array],
     span: Array,
     reach: float,
@@ -112,8 +111,8 @@ def overlays(
 def _answers(
     jacobian: Array,
     residual: Array,
-    held: NDArray[np.intp],
-    moving: NDArray[np.intp],
+    held: Index,
+    moving: Index,
     span: Array,
     reach: float,
 ) -> Array:
@@ -182,7 +181,7 @@ def separating(problem: Problem, group: Overlay, jacobian: Array) -> Separating 
     return Separating(situation.poses[situation.pose[row]], joint, float(position), gain)
 
 
-def _overlay(jacobian: Array, at_bound: NDArray[np.bool_], group: list[int]) -> Overlay:
+def _overlay(jacobian: Array, at_bound: Mask, group: list[int]) -> Overlay:
     columns = jacobian[:, group] / np.maximum(np.linalg.norm(jacobian[:, group], axis=0), 1e-300)
     return Overlay(
         members=tuple(group),

@@ -14,13 +14,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import Refusal
-from sk120stiff.robot.coupling import Array
 
 Evaluate = Callable[[Array], tuple[Array, Array]]
-Mask = NDArray[np.bool_]
 
 FAINTEST = 0.1  # a change by all that is plausible that shows by less of the noise is not seen
 STEPS = 100

@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Situation, situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import FormWhitener, Measurements, NoiseModel, Whitener
 from sk120stiff.model import Model
-from sk120stiff.robot.coupling import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +72,7 @@ class Problem:
         return self.noise.whitener(self.measurements, self.sizes, self.weights)
 
     @cached_property
-    def free(self) -> NDArray[np.intp]:
+    def free(self) -> Index:
         """Indices of the estimated parameters."""
         return self.model.free
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.solve.polish import Evaluate, Minimum, polish
-from sk120stiff.robot.coupling import Array
 
 TRIALS = 20
 CLOSE = 1e-3  # of the distance that is sought

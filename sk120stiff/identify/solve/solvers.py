@@ -8,15 +8,14 @@ from typing import Literal
 import numpy as np
 from scipy.optimize import least_squares
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.solve.polish import (
     Evaluate,
-    Mask,
     Minimum,
     polish,
     seen_directions,
 )
-from sk120stiff.robot.coupling import Array
 
 Method = Literal["trf", "lm"]
 

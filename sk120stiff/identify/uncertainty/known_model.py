@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.identify.checks.lack_of_fit import LackOfFit, lack_of_fit
 from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
@@ -22,7 +23,6 @@ from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
 from sk120stiff.robot.anatomy import arm_length
-from sk120stiff.robot.coupling import Array
 
 COUNTS = 0.05  # probability of the misfit by noise alone below which the remainder counts
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show

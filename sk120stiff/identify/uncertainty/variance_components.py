@@ -17,6 +17,7 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import minimize
 
+from sk120stiff.arrays import Array
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements.model_form import (
@@ -25,7 +26,6 @@ from sk120stiff.measurements.model_form import (
     form_columns,
     rows_of_poses,
 )
-from sk120stiff.robot.coupling import Array
 
 PROPORTIONS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)  # of a pose's compliance, where the search starts
 ROUNDING = 1e-13  # of the largest random effect, so that none outweighs the noise by rounding

@@ -7,7 +7,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from sk120stiff.robot.urdf.document import Array, JointSpec, LinkSpec
+from sk120stiff.arrays import Array
+from sk120stiff.robot.urdf.document import JointSpec, LinkSpec
 
 # urdfdom refuses "inf"; nothing here moves this far [rad or m].
 UNLIMITED = 1e30

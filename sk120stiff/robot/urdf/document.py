@@ -7,10 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from sk120stiff.arrays import Array
 
 MOVING = frozenset({"revolute", "continuous", "prismatic"})
 

@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.robot.urdf.document import Array
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
 from sk120stiff.robot.urdf.xml_tree import Element
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.robot.urdf.document import Array, Finding, JointSpec, UrdfDocument
+from sk120stiff.arrays import Array
+from sk120stiff.robot.urdf.document import Finding, JointSpec, UrdfDocument
 from sk120stiff.robot.urdf.findings import at
 from sk120stiff.robot.urdf.hands import FINGER, Children, children_of, finger_joints
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.robot.urdf.document import MOVING, Array, JointSpec, Mimic
+from sk120stiff.arrays import Array
+from sk120stiff.robot.urdf.document import MOVING, JointSpec, Mimic
 from sk120stiff.robot.urdf.fields import Fields
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
 from sk120stiff.robot.urdf.links import LONGEST_NAME, read_name

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.robot.urdf.document import Array, JointSpec, Mimic, UrdfDocument
+from sk120stiff.arrays import Array
+from sk120stiff.robot.urdf.document import JointSpec, Mimic, UrdfDocument
 from sk120stiff.robot.urdf.findings import Notebook, at, close_name, shown
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.style import FROM_SI, hide_spare, styled, subplots
@@ -18,9 +18,9 @@ _COLOURS = (palette.GREEN, "#8FD6BF", palette.VERMILION, "#F2B58A", "#DDE3E9")
 
 
 def definiteness_map(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    classes: NDArray[np.intp],
+    x: Array,
+    y: Array,
+    classes: Index,
     *,
     x_label: str,
     y_label: str,

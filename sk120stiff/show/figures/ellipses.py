@@ -8,14 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.style import new_figure, styled
 from sk120stiff.stiffness import symmetric_part
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.style import new_figure, styled
 from sk120stiff.show.wording import with_error
 
-Array = NDArray[np.float64]
 VAGUE = 1.0  # two standard errors over the value beyond which a value is hardly known
 
 

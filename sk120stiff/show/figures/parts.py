@@ -7,13 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.style import styled, subplots
 
-Array = NDArray[np.float64]
 COMPONENTS = ("Fx", "Fy", "Fz")
 DIVERGING = "PuOr"  # its two hues are told apart with every kind of colour vision
 

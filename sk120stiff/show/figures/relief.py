@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show.figures.parts import COMPONENTS, DIVERGING
 from sk120stiff.show.style import styled, subplots
 
-Array = NDArray[np.float64]
 _VIEW = {"elev": 28.0, "azim": -58.0}  # degrees
 
 

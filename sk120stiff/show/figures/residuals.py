@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.style import hide_spare, styled, subplots
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show.frame import Request
 
@@ -23,10 +23,10 @@ _SLACK = 1e-9  # a slider at its end, after conversion to degrees and back
 class Bounds:
     """Ranges (k, 2) of the numbers in a request, taken from the payload of the page."""
 
-    a: NDArray[np.float64]
-    wrench: NDArray[np.float64]
-    point: NDArray[np.float64]
-    exaggeration: NDArray[np.float64]
+    a: Array
+    wrench: Array
+    point: Array
+    exaggeration: Array
 
     @classmethod
     def of(cls, payload: Mapping[str, Any]) -> Bounds:
@@ -70,7 +70,7 @@ def read_request(text: str | bytes, bounds: Bounds) -> tuple[int, Request]:
     )
 
 
-def _numbers(name: str, values: object, bounds: NDArray[np.float64]) -> NDArray[np.float64]:
+def _numbers(name: str, values: object, bounds: Array) -> Array:
     if not isinstance(values, list) or len(values) != len(bounds):
         raise InputError(f"{name!r} is a list of {len(bounds)} numbers")
     for value, (lower, upper) in zip(values, bounds.tolist(), strict=True):

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
@@ -14,7 +14,6 @@ from sk120stiff.show.stories.pictures import exaggeration, gap_vectors
 from sk120stiff.show.stories.scenes import arm_views, models_of
 from sk120stiff.show.wording import counted, percent, um
 
-Array = NDArray[np.float64]
 MANY = 40  # poses beyond which bars are no longer told apart
 
 

@@ -10,14 +10,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.explain import Localisation
 from sk120stiff.explain.localise.localisation import Suspicion
 from sk120stiff.show import palette
 from sk120stiff.show.style import hide_spare, styled, subplots
 
-Array = NDArray[np.float64]
 LONGEST_ARROW = 0.22  # share of the picture's width
 MOST_POINTS = 500  # in one panel; more would only make the page heavy
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit
@@ -13,8 +12,6 @@ from sk120stiff.model import Model
 from sk120stiff.show.building import scene_of_model
 from sk120stiff.show.scene import Scene
 from sk120stiff.show.stories.pictures import ArmView
-
-Array = NDArray[np.float64]
 
 
 def models_of(answer: Explanation) -> dict[str, Model]:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sk120stiff.arrays import Array
 from sk120stiff.identify import Fit
 from sk120stiff.model import LoadedStiffness, loaded_stiffness
 from sk120stiff.show.figures import PlaneEllipse, plane_ellipses
 from sk120stiff.show.report import Picture, Section, Table
 from sk120stiff.show.stories.scenes import arm_views
 from sk120stiff.show.wording import number
-
-Array = NDArray[np.float64]
 
 
 def stiffness_section(fit: Fit) -> Section:

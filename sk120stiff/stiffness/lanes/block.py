@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.robot.coupling import Array
+from sk120stiff.arrays import Array
 from sk120stiff.stiffness.kernel import entry, part
 from sk120stiff.stiffness.lanes.compliance import (
     complementary,

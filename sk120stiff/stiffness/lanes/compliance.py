@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.robot.coupling import Array
+from sk120stiff.arrays import Array, Integers
 from sk120stiff.stiffness.kernel import part
 from sk120stiff.stiffness.lanes.folding import Fold
 from sk120stiff.stiffness.lanes.layout import FACTOR, INVERSE, LANES, LOAD, SAFE, TENSOR, TURNED, at
-from sk120stiff.stiffness.lanes.pairs import Indices
 
 
 @part
@@ -105,7 +104,7 @@ def factorise(x: Array, fold: Fold, K_C: int, L: int) -> None:
 
 
 @part
-def compliance(x: Array, soft: Indices, columns: int, L: int, y: int) -> None:
+def compliance(x: Array, soft: Integers, columns: int, L: int, y: int) -> None:
     """Rows TENSOR of C = J K⁻¹ Jᵀ = Σ_k y_k y_kᵀ / d_k with L y = Jᵀ."""
     s = soft.shape[0]
     for k in range(TENSOR * LANES, (TENSOR + 9) * LANES):
@@ -163,7 +162,7 @@ def subtract_from_springs(fold: Fold, A: Array) -> None:
 
 
 @part
-def solve_lane(x: Array, soft: Indices, columns: int, lane: int, A: Array, b: Array) -> None:
+def solve_lane(x: Array, soft: Integers, columns: int, lane: int, A: Array, b: Array) -> None:
     """Rows TENSOR of one lane by Gaussian elimination with exchanges; NaN where A is singular."""
     s = soft.shape[0]
     for i in range(s):

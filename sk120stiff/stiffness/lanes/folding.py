@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import InputError
 from sk120stiff.robot import LinearCoupling, Mechanism
-from sk120stiff.robot.coupling import Array
 from sk120stiff.stiffness.equilibrium import Weight
-from sk120stiff.stiffness.lanes.pairs import Indices, contributions
+from sk120stiff.stiffness.lanes.pairs import contributions
 
 VARIABLE, CONSTANT, NONE = 0, 1, 2  # does the turn about a joint's z depend on the pose?
 
@@ -78,21 +78,21 @@ class Fold(NamedTuple):
     rest: Array
     offset: Array
     slides: Array
-    kind: Indices
+    kind: Integers
     constant: Array
-    column_joint: Indices
-    column_coordinate: Indices
+    column_joint: Integers
+    column_coordinate: Integers
     column_factor: Array
     mass: Array
     centre: Array
     gravity: Array
     sag: Array
-    soft: Indices
+    soft: Integers
     springs: Array
     whitener: Array
-    pair: Indices
-    pair_end: Indices
-    row: Indices
+    pair: Integers
+    pair_end: Integers
+    row: Integers
     factor: Array
 
 
@@ -187,8 +187,8 @@ class _Frames(NamedTuple):
     centre: Array
 
 
-def _soft(springs: Array, n: int) -> tuple[Indices, Array]:
-    """Indices of the coordinates with a finite spring, and their (s, s) K_θ."""
+def _soft(springs: Array, n: int) -> tuple[Integers, Array]:
+    """Integers of the coordinates with a finite spring, and their (s, s) K_θ."""
     if springs.shape not in ((n,), (n, n)):
         raise InputError(
             f"springs of shape {springs.shape} given for {n} coordinates",

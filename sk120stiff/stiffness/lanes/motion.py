@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from sk120stiff.robot.coupling import Array
+from sk120stiff.arrays import Array
 from sk120stiff.stiffness.kernel import part
 from sk120stiff.stiffness.lanes.folding import CONSTANT, NONE, Fold
 from sk120stiff.stiffness.lanes.layout import (

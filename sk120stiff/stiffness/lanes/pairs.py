@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sk120stiff.robot.coupling import Array
-
-Indices = NDArray[np.int64]
+from sk120stiff.arrays import Array, Integers
 
 
-def contributions(to_joints: Array) -> tuple[Indices, Indices, Indices, Array]:
+def contributions(to_joints: Array) -> tuple[Integers, Integers, Integers, Array]:
     """The pairs, their stretches, rows and factors of `Fold`.
 
     Parameters
