@@ -19,7 +19,7 @@ from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
-from sk120stiff.robot.chain import skew
+from sk120stiff.robot.kinematics.chain import skew
 
 AXES = "xyz"
 

@@ -14,7 +14,7 @@ from sk120stiff.effects.base import SPRINGS, Alias, Options, ReadingError, scale
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.chain import skew
+from sk120stiff.robot.kinematics.chain import skew
 
 AXES = "xyz"
 

@@ -1,10 +1,10 @@
 """A URDF becomes a `Robot`: reading, checks, coupling of joints, kinematics of one pose or many."""
 
-from sk120stiff.robot.chain import Chain, VirtualJoint
-from sk120stiff.robot.coupling import Coupling, Follower, JointMotion, LinearCoupling
+from sk120stiff.robot.kinematics.chain import Chain, VirtualJoint
+from sk120stiff.robot.kinematics.coupling import Coupling, Follower, JointMotion, LinearCoupling
+from sk120stiff.robot.kinematics.screws import Mechanism, Screws
 from sk120stiff.robot.loading import RobotSource, find_robot, load_robot
 from sk120stiff.robot.robot import STANDARD_GRAVITY, Linkage, Robot
-from sk120stiff.robot.screws import Mechanism, Screws
 
 __all__ = [
     "STANDARD_GRAVITY",

@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
-from sk120stiff.robot.loops import LoopCoupling
+from sk120stiff.robot.loops.coupling import LoopCoupling
 from sk120stiff.robot.robot import Robot
 
 _SAMPLES: WeakKeyDictionary[Robot, dict[tuple[int, int], Array]] = WeakKeyDictionary()

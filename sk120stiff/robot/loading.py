@@ -13,12 +13,12 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot.bundled import bundled_robots
-from sk120stiff.robot.coupling import Coupling, Follower, linear_coupling
 from sk120stiff.robot.description import RobotDescription, read_description, xacro_value
-from sk120stiff.robot.loop_building import closures_of, loop_coupling, loop_drivers
+from sk120stiff.robot.kinematics.coupling import Coupling, Follower, linear_coupling
+from sk120stiff.robot.kinematics.tree import Tree
+from sk120stiff.robot.loops.building import closures_of, loop_coupling, loop_drivers
 from sk120stiff.robot.naming import robot_name
 from sk120stiff.robot.robot import Linkage, Robot
-from sk120stiff.robot.tree import Tree
 from sk120stiff.robot.urdf import (
     BALLS,
     HARMLESS,

@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.robot.constraint import Closure
-from sk120stiff.robot.coupling import Coupling, Follower
-from sk120stiff.robot.loops import LoopCoupling
-from sk120stiff.robot.screws import Mechanism, Screws
-from sk120stiff.robot.tree import Tree
+from sk120stiff.robot.kinematics.coupling import Coupling, Follower
+from sk120stiff.robot.kinematics.screws import Mechanism, Screws
+from sk120stiff.robot.kinematics.tree import Tree
+from sk120stiff.robot.loops.constraint import Closure
+from sk120stiff.robot.loops.coupling import LoopCoupling
 
 if TYPE_CHECKING:
     from sk120stiff.robot.urdf import FrameChoice, UrdfDocument

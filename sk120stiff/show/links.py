@@ -8,7 +8,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.robot import Robot
-from sk120stiff.robot.chain import skew
+from sk120stiff.robot.kinematics.chain import skew
 
 FIXED, REVOLUTE, PRISMATIC = 0, 1, 2
 _KINDS = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}

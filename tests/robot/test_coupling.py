@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot import VirtualJoint, load_robot
-from sk120stiff.robot.coupling import Follower, linear_coupling
+from sk120stiff.robot.kinematics.coupling import Follower, linear_coupling
 from tests.oracles.numpy_kinematics import UrdfTree
 from tests.oracles.sample_urdfs import mimic_tree
 

@@ -7,7 +7,7 @@ import pytest
 
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.robot import load_robot
-from sk120stiff.robot.loops import LoopCoupling, OpenLoop
+from sk120stiff.robot.loops.coupling import LoopCoupling, OpenLoop
 from tests.oracles.mujoco_four_bar import closed_angles
 from tests.robot.loop_arms import (
     FOUR_BAR,

@@ -9,7 +9,7 @@ from sk120stiff.effects import Elastic, all_effects, situation_of_load
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import load_robot
-from sk120stiff.robot.coupling import Curvature
+from sk120stiff.robot.kinematics.coupling import Curvature
 from sk120stiff.stiffness import complementary_stiffness, deflection
 from tests.oracles.mujoco_four_bar import closed_angles, four_bar_statics
 from tests.oracles.numpy_kinematics import UrdfTree

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sk120stiff.robot import LinearCoupling, Mechanism, load_robot
-from sk120stiff.robot.coupling import Curvature, JointMotion
+from sk120stiff.robot.kinematics.coupling import Curvature, JointMotion
 from sk120stiff.stiffness import complementary_stiffness, critical_load, symmetric_part
 from tests.stiffness.arms import POINT, mixed_arm, mixed_urdf, sk120, sk120_poses, uncoupled
 

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.robot.chain import Chain, Sweep, VirtualJoint
-from sk120stiff.robot.coupling import Coupling, Curvature
+from sk120stiff.robot.kinematics.chain import Chain, Sweep, VirtualJoint
+from sk120stiff.robot.kinematics.coupling import Coupling, Curvature
 
 
 @dataclass(frozen=True, eq=False)

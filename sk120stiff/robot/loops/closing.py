@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.robot.constraint import Constraint, Gap
-from sk120stiff.robot.coupling import LinearCoupling
+from sk120stiff.robot.kinematics.coupling import LinearCoupling
+from sk120stiff.robot.loops.constraint import Constraint, Gap
 
 STEP = 0.35  # how far the driven joints go in one step: rad, or parts of the loop's length
 TRUST = 0.15  # how far Newton may correct a step along the tangent, in the same units

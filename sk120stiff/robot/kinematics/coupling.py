@@ -21,7 +21,7 @@ from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 
 if TYPE_CHECKING:
-    from sk120stiff.robot.chain import VirtualJoint
+    from sk120stiff.robot.kinematics.chain import VirtualJoint
 
 
 @dataclass(frozen=True, eq=False)

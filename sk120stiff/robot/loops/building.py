@@ -9,13 +9,13 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.robot.chain import Chain
-from sk120stiff.robot.closing import Closer
-from sk120stiff.robot.constraint import Closure, Constraint
-from sk120stiff.robot.coupling import Follower, LinearCoupling, linear_coupling
 from sk120stiff.robot.description import RobotDescription
-from sk120stiff.robot.loops import CLOSED, LoopCoupling
-from sk120stiff.robot.tree import Tree
+from sk120stiff.robot.kinematics.chain import Chain
+from sk120stiff.robot.kinematics.coupling import Follower, LinearCoupling, linear_coupling
+from sk120stiff.robot.kinematics.tree import Tree
+from sk120stiff.robot.loops.closing import Closer
+from sk120stiff.robot.loops.constraint import Closure, Constraint
+from sk120stiff.robot.loops.coupling import CLOSED, LoopCoupling
 
 _FAR = 0.05  # rad, or parts of a loop's length: a start that is this far off was not meant
 

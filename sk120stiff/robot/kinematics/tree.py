@@ -15,7 +15,7 @@ import pinocchio as pin
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.robot.chain import Chain
+from sk120stiff.robot.kinematics.chain import Chain
 from sk120stiff.robot.urdf import captured_stderr
 
 

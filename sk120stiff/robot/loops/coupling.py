@@ -18,10 +18,10 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import Refusal
-from sk120stiff.robot.chain import VirtualJoint
-from sk120stiff.robot.closing import Closer
-from sk120stiff.robot.constraint import Closure, Gap
-from sk120stiff.robot.coupling import Curvature, JointMotion, LinearCoupling
+from sk120stiff.robot.kinematics.chain import VirtualJoint
+from sk120stiff.robot.kinematics.coupling import Curvature, JointMotion, LinearCoupling
+from sk120stiff.robot.loops.closing import Closer
+from sk120stiff.robot.loops.constraint import Closure, Gap
 
 CLOSED = 1e-9  # parts of a loop's length: a larger gap is open
 NEARLY = 1e-4  # parts of a loop's length: a gap that Newton closes no further at a dead point

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.robot.chain import Chain, VirtualJoint
+from sk120stiff.robot.kinematics.chain import Chain, VirtualJoint
 
 ELSEWHERE = -2  # the body of a virtual joint that is no part of a chain
 

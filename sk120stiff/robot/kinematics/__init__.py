@@ -1,0 +1,1 @@
+"""Joint motion and forward kinematics of a chain, for one pose or many."""

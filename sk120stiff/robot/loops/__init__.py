@@ -1,0 +1,1 @@
+"""Closed loops: dependent joints follow because two frames must coincide."""
