@@ -19,5 +19,5 @@ found = fit(start, readings)
 print(fit_report(found, profile=profile_intervals(found)))
 
 for parameter, (low, high) in zip(found.parameters, found.intervals(), strict=True):
-    print(f"{parameter.name}: {parameter.public_value:.4g} in {low:.4g} .. {high:.4g} N*m/rad")
+    print(f"{parameter.name}: {parameter.value:.4g} in {low:.4g} .. {high:.4g} N*m/rad")
 print("Written to", write_model(found.model, Path(tempfile.gettempdir()) / "identified.yaml"))

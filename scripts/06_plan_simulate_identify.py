@@ -46,6 +46,6 @@ found = fit(model, made.measurements)
 print(fit_report(found))
 print()
 for parameter, (low, high) in zip(found.parameters, found.intervals(), strict=True):
-    true = truth.parameter(parameter.name).public_value
+    true = truth.parameter(parameter.name).value
     inside = "inside" if low <= true <= high else "OUTSIDE"
     print(f"{parameter.name:40} truth {true:.4e}, 95 % {low:.4e} .. {high:.4e}: {inside}")

@@ -71,7 +71,7 @@ def test_a_fit_is_a_table_in_public_units(found) -> None:
     frame = found.to_frame()
     assert list(frame["name"]) == [p.name for p in found.parameters]
     for row, parameter in zip(frame.itertuples(), found.parameters, strict=True):
-        assert row.value == parameter.public_value and row.std == parameter.public_std
+        assert row.value == parameter.value and row.std == parameter.std
         assert row.low_95 < row.value < row.high_95
         assert row.unit == "N*m/rad"
     told = found.model.to_frame()

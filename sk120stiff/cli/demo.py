@@ -167,8 +167,8 @@ def _parts(made: Demo, written: Mapping[str, object]) -> list[object]:
 
     given = {p.name: p for p in made.paper.parameters}
     springs = [
-        (p.effect.where, f"{given[p.name].public_value:.5g}",
-         with_error(p.public_value, p.public_std))
+        (p.effect.where, f"{given[p.name].value:.5g}",
+         with_error(p.value, p.std))
         for p in made.found.parameters
     ]  # fmt: skip
     gaps = [(f"pose {pose}", before, after) for pose, before, after in _per_pose(made)]

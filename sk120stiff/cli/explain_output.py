@@ -250,11 +250,11 @@ def findings(answer: Explanation) -> list[str]:
             lines.append(f"  or {other} ({kind})")
         own = [p for p in answer.final.model.parameters if p.effect == finding.effect]
         if len(own) > MANY:
-            largest = max(own, key=lambda p: abs(p.public_value))
+            largest = max(own, key=lambda p: abs(p.value))
             lines.append(f"  {len(own)} values, the largest:")
             own = [largest]
         for p in own:
-            value = with_error(p.public_value, p.public_std, p.spec.unit)
+            value = with_error(p.value, p.std, p.spec.unit)
             lines.append(f"  {p.spec.name} {value} ({p.spec.meaning})")
         evidence = finding.evidence
         if evidence.runner_up is not None:

@@ -179,8 +179,8 @@ def parameter_rows(
         shown = bool(found.identifiable[k])
         row: dict[str, object] = {
             "name": p.name,
-            "value": p.public_value if shown else None,
-            "std": p.public_std if shown else None,
+            "value": p.value if shown else None,
+            "std": p.std if shown else None,
             "unit": p.spec.unit,
             "meaning": p.spec.meaning,
             "interval_95": ends[k],

@@ -71,7 +71,7 @@ def command(
     )
     unseen = _unseen(model)
     springs = [
-        {"joint": p.effect.where, "stiffness": p.public_value, "unit": p.spec.unit}
+        {"joint": p.effect.where, "stiffness": p.value, "unit": p.spec.unit}
         for p in model.parameters
     ]
     document = {

@@ -185,12 +185,12 @@ def _precise(
     blind: list[object] = []
     for name, std in zip(design.parameters, design.std, strict=True):
         p = model.parameter(name)
-        public, unit = p.spec.public_std(p.value, float(std)), p.spec.unit
+        public, unit = p.spec.public_std(p.internal, float(std)), p.spec.unit
         why = why_unseen(chosen, p)
         expected.append(
             {
                 "name": name,
-                "value": p.public_value,
+                "value": p.value,
                 "std": None if why else public,
                 "unit": unit,
                 "internal_std": None if why else float(std),
@@ -200,10 +200,10 @@ def _precise(
         )
         if why:
             blind.append(f"{name} cannot be seen: {why}.")
-            rows.append((name, p.public_value, "cannot be seen", unit))
+            rows.append((name, p.value, "cannot be seen", unit))
             continue
         shown = (public, unit) if np.isfinite(public) else (float(std), p.spec.internal_unit)
-        rows.append((name, p.public_value, *shown))
+        rows.append((name, p.value, *shown))
     document: dict[str, object] = {
         "criterion": "D-optimal",
         "for": design.parameters,

@@ -71,7 +71,7 @@ class Fit:
 
     def __repr__(self) -> str:
         values = ", ".join(
-            p.name if not seen else f"{p.name} {p.public_value:.4g} {p.spec.unit}"
+            p.name if not seen else f"{p.name} {p.value:.4g} {p.spec.unit}"
             for p, seen in zip(self.parameters[:SHOWN], self.identifiable, strict=False)
         )
         more = ", …" if len(self.parameters) > SHOWN else ""
@@ -302,7 +302,7 @@ class Fit:
 def with_values(found: Fit) -> Fit:
     """The fit with the estimates and standard errors written into its model."""
     problem = found.problem
-    std: list[float | None] = [p.std for p in problem.model.parameters]
+    std: list[float | None] = [p.internal_std for p in problem.model.parameters]
     errors = np.sqrt(np.diag(found.covariance)) * problem.scale
     for index, error, held in zip(problem.free, errors, found.at_bound, strict=True):
         std[index] = None if held else float(error)

@@ -53,7 +53,7 @@ def _parameters(fit: Fit, profile: Sequence[tuple[float, float]] | None) -> list
         if not fit.identifiable[k]:
             cells = (parameter.name, "not identifiable", "", "", "", "")
         else:
-            std, value = parameter.public_std, parameter.public_value
+            std, value = parameter.std, parameter.value
             error, share = ("±", _number(std)) if std is not None else ("", "on its bound"), ""
             if std is not None and np.isfinite(std) and value:
                 share = f"({100.0 * std / abs(value):.2g} %)"

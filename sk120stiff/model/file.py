@@ -331,9 +331,9 @@ def _internal_std(spec: Any, internal: float, public_std: float) -> float:
 
 
 def _written(parameter: Parameter) -> dict[str, Any]:
-    std = parameter.public_std
+    std = parameter.std
     return {
-        "value": parameter.public_value,
+        "value": parameter.value,
         "unit": parameter.spec.unit,
         "std": None if std is None or math.isinf(std) else std,
         "free": parameter.free,

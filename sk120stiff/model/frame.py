@@ -20,8 +20,8 @@ def parameter_frame(parameters: Sequence[Parameter]) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "name": [p.name for p in parameters],
-            "value": [p.public_value for p in parameters],
-            "std": [np.nan if p.public_std is None else p.public_std for p in parameters],
+            "value": [p.value for p in parameters],
+            "std": [np.nan if p.std is None else p.std for p in parameters],
             "unit": [p.spec.unit for p in parameters],
             "free": [p.free for p in parameters],
             "note": [p.note for p in parameters],

@@ -119,7 +119,7 @@ def _derivative(model: Model, a: ArrayLike, load: Array, point: Array) -> list[A
     """Derivatives (3, 3) of the compliance by every parameter, by central differences."""
     changes = []
     for k, parameter in enumerate(model.parameters):
-        step = STEP * max(abs(parameter.value), parameter.spec.typical)
+        step = STEP * max(abs(parameter.internal), parameter.spec.typical)
         ends = []
         for side in (step, -step):
             values = model.values.copy()

@@ -47,9 +47,9 @@ class Parameter:
         The effect that it belongs to.
     spec
         Its name, unit, bounds.
-    value
-        Internal value (a compliance where people say stiffness).
-    std
+    internal
+        Internal value (a compliance where people say stiffness), SI.
+    internal_std
         Standard error of the internal value, None where it was not estimated.
     free
         Estimated by identification unless it is told otherwise.
@@ -59,8 +59,8 @@ class Parameter:
 
     effect: Effect
     spec: ParameterSpec
-    value: float = 0.0
-    std: float | None = None
+    internal: float = 0.0
+    internal_std: float | None = None
     free: bool = True
     origin: str = ""
 
@@ -70,14 +70,16 @@ class Parameter:
         return f"{self.effect.id}.{self.spec.name}"
 
     @property
-    def public_value(self) -> float:
+    def value(self) -> float:
         """The value as people write it, in `spec.unit`."""
-        return self.spec.public(self.value)
+        return self.spec.public(self.internal)
 
     @property
-    def public_std(self) -> float | None:
+    def std(self) -> float | None:
         """Standard error of the public value."""
-        return None if self.std is None else self.spec.public_std(self.value, self.std)
+        if self.internal_std is None:
+            return None
+        return self.spec.public_std(self.internal, self.internal_std)
 
     @property
     def seen(self) -> bool:
@@ -157,7 +159,7 @@ class Model:
     @cached_property
     def values(self) -> Array:
         """(P,) internal values."""
-        return np.array([parameter.value for parameter in self.parameters])
+        return np.array([parameter.internal for parameter in self.parameters])
 
     @property
     def untrusted(self) -> tuple[Parameter, ...]:
@@ -227,12 +229,12 @@ class Model:
         """The model with other internal values (P,), their errors, and where they came from."""
         if len(values) != len(self.parameters):
             raise ValueError(f"{len(values)} values for {len(self.parameters)} parameters")
-        errors = [p.std for p in self.parameters] if std is None else list(std)
+        errors = [p.internal_std for p in self.parameters] if std is None else list(std)
         changed = tuple(
             replace(
                 parameter,
-                value=float(value),
-                std=None if error is None else float(error),
+                internal=float(value),
+                internal_std=None if error is None else float(error),
                 origin=parameter.origin if origin is None or not parameter.free else origin,
             )
             for parameter, value, error in zip(self.parameters, values, errors, strict=True)
@@ -319,7 +321,7 @@ class Model:
         springs = np.full(self.robot.n, np.inf)
         for parameter in self.parameters:
             if parameter.effect.joint_spring:
-                springs[self.robot.actuated.index(parameter.effect.where)] = parameter.public_value
+                springs[self.robot.actuated.index(parameter.effect.where)] = parameter.value
         return springs
 
 

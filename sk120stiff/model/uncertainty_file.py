@@ -109,7 +109,7 @@ def uncertainty_document(model: Model) -> dict[str, object] | None:
         {name: _short(change) for name, change in zip(known.names, row, strict=True) if change}
         for row in known.unseen
     ]
-    kept = {p.name: p.value for p in model.parameters if p.name not in known.names}
+    kept = {p.name: p.internal for p in model.parameters if p.name not in known.names}
     left = known.remainder
     return {
         "source": known.source,
@@ -176,7 +176,7 @@ def _changed(section: UncertaintySection, model: Model) -> str:
     for name, value in known.items():
         if name not in model.names:
             return f"the model has no parameter {name!r} any more."
-        now = model.parameter(name).value
+        now = model.parameter(name).internal
         if abs(now - value) > SAME * max(abs(now), abs(value)):
             return f"{name} has another value than in the fit."
     added = [name for name in model.names if name not in known]

@@ -83,8 +83,8 @@ def _fit(fitted: Fit) -> dict[str, object]:
         "parameters": [
             {
                 "name": p.name,
-                "value": p.public_value,
-                "std": p.public_std,
+                "value": p.value,
+                "std": p.std,
                 "unit": p.spec.unit,
             }
             for p in fitted.parameters

@@ -150,10 +150,10 @@ FITS = 3 + 2 * len(STARTS) + 3
 
 def springs_of(found: Fit) -> Array:
     """(P,) estimated springs [N·m/rad]."""
-    return np.array([parameter.public_value for parameter in found.parameters])
+    return np.array([parameter.value for parameter in found.parameters])
 
 
 def errors_of(found: Fit) -> Array:
     """(P,) standard errors [N·m/rad]; NaN where an estimate lies on a bound."""
-    errors = [parameter.public_std for parameter in found.parameters]
+    errors = [parameter.std for parameter in found.parameters]
     return np.array([np.nan if error is None else error for error in errors])

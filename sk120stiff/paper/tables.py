@@ -210,7 +210,7 @@ def _springs(found: Reproduction) -> SideBySide:
         Column("std. error", 1e-6 * fitted.errors, "MN*m/rad", 4),
         Column(
             "equal weights",
-            1e-6 * np.array([p.public_value for p in fitted.equal_weights.parameters]),
+            1e-6 * np.array([p.value for p in fitted.equal_weights.parameters]),
             "MN*m/rad",
             4,
         ),

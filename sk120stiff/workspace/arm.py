@@ -234,7 +234,7 @@ def _compliances(physical: Model, poses: Array) -> tuple[Array, Array, Array]:
         parameters=tuple(
             parameter
             if isinstance(parameter.effect, LinearElastic)
-            else replace(parameter, value=0.0)
+            else replace(parameter, internal=0.0)
             for parameter in physical.parameters
         ),
     )

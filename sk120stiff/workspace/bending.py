@@ -94,7 +94,7 @@ def _changes(model: Model, poses: Array) -> Array:
     situation = situation_of_load(model.robot, poses, np.zeros(6))
     changes = []
     for k, parameter in enumerate(model.parameters):
-        step = STEP * max(abs(parameter.value), parameter.spec.typical)
+        step = STEP * max(abs(parameter.internal), parameter.spec.typical)
         ends = []
         for side in (step, -step):
             values = model.values.copy()

@@ -65,7 +65,7 @@ def test_every_step_at_its_defaults(name: str, run, tmp_path: Path, monkeypatch)
     assert not [said for said in told["warnings"] if "could not be made" in said]
     assert told["effects"] == []
     for parameter in told["parameters"]:  # the springs come back, but those that cannot be seen
-        truth = read_model("arm/model.yaml").parameter(parameter["name"]).public_value
+        truth = read_model("arm/model.yaml").parameter(parameter["name"]).value
         if parameter["name"] in blind:
             assert parameter["value"] is None and "on the axis of" in parameter["reason"]
         else:

@@ -273,7 +273,7 @@ def test_models_are_written_and_read_without_loss(name):
     model = with_every_effect(arm(name))
     errors = [0.01 * abs(value) for value in model.values]
     model = model.with_values(model.values, errors, origin="made up")
-    frozen = replace(model.parameters[3], free=False, std=None)
+    frozen = replace(model.parameters[3], free=False, internal_std=None)
     model = replace(model, parameters=(*model.parameters[:3], frozen, *model.parameters[4:]))
     model = replace(model, provenance={"command": "none", "data": "sha256:0"})
     again = model_from_text(model_text(model), robot=arm(name), catalogue=EVERYTHING)
@@ -282,8 +282,10 @@ def test_models_are_written_and_read_without_loss(name):
     assert np.allclose(again.values, model.values, rtol=4e-16, atol=0)
     for read, written in zip(again.parameters, model.parameters, strict=True):
         assert (read.free, read.origin) == (written.free, written.origin)
-        assert (read.std is None) == (written.std is None)
-        assert read.std is None or np.isclose(read.std, written.std, rtol=1e-14)
+        assert (read.internal_std is None) == (written.internal_std is None)
+        assert read.internal_std is None or np.isclose(
+            read.internal_std, written.internal_std, rtol=1e-14
+        )
     situation = readings(arm(name))
     assert np.abs(again.predict(situation) - model.predict(situation)).max() < 1e-14
 

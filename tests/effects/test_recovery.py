@@ -195,10 +195,10 @@ def test_recovered_from_independent_data(case):
         expected = parameter.spec.internal(case.expected[parameter.spec.name])
         size = max(abs(parameter.spec.internal(v)) for k, v in case.expected.items()
                    if alike(k, parameter.spec.name))  # fmt: skip
-        error = abs(parameter.value - expected)
-        assert error < case.rtol * size + 1e-12, (parameter.name, parameter.public_value)
+        error = abs(parameter.internal - expected)
+        assert error < case.rtol * size + 1e-12, (parameter.name, parameter.value)
     for name, compliance in springs.items():
-        found_spring = model.parameter(f"joint_springs:{name}.stiffness").value
+        found_spring = model.parameter(f"joint_springs:{name}.stiffness").internal
         assert np.isclose(found_spring, compliance, rtol=max(case.rtol, 1e-5))
 
 
@@ -257,7 +257,7 @@ def test_gains_of_the_force_axes_are_recovered_but_for_their_common_part():
     assert np.allclose(gains / gains[0], truth / truth[0], rtol=1e-6)
     factor = gains[0] / truth[0]
     for name, compliance in springs.items():
-        found = model.parameter(f"joint_springs:{name}.stiffness").value
+        found = model.parameter(f"joint_springs:{name}.stiffness").internal
         assert np.isclose(found * factor, compliance, rtol=1e-6)
 
 

@@ -66,5 +66,5 @@ def test_what_a_sensor_adds_comes_out_with_the_sign_that_is_told(name, reported,
     fixed = replace(springs, parameters=tuple(replace(p, free=False) for p in springs.parameters))
     found = fit(fixed + effect(robot, name), readings, noise=NoiseModel(1e-6))
     for key, value in expected.items():
-        got = found.model.parameter(f"{name}:sensor.{key}").public_value
+        got = found.model.parameter(f"{name}:sensor.{key}").value
         assert got == pytest.approx(value, rel=5e-3, abs=1e-3)

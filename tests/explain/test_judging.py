@@ -75,7 +75,7 @@ def test_a_gear_that_stiffens_in_steps_is_named_by_steps(springs):
     assert answer.verdict == "named"
     assert any("extra_below" in name for name in answer.final.model.names)
     soft = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
-    assert soft.public_value == pytest.approx(1.41e6, rel=0.03)
+    assert soft.value == pytest.approx(1.41e6, rel=0.03)
 
 
 def test_a_notebook_shows_the_name_its_size_and_the_gap(springs):
@@ -155,12 +155,13 @@ def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
     names = {finding.effect.id, *finding.alternatives}
     assert {"closure_coupling:joint_2_l,joint_3_u", "link_bending:link_1_s"} <= names
     alone = {
-        p.name: p.std for p in fit(answer.final.model, hidden(), noise=answer.noise).parameters
+        p.name: p.internal_std
+        for p in fit(answer.final.model, hidden(), noise=answer.noise).parameters
     }
     for joint, stiffness in {"joint_1_s": 1.41e6, "joint_2_l": 4.0e5, "joint_3_u": 9.4e5}.items():
         spring = answer.final.model.parameter(f"joint_springs:{joint}.stiffness")
-        assert abs(spring.value - 1.0 / stiffness) <= 1.96 * spring.std
-        assert spring.std >= 0.9 * alone[spring.name]
+        assert abs(spring.internal - 1.0 / stiffness) <= 1.96 * spring.internal_std
+        assert spring.internal_std >= 0.9 * alone[spring.name]
         low, high = ends[spring]
         assert low <= stiffness <= high
 
@@ -205,4 +206,4 @@ def test_another_law_that_the_readings_refute_leaves_no_doubt(springs):
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.final.doubt is not None
     spring = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
-    assert spring.std < 0.05 * spring.value
+    assert spring.internal_std < 0.05 * spring.internal

@@ -114,8 +114,8 @@ def test_an_unknown_noise_has_no_floor(springs):
 def test_errors_hold_what_is_left(springs, halved):
     """An answer that leaves more than the stated noise widens its errors by as much."""
     honest = fit(springs, hidden(seed=101, loads=6))
-    assert [p.std for p in halved.final.parameters] == pytest.approx(
-        [p.std for p in honest.parameters], rel=0.1
+    assert [p.internal_std for p in halved.final.parameters] == pytest.approx(
+        [p.internal_std for p in honest.parameters], rel=0.1
     )
     assert np.isfinite(halved.final.unit)
 

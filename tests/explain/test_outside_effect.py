@@ -51,8 +51,8 @@ def answer(model: Model, stretched: Measurements) -> Explanation:
 def test_it_is_found_by_name_with_its_value(answer: Explanation) -> None:
     assert answer.verdict == "named" and named(answer) == ["link_stretch:link_3_u"]
     (value,) = [p for p in answer.final.model.parameters if p.effect.name == "link_stretch"]
-    assert abs(value.public_value - STIFFNESS) < 3.0 * value.public_std
-    assert value.public_std < 0.1 * STIFFNESS
+    assert abs(value.value - STIFFNESS) < 3.0 * value.std
+    assert value.std < 0.1 * STIFFNESS
     assert answer.catalogue == EVERYTHING
 
 
@@ -142,5 +142,5 @@ def test_a_movement_that_no_load_makes_is_found(model: Model) -> None:
     )
     assert found.verdict == "named" and named(found) == ["joint_creep:joint_2_l"]
     (rate,) = [p for p in found.final.model.parameters if p.effect.name == "joint_creep"]
-    assert rate.public_std is not None
-    assert abs(rate.public_value - RATE) < 3.0 * rate.public_std
+    assert rate.std is not None
+    assert abs(rate.value - RATE) < 3.0 * rate.std

@@ -163,10 +163,14 @@ def _outcomes(kind: Kind, cause: Cause, at: Setting, found: Fit) -> tuple[Outcom
     for k, parameter in enumerate(found.parameters):
         true = {**truth, **own}[parameter.name]
         low, high = found.intervals()[k]
-        value, std = parameter.public_value, parameter.public_std
+        value, std = parameter.value, parameter.std
         internal = parameter.spec.internal(true)
         linear = std is not None and abs(true - value) <= 1.96 * std
-        miss = np.nan if not parameter.std else (parameter.value - internal) / parameter.std
+        miss = (
+            np.nan
+            if not parameter.internal_std
+            else (parameter.internal - internal) / parameter.internal_std
+        )
         group = kind.name if parameter.effect.id == effect_id else "springs"
         if effect_id.startswith("joint_springs") and group != "springs":
             group = "wrist spring"

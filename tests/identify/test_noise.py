@@ -140,7 +140,7 @@ def test_intervals_hold_where_nobody_described_the_zero(springs) -> None:
         found = fit(springs, undescribed(readings))
         lacking += lack_of_fit(found).lacking
         for true, (low, high) in zip(springs.parameters, found.intervals(), strict=True):
-            inside += low <= true.public_value <= high
+            inside += low <= true.value <= high
     assert inside >= 0.9 * 180
     assert lacking <= 3
 
@@ -182,6 +182,6 @@ def test_shared_zeros_matter(springs) -> None:
         for zero in ("shared", "separate"):
             found = fit(springs, readings, noise=NoiseModel(10e-6, zero=zero))
             for true, (low, high) in zip(springs.parameters, found.intervals(), strict=True):
-                inside[zero] += low <= true.public_value <= high
+                inside[zero] += low <= true.value <= high
     assert inside["shared"] >= 0.9 * 120
     assert inside["separate"] < inside["shared"]

@@ -17,7 +17,7 @@ def scanned_end(problem: Problem, found, k: int, side: float, goal: float) -> fl
     """How far to the internal value where the least misfit over the others has risen by goal²."""
     situation = situation_of(problem.model.robot, problem.measurements)
     L = np.linalg.cholesky(problem.noise.covariance(problem.measurements))
-    best = np.array([p.value for p in found.parameters])
+    best = np.array([p.internal for p in found.parameters])
     others = [j for j in range(len(best)) if j != k]
     unit = best[others]
 
@@ -30,7 +30,7 @@ def scanned_end(problem: Problem, found, k: int, side: float, goal: float) -> fl
 
         return 2.0 * float(least_squares(residual, np.ones(len(others))).cost)
 
-    std = found.parameters[k].std
+    std = found.parameters[k].internal_std
     return brentq(
         lambda d: least(best[k] + side * d) - found.chi_square - goal**2,
         0.2 * std,
@@ -43,7 +43,7 @@ def test_ends_as_found_by_scanning(springs, table2) -> None:
     problem = Problem(springs, table2, NOISE)
     found = solve(problem)
     for k, (low, high) in enumerate(profile_intervals(found)):
-        best = found.parameters[k].value
+        best = found.parameters[k].internal
         for side, end in ((1.0, low), (-1.0, high)):
             expected = best + side * scanned_end(problem, found, k, side, 1.95996)
             assert 1.0 / end == pytest.approx(expected, rel=1e-4)

@@ -100,8 +100,8 @@ def test_intervals_hold_in_spite_of_outliers(springs) -> None:
             for p, (low, high), true in zip(
                 found.parameters, found.intervals(), springs.parameters, strict=True
             ):
-                inside[robust] += low <= true.public_value <= high
-                misses[robust].append((p.value - true.value) / true.value)
+                inside[robust] += low <= true.value <= high
+                misses[robust].append((p.internal - true.internal) / true.internal)
                 widths[robust].append(1.0 / low - 1.0 / high)
     assert inside[True] >= 0.88 * 90
     assert inside[False] >= 0.88 * 90  # inflated by what the outliers leave

@@ -54,7 +54,7 @@ def test_the_covariance_is_that_of_the_fit(truth: Model) -> None:
     np.testing.assert_allclose(
         known.covariance, found.covariance * np.outer(scale, scale), rtol=1e-9
     )
-    np.testing.assert_allclose(known.std, [p.std for p in found.parameters])
+    np.testing.assert_allclose(known.std, [p.internal_std for p in found.parameters])
     assert known.freedom is None and len(known.unseen) == 0
     assert known.remainder is not None and not known.remainder.significant
 

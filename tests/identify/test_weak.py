@@ -48,8 +48,8 @@ def test_an_exact_alias_is_one_sum(springs, robot) -> None:
     assert abs(both[0] / both[1] - 1.0) < 0.05
     # the rest of the model is none the worse
     np.testing.assert_allclose(
-        [p.public_value for p in found.parameters[:3]],
-        [p.public_value for p in truth.parameters[:3]],
+        [p.value for p in found.parameters[:3]],
+        [p.value for p in truth.parameters[:3]],
         rtol=0.03,
     )
 

@@ -33,7 +33,7 @@ def test_a_file_written_by_hand_is_read():
     model = model_from_text(GOOD)
     (spring,) = model.parameters
     assert spring.name == "joint_springs:joint_1_s.stiffness"
-    assert np.isclose(spring.public_value, 1.4e6) and np.isclose(spring.public_std, 2e4)
+    assert np.isclose(spring.value, 1.4e6) and np.isclose(spring.std, 2e4)
     assert spring.free and spring.origin == "bench" and model.robot.name == "motoman_sk120"
 
 
@@ -136,7 +136,7 @@ def test_files_that_make_no_sense_are_refused(why):
 def test_an_infinite_stiffness_is_an_absent_effect():
     model = model_from_text(GOOD.replace("1.4e6", ".inf").replace("std: 2.0e4, ", ""))
     assert model.values[0] == 0.0
-    assert np.isinf(model_from_text(model_text(model)).parameters[0].public_value)
+    assert np.isinf(model_from_text(model_text(model)).parameters[0].value)
 
 
 def test_a_robot_named_from_the_models_folder_is_found_again_from_anywhere(tmp_path, monkeypatch):

@@ -21,8 +21,8 @@ def test_a_former_name_is_read_with_the_other_sign_and_told() -> None:
     with pytest.warns(ToolkitWarning, match="true minus reported") as told:
         model = model_from_text(OLD)
     offset = model.parameter("force_bias:sensor.offset_x")
-    assert (offset.public_value, offset.public_std) == (-29.0, 2.0)
-    assert model.parameter("force_bias:sensor.offset_z").public_value == 4.0
+    assert (offset.value, offset.std) == (-29.0, 2.0)
+    assert model.parameter("force_bias:sensor.offset_z").value == 4.0
     assert len(told) == 1
 
 
@@ -39,5 +39,5 @@ def test_a_model_file_says_what_its_values_mean() -> None:
     assert "# F_reported - F_true = b" in text
     assert "# offset_x [N]: reported minus true force along x of the tool frame" in text
     again = model_from_text(text)
-    assert again.parameter("force_bias:sensor.offset_x").public_value == -29.0
+    assert again.parameter("force_bias:sensor.offset_x").value == -29.0
     assert model_text(again) == text

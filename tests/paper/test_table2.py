@@ -75,7 +75,7 @@ def test_identified_springs_are_those_of_linear_least_squares(found):
         measured.append(columns(row, ["dx[mm]", "dy[mm]", "dz[mm]"]) * move_sign)
     compliance, *_ = np.linalg.lstsq(np.vstack(design), np.concatenate(measured), rcond=None)
     by_hand = 1e-3 / compliance  # N·mm/rad → N·m/rad
-    equal = [p.public_value for p in found.identified.equal_weights.parameters]
+    equal = [p.value for p in found.identified.equal_weights.parameters]
     assert np.allclose(equal, by_hand, rtol=2e-3)
     left = np.concatenate(measured) - np.vstack(design) @ compliance
     assert found.identified.equal_weights.rms * 1e3 == pytest.approx(rms(left), rel=0.01)

@@ -85,7 +85,7 @@ def test_springs_that_are_indefinite_are_drawn_and_said() -> None:
 
 def test_springs_on_the_edge_are_drawn_too() -> None:
     """Cross compliance of √(c₂ c₃): one combination of the two motors is rigid."""
-    c = [p.value for p in springs().parameters if p.effect.where in ("joint_2_l", "joint_3_u")]
+    c = [p.internal for p in springs().parameters if p.effect.where in ("joint_2_l", "joint_3_u")]
     model = with_effect(
         "closure_coupling", "joint_2_l,joint_3_u", float(1.0 / np.sqrt(c[0] * c[1]))
     )

@@ -116,7 +116,7 @@ def test_a_named_cause_is_told_with_its_size_and_evidence() -> None:
     assert finding.effect.sentence() in text
     for p in found.final.model.parameters:
         if p.effect == finding.effect:
-            assert with_error(p.public_value, p.public_std) in text
+            assert with_error(p.value, p.std) in text
     first, last = found.steps[0], found.steps[-1]
     assert f"falls from {um(first.heldout_rms)} to {um(last.heldout_rms)} µm" in text
     confirmation = finding.evidence.confirmation
@@ -136,8 +136,8 @@ def test_springs_before_and_after_are_told() -> None:
     for p in found.final.parameters:
         if p.name in before:
             old = before[p.name]
-            assert with_error(old.public_value, old.public_std) in text
-            assert with_error(p.public_value, p.public_std) in text
+            assert with_error(old.value, old.std) in text
+            assert with_error(p.value, p.std) in text
     assert "Springs fitted alone cover up for what is missing" in text
 
 

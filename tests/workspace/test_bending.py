@@ -25,7 +25,7 @@ REST = np.array([0.2, 0.0, 0.0, 0.3, 0.0, 0.1])
 
 
 def known(model: Model, **changes: object) -> Model:
-    std = 0.02 * np.array([p.value or 0.05 * p.spec.typical for p in model.parameters])
+    std = 0.02 * np.array([p.internal or 0.05 * p.spec.typical for p in model.parameters])
     P = len(model.parameters)
     parts = {
         "names": model.names,

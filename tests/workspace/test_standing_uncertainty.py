@@ -41,7 +41,7 @@ def test_derivatives_are_those_of_where_the_tool_stands(model: Model) -> None:
     situation = situation_of_load(model.robot, POSES, load)
     exact = model.assembly.standing_sensitivities(model.solve(situation), model.values)
     for k, parameter in enumerate(model.parameters):
-        step = 1e-4 * max(abs(parameter.value), 1e-6 * parameter.spec.typical)
+        step = 1e-4 * max(abs(parameter.internal), 1e-6 * parameter.spec.typical)
         ends = []
         for side in (step, -step):
             values = model.values.copy()

@@ -131,9 +131,7 @@ def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
     return [
         {
             **_parameter(p, unseen.get(p.name)),
-            "before": before[p.name].public_value
-            if p.name in before and p.name not in hidden
-            else None,
+            "before": before[p.name].value if p.name in before and p.name not in hidden else None,
         }
         for p in answer.final.model.parameters
     ]
@@ -175,12 +173,12 @@ def _parameter(p: Parameter, unseen: str | None = None) -> dict[str, Any]:
     shown = unseen is None
     return {
         "name": p.name,
-        "value": p.public_value if shown else None,
-        "std": p.public_std if shown else None,
+        "value": p.value if shown else None,
+        "std": p.std if shown else None,
         "unit": p.spec.unit,
         "meaning": p.spec.meaning,
-        "internal_value": p.value if shown else None,
-        "internal_std": p.std if shown else None,
+        "internal_value": p.internal if shown else None,
+        "internal_std": p.internal_std if shown else None,
         "internal_unit": p.spec.internal_unit,
-        "reason": unseen or p.note or (RIGID if np.isinf(p.public_value) else None),
+        "reason": unseen or p.note or (RIGID if np.isinf(p.value) else None),
     }

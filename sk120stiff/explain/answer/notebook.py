@@ -55,8 +55,8 @@ def _named(answer: Explanation, finding: Finding) -> Sequence[str]:
     sizes = []
     for p in answer.final.model.parameters:
         if p.effect == finding.effect and p.free:
-            std = "" if p.public_std is None else f" ± {p.public_std:.2g}"
-            sizes.append(f"{escape(p.spec.name)} = {p.public_value:.4g}{std} {escape(p.spec.unit)}")
+            std = "" if p.std is None else f" ± {p.std:.2g}"
+            sizes.append(f"{escape(p.spec.name)} = {p.value:.4g}{std} {escape(p.spec.unit)}")
     return (
         f"<code>{escape(finding.effect.id)}</code>",
         escape(finding.effect.sentence()),

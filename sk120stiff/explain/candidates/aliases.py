@@ -32,7 +32,7 @@ def exact_aliases(
     """
     pool = random_pool(model.robot, poses=150, directions=3, force=300.0, point=point, seed=1)
     # Where the effect is absent: in its presence a gain of the sensor holds it already.
-    absent = [0.0 if p.effect.id == effect.id else p.value for p in model.parameters]
+    absent = [0.0 if p.effect.id == effect.id else p.internal for p in model.parameters]
     full = model.with_values(np.array(absent))
     present = {e.id for e in model.effects}
     for other in others:

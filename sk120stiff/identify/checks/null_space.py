@@ -50,9 +50,9 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
         )
         return tuple(said)
     for k, parameter in enumerate(fit.parameters):
-        std = parameter.std
-        if std and k not in told and std > VAGUE * abs(parameter.value):
-            share = 100.0 * std / max(abs(parameter.value), 1e-300)
+        std = parameter.internal_std
+        if std and k not in told and std > VAGUE * abs(parameter.internal):
+            share = 100.0 * std / max(abs(parameter.internal), 1e-300)
             low, high = (f"{end:.3g}" for end in fit.intervals()[k])
             said.append(
                 f"{parameter.name} is hardly known: its 95 % interval reaches from {low} to {high} "
@@ -89,7 +89,7 @@ def _known_of(fit: Fit, group: Overlay) -> str:
     ratio = sign * size / size[first]
     weights = np.zeros(len(fit.parameters))
     weights[own] = ratio
-    value = float(ratio @ np.array([p.value for p in members]))
+    value = float(ratio @ np.array([p.internal for p in members]))
     share = 100.0 * _std_of(fit, weights * fit.problem.scale) / max(abs(value), 1e-300)
     kind = "compliances" if all(p.spec.reciprocal for p in members) else "values"
     terms = [f"{words_for(members[first])}"]
@@ -192,7 +192,7 @@ def _combination(fit: Fit, group: Sequence[int], blind: Array) -> tuple[str, flo
         known += " the second"
     weights = np.zeros(len(fit.parameters))
     weights[list(group)] = (1.0, ratio)
-    values = np.array([p.value for p in fit.parameters])
+    values = np.array([p.internal for p in fit.parameters])
     return known, float(weights @ values), _std_of(fit, weights * fit.problem.scale)
 
 
@@ -244,7 +244,7 @@ def _implausible(parameter: Parameter) -> str:
     limit = abs(spec.public(spec.plausible))
     than = "softer" if spec.reciprocal else "larger"
     return (
-        f"{parameter.name} is {than} than is plausible ({parameter.public_value:.3g}, limit "
+        f"{parameter.name} is {than} than is plausible ({parameter.value:.3g}, limit "
         f"{limit:.3g} {spec.unit}): it fits, but it explains nothing."
     )
 

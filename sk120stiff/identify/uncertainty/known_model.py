@@ -54,7 +54,7 @@ def known_model(fit: Fit) -> Model:
     test, noise = lack_of_fit(fit), yardstick(fit)
     known = Uncertainty(
         names=tuple(parameter.name for parameter in fit.parameters),
-        values=np.array([parameter.value for parameter in fit.parameters]),
+        values=np.array([parameter.internal for parameter in fit.parameters]),
         covariance=0.5 * (covariance + covariance.T),
         unseen=unseen[np.abs(unseen).max(axis=1, initial=0.0) > 0.0],
         noise=noise.sigma or problem.noise.sigma * fit.noise_factor,

@@ -192,13 +192,13 @@ def _second_act(demo: Demo) -> Section:
     agree = f"agree to {number(apart, 1)} of the values" if apart > 1e-15 else "agree to all digits"
     rows = []
     for p, (low, high) in zip(found.parameters, found.intervals(), strict=True):
-        given = paper[p.name].public_value
-        change = percent(p.public_value / given - 1.0).replace("-", "−")
-        rows.append((p.effect.where, number(given, 5), with_error(p.public_value, p.public_std),
+        given = paper[p.name].value
+        change = percent(p.value / given - 1.0).replace("-", "−")
+        rows.append((p.effect.where, number(given, 5), with_error(p.value, p.std),
                      number(low), number(high), change))  # fmt: skip
     estimates = [
-        Estimate(p.effect.where, p.public_value, p.public_std, "N·m/rad",
-                 paper[p.name].public_value)
+        Estimate(p.effect.where, p.value, p.std, "N·m/rad",
+                 paper[p.name].value)
         for p in found.parameters
     ]  # fmt: skip
     ratios = "; ".join(f"{e.name} {number(e.value / (e.reference or 1), 3)}" for e in estimates)

@@ -75,13 +75,13 @@ def _sizes(answer: Explanation, finding: Finding) -> Table | str:
 
 def many_values(parameters: Sequence[Parameter]) -> str:
     """Parameters of one kind that are too many for a table, told by their size."""
-    values = np.array([p.public_value for p in parameters])
+    values = np.array([p.value for p in parameters])
     largest = parameters[int(np.argmax(np.abs(values)))]
     rms = number(float(np.sqrt(np.mean(values**2))), 3)
     return (
         f"It has {len(values)} values; their rms is {rms} {unit_of(largest.spec.unit)}, the "
         f"largest is {largest.spec.name} with "
-        f"{with_error(largest.public_value, largest.public_std, largest.spec.unit)}. All stand in "
+        f"{with_error(largest.value, largest.std, largest.spec.unit)}. All stand in "
         "the model file."
     )
 
@@ -96,7 +96,7 @@ def parameter_rows(fit: Fit, parameters: list[Parameter]) -> list[tuple[object, 
             rows.append((p.spec.name, "cannot be seen", None, None, unit_of(p.spec.unit)))
             continue
         low, high = ends.get(p.name, (math.nan, math.nan))
-        value = with_error(p.public_value, p.public_std)
+        value = with_error(p.value, p.std)
         rows.append((p.spec.name, value, number(low), number(high), unit_of(p.spec.unit)))
     return rows
 

@@ -27,10 +27,10 @@ def parameters_section(answer: Explanation) -> Section:
     seen = [p for p in after if p.name not in unseen]
     blocks: list[Block] = [_told(before, seen), _table(before, after, unseen), *_blind(unseen)]
     drawn = [
-        Estimate(_short(p), p.public_value, p.public_std, unit_of(p.spec.unit),
-                 before[p.name].public_value)
+        Estimate(_short(p), p.value, p.std, unit_of(p.spec.unit),
+                 before[p.name].value)
         for p in seen
-        if np.isfinite(p.public_value) and np.isfinite(before[p.name].public_value)
+        if np.isfinite(p.value) and np.isfinite(before[p.name].value)
     ]  # fmt: skip
     if drawn:
         blocks.append(
@@ -51,7 +51,7 @@ def springs_table(fit: Fit) -> Table:
         (
             _short(p),
             *((UNSEEN, None, None) if p.name in unseen
-              else (with_error(p.public_value, p.public_std), number(low), number(high))),
+              else (with_error(p.value, p.std), number(low), number(high))),
             unit_of(p.spec.unit),
         )
         for p, (low, high) in zip(fit.parameters, fit.intervals(), strict=True)
@@ -61,7 +61,7 @@ def springs_table(fit: Fit) -> Table:
 
 
 def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
-    bent = [(p, p.public_value / before[p.name].public_value - 1.0) for p in after]
+    bent = [(p, p.value / before[p.name].value - 1.0) for p in after]
     bent = [(p, change) for p, change in bent if np.isfinite(change)]
     worth = sorted((b for b in bent if abs(b[1]) > WORTH_TELLING), key=lambda b: -abs(b[1]))
     if not worth:
@@ -96,12 +96,12 @@ def _table(
         if p.name in unseen:
             rows.append((_short(p), UNSEEN, UNSEEN, None, unit_of(p.spec.unit)))
             continue
-        change = p.public_value / old.public_value - 1.0
+        change = p.value / old.value - 1.0
         rows.append(
             (
                 _short(p),
-                with_error(old.public_value, old.public_std),
-                with_error(p.public_value, p.public_std),
+                with_error(old.value, old.std),
+                with_error(p.value, p.std),
                 percent(change).replace("-", "−") if np.isfinite(change) else None,
                 unit_of(p.spec.unit),
             )
