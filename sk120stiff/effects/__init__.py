@@ -13,6 +13,7 @@ from sk120stiff.effects.base import (
     Options,
     ReadingError,
     Switching,
+    Viewpoint,
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.declared import declared_aliases
@@ -40,6 +41,7 @@ __all__ = [
     "ReadingError",
     "Situation",
     "Switching",
+    "Viewpoint",
     "alias_classes",
     "all_effects",
     "catalogue_words",

@@ -1,6 +1,6 @@
 """The contract of an effect: one physical cause with a name, a place, parameters and a law.
 
-An effect enters in one of five ways, and each way is one base class:
+An effect enters in one of six ways, and each way is one base class:
 
 =============  ==========================================================  ======================
 class          what it changes                                             example
@@ -11,6 +11,7 @@ class          what it changes                                             examp
                themselves, z₀ + S·p, whatever the load is
 `LoadError`    the load, W_true = W + (S·p) W + o·p in sensor axes         force bias
 `ReadingError` the displacement read, d_read = d + (S·p) d + o·p           tracker misalignment
+`Viewpoint`    the axes in which positions are stated, x = R(p) X + t(p)   tracker's frame
 =============  ==========================================================  ======================
 
 So a misread force can never pose as a spring. Adding an effect is one new file and one line in
@@ -47,11 +48,17 @@ class Options:
         The experiment has times, for `reading_drift`.
     breaks
         Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
+    series
+        Series of the experiment, for `marker_shift`.
+    thermal
+        The experiment has temperatures, for `thermal_growth`.
     """
 
     poses: tuple[str, ...] = ()
     timed: bool = False
     breaks: tuple[float, ...] = ()
+    series: tuple[str, ...] = ()
+    thermal: bool = False
 
 
 @dataclass(frozen=True)
@@ -115,6 +122,8 @@ class Effect(ABC):
         either sign (class attribute). It is tried whether the experiment at hand does.
     needs
         What readings must hold for its law, in words (class attribute).
+    only_absolute
+        Positions show it, displacements hardly ever (class attribute).
     where
         URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
     scale
@@ -137,6 +146,7 @@ class Effect(ABC):
     less_usual: ClassVar[float] = 0.0
     twins: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[str] = ""
+    only_absolute: ClassVar[bool] = False
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
@@ -269,15 +279,23 @@ class Switching(Elastic):
 
 
 class Geometric(Effect):
-    """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ p_k e_k."""
+    """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p."""
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Rigid joints that carry the error; none where an actuated coordinate does."""
         return ()
 
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """Name of the coordinate that each parameter shifts."""
+        """Names of the k coordinates that are shifted."""
         return tuple(joint.name for joint in self.virtual_joints(robot))
+
+    def shifts(self, situation: Situation) -> Array:
+        """(N, k, P) shift of the coordinates per unit of a parameter.
+
+        Parameter k shifts coordinate k alone, at all poses alike, unless the effect says otherwise.
+        """
+        P = len(self.parameters)
+        return np.broadcast_to(np.eye(P), (situation.count, P, P))
 
 
 class Imposed(Effect):
@@ -333,6 +351,24 @@ class LoadError(Misreading):
 
 class ReadingError(Misreading):
     """The reading differs from the displacement; x is the displacement (3), base axes [m]."""
+
+
+class Viewpoint(Effect):
+    """The instrument stands somewhere of its own: it reads x = R X + t of what is X in base axes.
+
+    Displacements know nothing of it: their axes are part of the file.
+    """
+
+    @abstractmethod
+    def frame(self, values: Array) -> tuple[Array, Array]:
+        """(3, 3) rotation R and (3,) origin t [m]: base axes as the instrument sees them."""
+
+    @abstractmethod
+    def columns(self, turned: Array, values: Array) -> Array:
+        """(N, 6, P) change of position and of orientation as read, instrument axes.
+
+        `turned` (N, 3) is R X [m].
+        """
 
 
 def scale_of(robot: Robot) -> float:

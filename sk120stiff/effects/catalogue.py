@@ -19,6 +19,7 @@ from difflib import get_close_matches
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 
+from sk120stiff.effects.approach_side import ApproachSide
 from sk120stiff.effects.base import Effect, Options
 from sk120stiff.effects.closure import ClosureCoupling, ClosureRod
 from sk120stiff.effects.force_sensor import ForceBias, ForceCrosstalk, ForceRotation, ForceScale
@@ -26,11 +27,18 @@ from sk120stiff.effects.foundation import BaseRocking, BaseSliding
 from sk120stiff.effects.gear import FrictionHysteresis, GearHardening, LostMotion
 from sk120stiff.effects.geometry import JointOffset, LinkLength, ToolOffset
 from sk120stiff.effects.gravity_compensator import GravityCompensator
+from sk120stiff.effects.joint_coupling import JointCoupling
+from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.joint_springs import JointSprings
 from sk120stiff.effects.joint_tilt import JointTilt
 from sk120stiff.effects.link_beam import LinkBending, LinkTorsion
+from sk120stiff.effects.marker_shift import MarkerShift
+from sk120stiff.effects.payload import Payload
+from sk120stiff.effects.thermal_growth import ThermalGrowth
 from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingDrift, ReadingRotation, ReadingScale, ZeroOffset
+from sk120stiff.effects.tracker_frame import TrackerFrame
+from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot import Robot
 
@@ -61,6 +69,14 @@ OWN: tuple[type[Effect], ...] = (
     JointOffset,
     ToolOffset,
     LinkLength,
+    TrackerFrame,
+    JointFrame,
+    TransmissionError,
+    JointCoupling,
+    Payload,
+    ApproachSide,
+    MarkerShift,
+    ThermalGrowth,
 )
 
 
@@ -195,8 +211,8 @@ def _checked(kinds: Sequence[type[Effect]]) -> None:
         if not (isinstance(kind, type) and issubclass(kind, Effect)):
             raise InputError(
                 f"{kind!r} is no effect",
-                remedy="Give a class derived from Elastic, Geometric, Imposed, LoadError or "
-                "ReadingError of sk120stiff.effects.",
+                remedy="Give a class derived from Elastic, Geometric, Imposed, LoadError, "
+                "ReadingError or Viewpoint of sk120stiff.effects.",
             )
         missing = sorted(kind.__abstractmethods__) + [
             name for name in ("name",) if not isinstance(getattr(kind, name, None), str)
@@ -230,6 +246,8 @@ def effect(
     poses: Sequence[str] = (),
     timed: bool = False,
     breaks: Sequence[float] = (),
+    series: Sequence[str] = (),
+    thermal: bool = False,
     catalogue: Catalogue = CATALOGUE,
 ) -> Effect:
     """One effect at one place of a robot.
@@ -248,6 +266,10 @@ def effect(
         The experiment has times, for `reading_drift`.
     breaks
         Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
+    series
+        Series of the experiment, for `marker_shift`.
+    thermal
+        The experiment has temperatures, for `thermal_growth`.
     catalogue
         The effects that there are.
 
@@ -263,7 +285,9 @@ def effect(
     >>> sk.effect(robot, "base_rocking").id
     'base_rocking:base_link'
     """
-    return catalogue.effect(robot, name, where, Options(tuple(poses), timed, tuple(breaks)))
+    return catalogue.effect(
+        robot, name, where, Options(tuple(poses), timed, tuple(breaks), tuple(series), thermal)
+    )
 
 
 def all_effects(
@@ -271,11 +295,19 @@ def all_effects(
     *,
     poses: Sequence[str] = (),
     timed: bool = False,
+    series: Sequence[str] = (),
+    thermal: bool = False,
+    absolute: bool = False,
     catalogue: Catalogue = CATALOGUE,
 ) -> tuple[Effect, ...]:
-    """Every effect of the catalogue at every place of a robot where it can act."""
+    """Every effect of the catalogue at every place of a robot where it can act.
+
+    Those that positions alone show are left out unless readings are `absolute`.
+    """
+    told = Options(tuple(poses), timed, series=tuple(series), thermal=thermal)
     return tuple(
-        kind.at(robot, where, Options(tuple(poses), timed))
+        kind.at(robot, where, told)
         for kind in catalogue
+        if absolute or not kind.only_absolute
         for where in kind.places(robot)
     )

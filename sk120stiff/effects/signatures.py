@@ -111,7 +111,8 @@ class FirstOrder:
         return np.asarray(self._J[:, :, index] @ found.by_parameter)
 
     def _geometric(self, effect: Geometric) -> Array:
-        return self._wrong_start[:, :, self._index(effect.coordinates(self.situation.robot))]
+        index = self._index(effect.coordinates(self.situation.robot))
+        return np.asarray(self._wrong_start[:, :, index] @ effect.shifts(self.situation))
 
     @cached_property
     def _wrong_start(self) -> Array:

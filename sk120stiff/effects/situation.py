@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,9 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.robot import Robot, Screws
 
 if TYPE_CHECKING:
-    from sk120stiff.measurements import Measurements
+    from sk120stiff.measurements import Absolute, Measurements
+
+MOVED = 1e-4  # rad or m: a joint that moves by less has not changed sides
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +33,8 @@ class Situation:
     rotation
         (N, 3, 3) unloaded tool frame in base axes.
     point, force_point
-        (3,) measured point and point of the force, in the tool frame [m].
+        (3,) measured point, or (N, 3) where it differs, and (3,) point of the force, in the tool
+        frame [m].
     reading_axes
         (N, 3, 3) axes in which displacements are stated, in base axes.
     order, time
@@ -43,6 +46,18 @@ class Situation:
         (N,) index into `poses`.
     poses
         Labels of the poses.
+    absolute
+        Readings say where the point stands, not how far it went under a load.
+    payload_point
+        (3,) where a payload hangs, in the tool frame [m]; None where there is none.
+    temperature
+        (N,) temperature over its mean [K], or None.
+    series, series_names
+        (N,) series that each reading belongs to, and their labels.
+    zero_a
+        (N, n) coordinates of the zero reading [rad or m]; None: those of the reading.
+    side
+        (N, n) side from which each joint came to its pose, -1, 0 or 1; None without an order.
     """
 
     robot: Robot
@@ -57,6 +72,13 @@ class Situation:
     branch: Array
     pose: Index
     poses: tuple[str, ...]
+    absolute: bool = False
+    payload_point: Array | None = None
+    temperature: Array | None = None
+    series: Index | None = None
+    series_names: tuple[str, ...] = ()
+    side: Array | None = None
+    zero_a: Array | None = None
 
     @property
     def count(self) -> int:
@@ -79,7 +101,7 @@ class Situation:
     def rows(self, pick: slice | Index | Mask) -> Situation:
         """Part of the readings."""
 
-        def part(x: Array | None) -> Array | None:
+        def part(x: Any) -> Any:
             return None if x is None else x[pick]
 
         return replace(
@@ -92,6 +114,11 @@ class Situation:
             time=part(self.time),
             branch=self.branch[pick],
             pose=self.pose[pick],
+            point=self.point if self.point.ndim == 1 else self.point[pick],
+            temperature=part(self.temperature),
+            series=part(self.series),
+            side=part(self.side),
+            zero_a=part(self.zero_a),
         )
 
 
@@ -150,7 +177,7 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
     identity = np.broadcast_to(np.eye(3), rotation.shape)
     labels = measurements.poses
     index = {label: k for k, label in enumerate(labels)}
-    return Situation(
+    plain = Situation(
         robot=robot,
         a=a,
         wrench=wrench,
@@ -163,7 +190,64 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
         branch=_branch_signs(measurements),
         pose=np.array([index[label] for label in measurements.pose], dtype=np.intp),
         poses=labels,
+        zero_a=measurements.zero_joints,
     )
+    if measurements.absolute is None:
+        return plain
+    return _standing(plain, measurements, measurements.absolute)
+
+
+def _standing(plain: Situation, measurements: Measurements, said: Absolute) -> Situation:
+    """The same readings as positions: with payload, markers, series, temperature, approach."""
+    weight = said.payload[:, None] * plain.robot.gravity_in_base
+    wrench, force_point = plain.wrench.copy(), plain.force_point
+    if not wrench.any():
+        force_point = said.payload_point
+    wrench[:, :3] += weight
+    lever = np.einsum("nij,j->ni", plain.rotation, said.payload_point - force_point)
+    wrench[:, 3:] += np.cross(lever, weight)
+    labels = said.groups
+    names = () if labels is None else tuple(dict.fromkeys(labels))
+    temperature = said.temperature
+    clock = measurements.order if measurements.order is not None else measurements.time
+    return replace(
+        plain,
+        wrench=wrench,
+        point=said.point,
+        force_point=force_point,
+        order=_since_first(measurements.order),
+        time=_since_first(measurements.time),
+        absolute=True,
+        payload_point=said.payload_point,
+        temperature=None if temperature is None else temperature - temperature.mean(),
+        series=None if labels is None else np.array([names.index(label) for label in labels]),
+        series_names=names,
+        side=None if clock is None else approach_sides(plain.a, clock),
+    )
+
+
+def _since_first(clock: Array | None) -> Array | None:
+    return None if clock is None else clock - clock.min()
+
+
+def approach_sides(a: Array, clock: Array) -> Array:
+    """(N, n) sign of the last movement of each joint, 0 before it has moved at all.
+
+    Parameters
+    ----------
+    a
+        (N, n) coordinates of the readings [rad or m].
+    clock
+        (N,) their order.
+    """
+    order = np.argsort(clock, kind="stable")
+    steps = np.diff(a[order], axis=0, prepend=a[order[:1]])
+    signs = np.where(np.abs(steps) > MOVED, np.sign(steps), 0.0)
+    rows = np.where(signs != 0.0, np.arange(len(a))[:, None], 0)
+    last = np.maximum.accumulate(rows, axis=0)
+    sides = np.empty_like(signs)
+    sides[order] = np.take_along_axis(signs, last, axis=0)
+    return sides
 
 
 def _branch_signs(measurements: Measurements) -> Array:

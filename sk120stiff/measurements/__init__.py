@@ -1,5 +1,7 @@
 """Measurements: what was pressed, what moved, and how well that is known."""
 
+from sk120stiff.measurements.absolute import Absolute
+from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements, NoiseStatement
 from sk120stiff.measurements.importing import Imported, read_figaroh
 from sk120stiff.measurements.joining import join_measurements
@@ -12,6 +14,8 @@ from sk120stiff.measurements.writing import write_measurements
 
 __all__ = [
     "EXACT",
+    "Absolute",
+    "Channels",
     "FormWhitener",
     "Imported",
     "Measurements",

@@ -14,10 +14,19 @@ FORCES = ("fx", "fy", "fz")
 MOMENTS = ("mx", "my", "mz")
 DISPLACEMENTS = ("dx", "dy", "dz")
 POSITIONS = ("x", "y", "z")
+ROTATION_VECTOR = ("rx", "ry", "rz")
+QUATERNION = ("qw", "qx", "qy", "qz")
+DIRECTIONS = ("ux", "uy", "uz")
+ANCHORS = ("ax", "ay", "az")
 UNCERTAINTIES = ("sx", "sy", "sz")
 ZEROS = ("zero_group", "zero_count", "zero_order", "zero_time")
 # Columns that are words or counts and carry no unit.
 _BARE = ("pose", "order", "branch", "repeat", "use", "zero_group", "zero_count", "zero_order")
+# What stands beside positions, distances and single readings; a note elsewhere.
+_BESIDE = ("payload", "marker", "temperature", "series")
+_SINGLE = ("d", "l")
+_ABSOLUTE = (*_SINGLE, *_BESIDE, *ROTATION_VECTOR, *QUATERNION, *DIRECTIONS, *ANCHORS)
+_GROUPS: dict[str, tuple[str, ...]] = {"d": DIRECTIONS, "l": ANCHORS}
 _WORDS = (
     *FORCES, *MOMENTS, *DISPLACEMENTS, *POSITIONS, *UNCERTAINTIES, *_BARE, "time", "zero_time",
 )  # fmt: skip
@@ -25,7 +34,7 @@ _WORDS = (
 
 _UNITS = {
     FORCES: "N", MOMENTS: "N*m", DISPLACEMENTS: "mm", POSITIONS: "mm", UNCERTAINTIES: "um",
-    ("time", "zero_time"): "s",
+    ("time", "zero_time"): "s", ROTATION_VECTOR: "rad", ANCHORS: "m", _SINGLE: "mm",
 }  # fmt: skip
 _OTHER_DRESS = re.compile(r"(?P<name>[A-Za-z]+)\s*(?P<mark>[ (/_])(?P<unit>[^)]*)\)?")
 
@@ -44,12 +53,16 @@ class Roles:
         Further columns, kept as notes.
     measured
         `DISPLACEMENTS`, `POSITIONS`, or nothing for a plan.
+    absolute
+        There are readings or conditions that no displacement has: orientations, distances, single
+        directions, payloads, several markers.
     """
 
     joints: dict[str, str]
     has: frozenset[str]
     extra: tuple[str, ...]
     measured: tuple[str, ...]
+    absolute: bool = False
 
 
 def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
@@ -67,7 +80,11 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
     joints: dict[str, str] = {}
     has: set[str] = set()
     extra: list[str] = []
+    standing = _standing(table, actuated)
     for name, unit in table.column_units.items():
+        if name in standing and name not in actuated:
+            has.add(name)
+            continue
         if name in _WORDS and name not in actuated:
             has.add(name)
             if name in _BARE and unit is not None:
@@ -83,16 +100,23 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
             joints[name] = kind
         else:
             extra.append(name)
+    absolute = bool(has & set(_ABSOLUTE) - {"temperature", "series"})
     if "pose" not in has and {"x1", "y1", "z1"} <= table.headers.keys():
         raise InputError(
             "these are marker positions of a calibration, not readings under load",
             where=f"{table.path}, line {table.header_line}",
             remedy="Convert them first: 'sk120stiff import' says what can be identified from them.",
         )
-    _require(table, has, ("pose",))
-    _require(table, has, FORCES)
     measured = _measured(table, has)
-    for group in (MOMENTS, UNCERTAINTIES, measured):
+    if measured != POSITIONS and not absolute:
+        _require(table, has, ("pose",))
+    if has & {*FORCES, *MOMENTS} or (measured != POSITIONS and not absolute):
+        _require(table, has, FORCES)
+    together: tuple[tuple[str, ...], ...] = (
+        *(_GROUPS[name] for name in _GROUPS if name in has),
+        *(group for group in (ROTATION_VECTOR, QUATERNION) if has & set(group)),
+    )
+    for group in (MOMENTS, UNCERTAINTIES, measured, *together):
         if has & set(group):
             _require(table, has, group)
     if not joints:
@@ -104,7 +128,16 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
             remedy="Add a column for each actuated joint, named as in the URDF, "
             f"with its unit: {shown}[deg].",
         )
-    return Roles(joints, frozenset(has), tuple(extra), measured)
+    return Roles(joints, frozenset(has), tuple(extra), measured, absolute)
+
+
+def _standing(table: Table, actuated: tuple[str, ...]) -> frozenset[str]:
+    """Words of `_ABSOLUTE` that are meant as such: beside positions or single readings only."""
+    names = table.headers.keys() - set(actuated)
+    single = any(name in names and set(group) <= names for name, group in _GROUPS.items())
+    if not single and not names & set(POSITIONS):
+        return frozenset()
+    return frozenset(_ABSOLUTE) & names
 
 
 def _measured(table: Table, has: set[str]) -> tuple[str, ...]:

@@ -15,8 +15,9 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.absolute import SAME_POSE, Absolute
 from sk120stiff.measurements.frame import Tabular
-from sk120stiff.measurements.poses import refuse_differing_joints, rows_by_label
+from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints, rows_by_label
 from sk120stiff.measurements.zero import since_zero
 
 Frame = Literal["base", "tool"]
@@ -26,7 +27,7 @@ _ARTICLE = {"angle": "an angle", "length": "a length"}
 # Row fields, cut together by `select`.
 PER_ROW = (
     "pose", "joints", "wrench", "displacement", "sigma", "order", "time", "branch", "repeat",
-    "use", "zero_group", "zero_count", "zero_order", "zero_time", "line",
+    "use", "zero_group", "zero_count", "zero_order", "zero_time", "zero_joints", "line",
 )  # fmt: skip
 
 
@@ -86,8 +87,13 @@ class Measurements(Tabular):
     zero_group, zero_count, zero_order, zero_time
         (N,) which zero reading a row subtracts, of how many readings it is the mean, and their
         mean order and time (NaN where not known).
+    zero_joints
+        (N, n) mean joint values of that zero reading where encoders read a little otherwise than
+        under load, rad or m; None: the same.
     line
         (N,) line in the file, 0 where there is none.
+    absolute
+        Readings of where markers stand, in the place of displacements, or None.
     extra
         Further columns as text, under their header as written.
     notes
@@ -127,7 +133,9 @@ class Measurements(Tabular):
     zero_count: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     zero_order: Array | None = None
     zero_time: Array | None = None
+    zero_joints: Array | None = None
     line: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    absolute: Absolute | None = None
     source: str = ""
     extra: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
@@ -152,6 +160,7 @@ class Measurements(Tabular):
             self._array(name, (count,))
         for name in ("zero_order", "zero_time"):
             self._array(name, (count,), may_be_nan=True)
+        self._array("zero_joints", (count, n))
         self._array("use", (count,), np.bool_, np.ones(count))
         self._array("line", (count,), np.int64, np.zeros(count))
         self._array("repeat", (count,), np.int64)
@@ -167,7 +176,7 @@ class Measurements(Tabular):
         return (
             f"<Measurements: {self.n_readings} readings at {len(self.poses)} poses"
             + (f", {masked} masked" if masked else "")
-            + (", a plan" if self.displacement is None else "")
+            + (", a plan" if self.displacement is None and self.absolute is None else "")
             + (f", {self.path}>" if self.path else ">")
         )
 
@@ -238,6 +247,8 @@ class Measurements(Tabular):
                 changes[name] = tuple(value[i] for i in index)
             elif value is not None:
                 changes[name] = value[index]
+        if self.absolute is not None:
+            changes["absolute"] = self.absolute.select(index)
         changes["extra"] = {k: tuple(v[i] for i in index) for k, v in self.extra.items()}
         return dataclasses.replace(self, **changes)
 
@@ -280,6 +291,7 @@ class Measurements(Tabular):
             joint_names=tuple(names),
             joint_kinds=tuple(self.joint_kinds[i] for i in index),
             joints=self.joints[:, index],
+            zero_joints=None if self.zero_joints is None else self.zero_joints[:, index],
         )
 
     def _check_joint_column(self, name: str, kind: str | None, listed: str) -> None:
@@ -365,6 +377,7 @@ class Measurements(Tabular):
             self.joint_kinds,
             self.line,
             self._file(),
+            SAME_JOINT if self.absolute is None and self.zero_joints is None else SAME_POSE,
         )
 
     def _check_zero(self) -> None:

@@ -22,8 +22,7 @@ from sk120stiff.measurements.figaroh import (
     refuse_other_joints,
     unit_of,
 )
-from sk120stiff.measurements.poses import SAME_JOINT
-from sk120stiff.measurements.subtraction import POSITIONS_ALONE
+from sk120stiff.measurements.rows import rows_of_one_pose
 from sk120stiff.measurements.table import Table, read_table
 
 
@@ -110,7 +109,7 @@ def read_figaroh(
         table, told, None if wrench is None else np.asarray(wrench, dtype=np.float64)
     )
     use = _use(table)
-    pose = table.cells["pose"] if "pose" in table.headers else _label(q)
+    pose = table.cells["pose"] if "pose" in table.headers else rows_of_one_pose(q)
     differences, paired, offset = _pair(np.array(pose), W, use)
     assumed = [
         f"Marker {number} is measured in axes of the base frame (of a tracker turned against it "
@@ -163,15 +162,6 @@ def read_figaroh(
     return Imported(measurements, tuple(assumed), count, useful, words)
 
 
-def _label(q: Array) -> tuple[str, ...]:
-    """P1, P2, ... in the order in which sets of joint values first appear."""
-    firsts: dict[tuple[int, ...], str] = {}
-    return tuple(
-        firsts.setdefault(tuple(map(int, row)), f"P{len(firsts) + 1}")
-        for row in np.round(q / SAME_JOINT)
-    )
-
-
 def _use(table: Table) -> Mask:
     if "use" not in table.headers:
         return np.ones(len(table.lines), dtype=np.bool_)
@@ -204,8 +194,10 @@ def _pair(pose: NDArray[np.str_], W: Array, use: Mask) -> tuple[Array, Mask, int
 def _identifiable(count: int, useful: int, poses: int) -> str:
     if count == 0:
         return (
-            f"No pose of the {poses} was read under two different loads. "
-            f"{POSITIONS_ALONE[0].upper()}{POSITIONS_ALONE[1:]}"
+            f"No pose of the {poses} was read under two different loads. As positions they show "
+            "the geometry of the arm, and springs as far as its weight and payload bend it: "
+            "'identify' and 'explain' take them so, registered in the tracker's own axes with "
+            "'position: {frame: unknown}'."
         )
     text = (
         f"{count} rows at {useful} of {poses} poses differ in load from the lightest row of their "
@@ -213,5 +205,8 @@ def _identifiable(count: int, useful: int, poses: int) -> str:
         "identified; 'identify' says which of them these poses and loads show."
     )
     if useful < poses:
-        text += f" The other {poses - useful} poses hold no information on stiffness."
+        text += (
+            f" The other {poses - useful} poses show stiffness through the arm's weight alone; "
+            "they are left out."
+        )
     return text

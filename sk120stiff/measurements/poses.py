@@ -35,6 +35,7 @@ def refuse_differing_joints(
     kinds: Sequence[str],
     lines: Integers,
     file: str | None,
+    allowed: float = SAME_JOINT,
 ) -> None:
     """Compare every row with the first row of its pose.
 
@@ -46,6 +47,8 @@ def refuse_differing_joints(
         (N, n) values in SI, and each column's name and kind (angle or length).
     lines, file
         (N,) line numbers (0: none) and the file, for the message.
+    allowed
+        Difference that is none [rad or m].
 
     Raises
     ------
@@ -53,7 +56,7 @@ def refuse_differing_joints(
         Two rows of a pose differ in a joint.
     """
     _, first = np.unique(pose_index, return_index=True)
-    differs = np.abs(joints - joints[first][pose_index]) > SAME_JOINT
+    differs = np.abs(joints - joints[first][pose_index]) > allowed
     if not differs.any():
         return
     row, column = (int(k) for k in np.argwhere(differs)[0])

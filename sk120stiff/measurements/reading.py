@@ -14,12 +14,13 @@ import numpy as np
 from sk120stiff import files, units
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.measurements import columns
+from sk120stiff.measurements.absolute import SAME_POSE, Absolute, is_absolute, read_absolute
 from sk120stiff.measurements.branches import branches_by_order
 from sk120stiff.measurements.columns import Roles
 from sk120stiff.measurements.data import Measurements, NoiseStatement
-from sk120stiff.measurements.poses import refuse_differing_joints
+from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
 from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
-from sk120stiff.measurements.subtraction import displacements
+from sk120stiff.measurements.subtraction import displacements, undisplaced
 from sk120stiff.measurements.table import Table, read_table
 
 if TYPE_CHECKING:
@@ -108,15 +109,20 @@ def assembled(
 
 def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) -> Measurements:
     settings = file.settings
-    rows = read_rows(table, roles)
+    rows, kinds = read_rows(table, roles, settings.joints, file.place("joints"))
+    blank = rows.measured is not None and bool(np.isnan(rows.measured).any())
+    absolute = None
+    if is_absolute(file, roles, bool(rows.loaded.any()), blank):
+        absolute = read_absolute(table, roles, file)
     refuse_differing_joints(
         rows.pose,
         rows.pose_index,
         rows.joints,
-        tuple(roles.joints),
-        tuple(roles.joints.values()),
+        tuple(kinds),
+        tuple(kinds.values()),
         np.array(table.lines),
         str(table.path),
+        SAME_JOINT if roles.measured == columns.DISPLACEMENTS else SAME_POSE,
     )
     noise = NoiseStatement(_sigma(file), settings.noise.growth)
     point = np.zeros(3)
@@ -125,17 +131,21 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
     force_point = point
     if settings.force.point is not None:
         force_point = np.array(settings.force.point.in_metres(file.place("force.point.unit")))
-    found = displacements(table, roles, rows, settings.displacement.zero)
+    if absolute is None:
+        found = displacements(table, roles, rows, settings.displacement.zero)
+        branch, told = _branch(rows)
+    else:
+        found = undisplaced(rows, absolute.channels.filled)
+        branch, told = rows.branch, ()
     kept = found.rows
-    branch, told = _branch(rows)
     return Measurements(
         path=table.path,
         robot=_robot(settings.robot, table.path.parent),
         base_frame=settings.base_frame,
         tool_frame=settings.tool_frame,
         pose=tuple(rows.pose[i] for i in kept),
-        joint_names=tuple(roles.joints),
-        joint_kinds=tuple(roles.joints.values()),
+        joint_names=tuple(kinds),
+        joint_kinds=tuple(kinds.values()),
         joints=rows.joints[kept],
         wrench=rows.wrench[kept],
         point=point,
@@ -159,8 +169,10 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         zero_count=found.count,
         zero_order=found.order,
         zero_time=found.time,
+        zero_joints=found.zero_joints,
         use=found.use,
-        notes=(*_assumed_frames(settings), *found.notes, *told),
+        absolute=absolute,
+        notes=(*_assumed_frames(settings, absolute, rows), *found.notes, *told),
         data_hash=data_hash,
     )
 
@@ -175,7 +187,9 @@ def _branch(rows: Rows) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
     return (None, ()) if found is None else (found[0], (found[1],))
 
 
-def _assumed_frames(settings: Settings) -> list[str]:
+def _assumed_frames(settings: Settings, absolute: Absolute | None, rows: Rows) -> list[str]:
+    if absolute is not None and not rows.loaded.any():
+        return []
     return [
         f"Nobody said in which axes the {name} is given: those of the base frame are taken."
         for name, said in (

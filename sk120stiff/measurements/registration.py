@@ -35,6 +35,10 @@ class Registration:
         (3,) the marker in the tool frame, fitted from `MARKER_POSES` poses on [m].
     marker_fitted
         Was it?
+    turn, shift
+        (3, 3) and (3,) base axes as the instrument sees them, x = turn · X + shift [m].
+    distance
+        (P,) what remains at each pose [m].
     """
 
     rms: float
@@ -43,9 +47,19 @@ class Registration:
     poses: int
     marker: Array
     marker_fitted: bool
+    turn: Array
+    shift: Array
+    distance: Array
 
 
-def register(measured: Array, flange: Array, rotation: Array, point: Array) -> Registration | None:
+def register(
+    measured: Array,
+    flange: Array,
+    rotation: Array,
+    point: Array,
+    *,
+    fit_marker: bool = True,
+) -> Registration | None:
     """Fit x = R (p + Q m) + t to positions: the tracker's frame R, t and the marker m.
 
     The turn is that of least squares (Kabsch, Acta Cryst. A32, 1976, p. 922) to begin with; then
@@ -58,7 +72,10 @@ def register(measured: Array, flange: Array, rotation: Array, point: Array) -> R
     flange, rotation
         (P, 3) and (P, 3, 3) of the tool frame by the rigid robot, base axes [m].
     point
-        (3,) where the marker is said to be in the tool frame [m]; the start of the fit.
+        (3,) where the marker is said to be in the tool frame [m]; the start of the fit. Also
+        (P, 3), where it differs from pose to pose: then what is fitted is a common shift of it.
+    fit_marker
+        False leaves the marker where it is said to be.
 
     Returns
     -------
@@ -67,11 +84,12 @@ def register(measured: Array, flange: Array, rotation: Array, point: Array) -> R
     count = len(measured)
     if count < 3:
         return None
-    marker = point.copy()
-    fit_marker = count >= MARKER_POSES
-    turn, shift = _kabsch(flange + rotation @ marker, measured)
+    stated = flange + np.einsum("pij,pj->pi", rotation, np.broadcast_to(point, flange.shape))
+    marker = np.zeros(3)
+    fit_marker = fit_marker and count >= MARKER_POSES
+    turn, shift = _kabsch(stated, measured)
     for _ in range(_STEPS if fit_marker else 0):
-        arm = flange + rotation @ marker
+        arm = stated + rotation @ marker
         left = measured - arm @ turn.T - shift
         columns = np.concatenate(
             [_crossed(arm @ turn.T), np.tile(np.eye(3), (count, 1, 1)), turn @ rotation], axis=2
@@ -79,15 +97,25 @@ def register(measured: Array, flange: Array, rotation: Array, point: Array) -> R
         step = np.linalg.lstsq(columns.reshape(-1, 9), left.ravel(), rcond=1e-9)[0]
         marker = marker + step[6:]
         # The best turn and shift for that marker: no step of theirs can then lead astray.
-        turn, shift = _kabsch(flange + rotation @ marker, measured)
+        turn, shift = _kabsch(stated + rotation @ marker, measured)
         if np.abs(step[6:]).max() < 1e-10:
             break
-    left = measured - (flange + rotation @ marker) @ turn.T - shift
+    left = measured - (stated + rotation @ marker) @ turn.T - shift
     distance = np.linalg.norm(left, axis=1)
     spare = 3 * count - (9 if fit_marker else 6)
     rms = float(np.sqrt((distance**2).sum() * 3.0 / spare))
     worst = int(np.argmax(distance))
-    return Registration(rms, float(distance[worst]), worst, count, marker, fit_marker)
+    return Registration(
+        rms,
+        float(distance[worst]),
+        worst,
+        count,
+        marker if point.ndim == 2 else point + marker,
+        fit_marker,
+        turn,
+        shift,
+        distance,
+    )
 
 
 def _kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:

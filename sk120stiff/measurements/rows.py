@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.columns import FORCES, MOMENTS, UNCERTAINTIES, Roles
+from sk120stiff.measurements.columns import FORCES, MOMENTS, POSITIONS, UNCERTAINTIES, Roles
+from sk120stiff.measurements.joint_map import mapped_joints
+from sk120stiff.measurements.poses import SAME_JOINT
 from sk120stiff.measurements.table import Table
 
 SMALLEST_SIGMA = 1e-15  # m; its inverse square still is a number to compute with
@@ -51,8 +54,10 @@ class Rows:
     use: Mask
 
 
-def read_rows(table: Table, roles: Roles) -> Rows:
-    """Turn cells into numbers.
+def read_rows(
+    table: Table, roles: Roles, mapping: Mapping[str, str | float], place: str
+) -> tuple[Rows, dict[str, str]]:
+    """Turn cells into numbers; joints as `mapping` makes them of columns, and their kinds.
 
     Raises
     ------
@@ -60,18 +65,24 @@ def read_rows(table: Table, roles: Roles) -> Rows:
         A cell that its column cannot hold, with line and column.
     """
     count = len(table.lines)
-    pose = _labels(table)
+    kinds, joints = mapped_joints(table, roles.joints, mapping, place)
+    pose = _labels(table) if "pose" in roles.has else rows_of_one_pose(joints)
     position = {label: k for k, label in enumerate(dict.fromkeys(pose))}
     wrench = np.zeros((count, 6))
-    wrench[:, :3] = quantities(table, FORCES, "force")
+    if FORCES[0] in roles.has:
+        wrench[:, :3] = quantities(table, FORCES, "force")
     if MOMENTS[0] in roles.has:
         wrench[:, 3:] = quantities(table, MOMENTS, "moment")
     loaded = np.any(wrench != 0.0, axis=1)
-    measured = quantities(table, roles.measured, "length") if roles.measured else None
-    return Rows(
+    measured = None
+    if roles.measured:
+        # A blank cell of a position is a channel that was not read.
+        blank = roles.measured == POSITIONS
+        measured = quantities(table, roles.measured, "length", allow_blank=blank)
+    rows = Rows(
         pose=pose,
         pose_index=np.array([position[label] for label in pose], dtype=np.int64),
-        joints=np.column_stack([table.quantity(name, kind) for name, kind in roles.joints.items()]),
+        joints=joints,
         wrench=wrench,
         loaded=loaded,
         measured=measured,
@@ -82,11 +93,21 @@ def read_rows(table: Table, roles: Roles) -> Rows:
         repeat=counts(table, "repeat", 0) if "repeat" in roles.has else None,
         use=_flags(table) if "use" in roles.has else np.ones(count, dtype=np.bool_),
     )
+    return rows, kinds
 
 
-def quantities(table: Table, names: tuple[str, ...], kind: str) -> Array:
+def quantities(
+    table: Table, names: tuple[str, ...], kind: str, *, allow_blank: bool = False
+) -> Array:
     """Several columns of one kind side by side (N, k), SI."""
-    return np.column_stack([table.quantity(name, kind) for name in names])
+    return np.column_stack([table.quantity(name, kind, allow_blank=allow_blank) for name in names])
+
+
+def rows_of_one_pose(joints: Array) -> tuple[str, ...]:
+    """P1, P2, ... in the order in which sets of joint values first appear."""
+    firsts: dict[bytes, str] = {}
+    same = np.round(joints / SAME_JOINT).astype(np.int64)
+    return tuple(firsts.setdefault(row.tobytes(), f"P{len(firsts) + 1}") for row in same)
 
 
 def counts(table: Table, name: str, least: int) -> Integers:

@@ -23,10 +23,11 @@ class _Entry(BaseModel):
 
 
 class PointEntry(_Entry):
-    """A point in the tool frame."""
+    """A point in the tool frame; `fit`: its place is only roughly known."""
 
     xyz: tuple[_Finite, _Finite, _Finite]
     unit: str
+    fit: bool = False
 
     def in_metres(self, where: str) -> tuple[float, float, float]:
         """The coordinates in m."""
@@ -51,11 +52,29 @@ class DisplacementEntry(_Entry):
     zero: Literal["shared", "separate", "unknown"] = "unknown"
 
 
+class PositionEntry(_Entry):
+    """Axes of positions: of the base, or the tracker's own, which the fit then finds."""
+
+    frame: Literal["base", "unknown"] = "base"
+
+
+class PayloadEntry(_Entry):
+    """Where the mass of the column ``payload[kg]`` hangs; `fit`: mass and centre are in doubt."""
+
+    point: PointEntry | None = None
+    fit: bool = False
+
+
 class NoiseEntry(_Entry):
-    """Standard uncertainty of one reading per axis, and the part that grows with displacement."""
+    """Standard uncertainty of one reading per axis, and the part that grows with displacement.
+
+    `rotation` is that of an orientation about each axis.
+    """
 
     sigma: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     unit: str | None = None
+    rotation: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+    rotation_unit: str | None = None
     growth: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
 
 
@@ -73,6 +92,11 @@ class Settings(_Entry):
     point: PointEntry | None = None
     force: ForceEntry = ForceEntry(frame="base")
     displacement: DisplacementEntry = DisplacementEntry()
+    position: PositionEntry | None = None
+    points: dict[str, PointEntry] = Field(default_factory=dict)
+    payload: PayloadEntry | None = None
+    joints: dict[str, str | float] = Field(default_factory=dict)
+    gravity: tuple[_Finite, _Finite, _Finite] | Literal[0] | None = None
     noise: NoiseEntry = NoiseEntry()
     source: str = ""
 
@@ -83,12 +107,20 @@ _SECTIONS: dict[str, type[_Entry]] = {
     "force": ForceEntry,
     "force.point": PointEntry,
     "displacement": DisplacementEntry,
+    "position": PositionEntry,
+    "payload": PayloadEntry,
+    "payload.point": PointEntry,
     "noise": NoiseEntry,
 }
 _EXAMPLES = {
     "point": "point: {xyz: [-60.0, 40.0, 150.0], unit: mm}",
     "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
     "displacement": "displacement: {frame: base, zero: shared}",
+    "position": "position: {frame: unknown}",
+    "points": "points: {A: {xyz: [0, 0, 100], unit: mm}, B: {xyz: [50, 0, 100], unit: mm}}",
+    "payload": "payload: {point: {xyz: [0, 0, 120], unit: mm}}",
+    "joints": "joints: {joint_3: -(J2 + J3), joint_4: J4/101}",
+    "gravity": "gravity: [0, 0, -9.81]",
     "noise": "noise: {sigma: 10, unit: um}",
 }
 
@@ -199,8 +231,13 @@ def _without_empty(content: dict[object, object]) -> dict[str, object]:
     }
 
 
+def _fields(section: str) -> list[str]:
+    entry = PointEntry if section.startswith("points.") else _SECTIONS.get(section, Settings)
+    return list(entry.model_fields)
+
+
 def _names(section: str) -> str:
-    return ", ".join(_SECTIONS[section].model_fields)
+    return ", ".join(_fields(section))
 
 
 def _explain(error: ValidationError, draft: SettingsFile) -> InputError:
@@ -212,7 +249,7 @@ def _explain(error: ValidationError, draft: SettingsFile) -> InputError:
     example = _EXAMPLES.get(names[0], f"{names[0]}: text")
     remedy = f"Write it like  {example}"
     if slip["type"] == "extra_forbidden":
-        close = get_close_matches(names[-1], list(_SECTIONS[section].model_fields), n=1)
+        close = get_close_matches(names[-1], _fields(section), n=1)
         meant = f" (did you mean {close[0]!r}?)" if close else ""
         what = f"the key {key!r} is not known{meant}"
         remedy = f"The keys {f'of {section}' if section else 'here'} are {_names(section)}."

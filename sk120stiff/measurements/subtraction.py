@@ -10,15 +10,10 @@ from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.columns import POSITIONS, ZEROS, Roles
 from sk120stiff.measurements.data import Zero
+from sk120stiff.measurements.poses import SAME_JOINT
 from sk120stiff.measurements.rows import Rows, counts
 from sk120stiff.measurements.table import Table
 from sk120stiff.measurements.zero import find_zero_readings, group_by_run
-
-POSITIONS_ALONE = (
-    "positions without a difference in load hold no information on stiffness: no spring and no "
-    "other elastic effect can be identified from them. They show the rigid geometry alone, which "
-    "is not calibrated here: joint_offset, tool_offset and link_length need readings under load."
-)
 
 
 @dataclass(frozen=True)
@@ -38,6 +33,7 @@ class Displacements:
     time: Array | None
     use: Mask
     notes: tuple[str, ...]
+    zero_joints: Array | None = None
 
 
 def displacements(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacements:
@@ -94,6 +90,24 @@ def _as_written(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacem
     )
 
 
+def undisplaced(rows: Rows, filled: Mask) -> Displacements:
+    """Rows of where a marker stands: nothing is subtracted; those without a reading are masked."""
+    count = len(rows.pose)
+    idle = int((rows.use & ~filled).sum())
+    notes = (f"{idle} rows hold no reading; they are masked.",) if idle else ()
+    return Displacements(
+        rows=np.arange(count),
+        displacement=None,
+        zero="separate",
+        group=np.arange(count),
+        count=np.ones(count, dtype=np.int64),
+        order=None,
+        time=None,
+        use=rows.use & filled,
+        notes=notes,
+    )
+
+
 def _mean_without_load(rows: Rows, when: Array | None) -> Array | None:
     """Mean order or time of the rows without load of each row's pose; None where there is none."""
     if when is None or rows.loaded.all():
@@ -109,13 +123,8 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
                 where=table.place(name),
                 remedy="Leave it out: rows without load say it.",
             )
-    if rows.measured is None or not rows.loaded.any():
-        raise InputError(
-            "no row has a load, so nothing was displaced",
-            where=f"{table.path}, line {table.lines[0]}",
-            remedy=f"{POSITIONS_ALONE[0].upper()}{POSITIONS_ALONE[1:]} "
-            "Read the same poses again with a known load.",
-        )
+    if rows.measured is None:
+        raise ValueError("positions are missing")
     sequence = next(
         (s for s in (rows.order, rows.time) if s is not None), np.arange(float(len(rows.pose)))
     )
@@ -160,7 +169,14 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
         time=None if rows.time is None else found.mean(rows.time)[kept],
         use=rows.use[kept],
         notes=tuple(notes),
+        zero_joints=found.mean(rows.joints)[kept] if jitter(rows) > SAME_JOINT else None,
     )
+
+
+def jitter(rows: Rows) -> float:
+    """Largest difference of a joint value from the first one of its pose [rad or m]."""
+    _, first = np.unique(rows.pose_index, return_index=True)
+    return float(np.abs(rows.joints - rows.joints[first][rows.pose_index]).max(initial=0.0))
 
 
 def _given_groups(table: Table, rows: Rows) -> Integers:

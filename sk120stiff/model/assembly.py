@@ -34,6 +34,7 @@ from sk120stiff.effects import (
     Situation,
 )
 from sk120stiff.effects.base import Misreading, Switching
+from sk120stiff.model.misread import Misread, misread, rotate, to_sensor
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
 
@@ -85,9 +86,9 @@ class Assembly:
         )
 
     @cached_property
-    def _geometric(self) -> tuple[tuple[slice, Index], ...]:
+    def _geometric(self) -> tuple[tuple[Geometric, slice, Index], ...]:
         return tuple(
-            (part, self._indices(effect.coordinates(self.robot)))
+            (effect, part, self._indices(effect.coordinates(self.robot)))
             for effect, part in zip(self.effects, self.slices, strict=True)
             if isinstance(effect, Geometric)
         )
@@ -107,8 +108,9 @@ class Assembly:
         """(N, n_z) unloaded coordinates z₀ [rad or m]."""
         z_0 = np.zeros((situation.count, self.mechanism.n))
         z_0[:, : self.robot.n] = situation.a
-        for part, index in self._geometric:
-            z_0[:, index] += values[part]
+        for effect, part, index in self._geometric:
+            if values[part].any():
+                z_0[:, index] += effect.shifts(situation) @ values[part]
         return z_0
 
     def _moved(self, z_0: Array, situation: Situation, values: Array) -> Array:
@@ -120,24 +122,19 @@ class Assembly:
             moved[:, index] += effect.shifts(situation) @ values[part]
         return moved
 
-    def solve(self, situation: Situation, values: Array) -> Solution:
-        """Equilibrium and reading for N readings and parameter values (P,).
+    def stand(self, situation: Situation, values: Array) -> Standing:
+        """Equilibrium under load and weight for N readings and parameter values (P,).
 
         Raises
         ------
         Refusal
             The springs cannot hold the load.
         """
-        loads = _misread(self._of(LoadError), situation, values, _to_sensor(situation))
-        wrench = _rotate(situation.rotation, loads.value)
+        loads = misread(self.of(LoadError), situation, values, to_sensor(situation))
+        wrench = rotate(situation.rotation, loads.value)
         z_0 = self.start(situation, values)
         onset = self.mechanism.screws(z_0, situation.force_point).torques(wrench)
         law, springs = self._law(situation, values, onset)
-        soft = self._soft(values)
-        weight = None
-        if self.mechanism.chain.weighs:
-            weight = Weight(self.robot.gravity_in_base, springs)
-        unloaded = self._sagging(z_0, situation, weight, soft)
         rest = equilibrium(
             self.mechanism,
             self._moved(z_0, situation, values),
@@ -145,12 +142,34 @@ class Assembly:
             law,
             point=situation.point,
             force_point=situation.force_point,
-            soft=soft,
-            weight=weight,
+            soft=self._soft(values),
+            weight=self._weight(springs),
         )
-        displacement = rest.screws.position - unloaded.screws.position
-        readings = _misread(self._of(ReadingError), situation, values, displacement)
-        return Solution(situation, wrench, loads, unloaded, onset, rest, readings)
+        return Standing(situation, wrench, loads, onset, rest)
+
+    def solve(self, situation: Situation, values: Array) -> Solution:
+        """Equilibrium and displacement for N readings and parameter values (P,).
+
+        Raises
+        ------
+        Refusal
+            The springs cannot hold the load.
+        """
+        stood = self.stand(situation, values)
+        z_0 = self.start(situation, values)
+        if situation.zero_a is not None:  # encoders read a little otherwise without load
+            z_0[:, : self.robot.n] += situation.zero_a - situation.a
+        weight = self._weight(self._law(situation, values, stood.onset)[1])
+        unloaded = self._sagging(z_0, situation, weight, self._soft(values))
+        displacement = stood.rest.screws.position - unloaded.screws.position
+        readings = misread(self.of(ReadingError), situation, values, displacement)
+        return Solution(
+            situation, stood.wrench, stood.loads, stood.onset, stood.rest, unloaded, readings
+        )
+
+    def _weight(self, springs: Array) -> Weight | None:
+        weighs = self.mechanism.chain.weighs
+        return Weight(self.robot.gravity_in_base, springs) if weighs else None
 
     def _sagging(
         self, z_0: Array, situation: Situation, weight: Weight | None, soft: Index
@@ -166,7 +185,8 @@ class Assembly:
             weight=weight,
         )
 
-    def _of(self, kind: type[LoadError] | type[ReadingError]) -> list[tuple[Misreading, slice]]:
+    def of(self, kind: type[LoadError] | type[ReadingError]) -> list[tuple[Misreading, slice]]:
+        """The misreadings of a kind, each with its part of the vector of values."""
         pairs = zip(self.effects, self.slices, strict=True)
         return [(effect, part) for effect, part in pairs if isinstance(effect, kind)]
 
@@ -223,40 +243,61 @@ class Assembly:
 
         By the parameters of the arm itself: those of load and reading errors have no part in it.
         """
-        adjoint = _adjoint(solution.rest, self._soft(values))
+        rest = solution.rest
+        adjoint = _adjoint(rest, self._soft(values), rest.screws.linear_jacobian)
         return self._standing(solution, values, adjoint)
 
-    def _standing(self, solution: Solution, values: Array, adjoint: Array) -> Array:
+    def _standing(self, solution: Standing, values: Array, adjoint: Array) -> Array:
         situation, rest = solution.situation, solution.rest
-        out = np.zeros((situation.count, 3, int(self.slices[-1].stop) if self.slices else 0))
+        P = int(self.slices[-1].stop) if self.slices else 0
+        out = np.zeros((situation.count, adjoint.shape[1], P))
         for effect, part, index in self._elastic:
             torques = solution.onset if isinstance(effect, Switching) else rest.torques
             if isinstance(effect, LinearElastic):
                 torques = torques + rest.weights
             found = effect.elongation(torques[:, index], situation, values[part])
             out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
-        for part, index in self._geometric:
-            out[:, :, part] += adjoint[:, :, index]
+        for shifted, part, index in self._geometric:
+            out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(situation)
         for moving, part, index in self._imposed:
             out[:, :, part] += adjoint[:, :, index] @ moving.shifts(situation)
+        return out
+
+    def pose_sensitivities(self, stood: Standing, values: Array) -> Array:
+        """(N, 6, P) exact derivative of where the point stands and how it is turned, base axes."""
+        adjoint = _adjoint(stood.rest, self._soft(values), stood.rest.screws.jacobian)
+        out = self._standing(stood, values, adjoint)
+        self._add_loads(out, stood, adjoint)
         return out
 
     def sensitivities(self, solution: Solution, values: Array) -> Array:
         """(N, 3, P) exact derivative of the readings by the internal parameter values."""
         situation, rest, before = solution.situation, solution.rest, solution.unloaded
         soft = self._soft(values)
-        adjoint = _adjoint(rest, soft)  # (N, 3, n_z) = J N⁻¹
+        adjoint = _adjoint(rest, soft, rest.screws.linear_jacobian)  # (N, 3, n_z) = J N⁻¹
         weighs = self.mechanism.chain.weighs
-        adjoint_0 = _adjoint(before, soft) if weighs else before.screws.linear_jacobian
+        J_0 = before.screws.linear_jacobian
+        adjoint_0 = _adjoint(before, soft, J_0) if weighs else J_0
         out = self._standing(solution, values, adjoint)
         for effect, part, index in self._elastic:
             if isinstance(effect, LinearElastic) and weighs:
                 found = effect.elongation(before.weights[:, index], situation, values[part])
                 out[:, :, part] -= adjoint_0[:, :, index] @ found.by_parameter
-        for part, index in self._geometric:
-            out[:, :, part] -= adjoint_0[:, :, index]
+        for shifted, part, index in self._geometric:
+            out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(situation)
+        self._add_loads(out, solution, adjoint)
+        out = solution.readings.matrix @ out
+        for part, columns in solution.readings.columns:
+            out[:, :, part] += columns
+        return np.swapaxes(situation.reading_axes, -1, -2) @ out
+
+    def _add_loads(self, out: Array, solution: Standing, adjoint: Array) -> None:
+        """Add the derivatives (N, k, P) by the parameters of the load errors."""
+        situation, rest = solution.situation, solution.rest
+        if not solution.loads.columns:
+            return
         loaded = rest.screws.at(situation.force_point)
-        per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, 3, 6)
+        per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, k, 6)
         for part, columns in solution.loads.columns:
             turned = np.concatenate(
                 [
@@ -266,34 +307,11 @@ class Assembly:
                 axis=1,
             )
             out[:, :, part] += per_wrench @ turned
-        out = solution.readings.matrix @ out
-        for part, columns in solution.readings.columns:
-            out[:, :, part] += columns
-        return np.swapaxes(situation.reading_axes, -1, -2) @ out
 
 
 @dataclass(frozen=True, eq=False)
-class Misread:
-    """Values after a series of misreadings, and their derivatives.
-
-    Attributes
-    ----------
-    value
-        (N, d) what comes out.
-    matrix
-        (d, d) derivative of the output by the input.
-    columns
-        For each effect its part of the vector of values, and (N, d, p) derivatives.
-    """
-
-    value: Array
-    matrix: Array
-    columns: tuple[tuple[slice, Array], ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """A solved set of readings; what `Assembly.sensitivities` builds on.
+class Standing:
+    """Where the loaded arm stands.
 
     Attributes
     ----------
@@ -301,20 +319,34 @@ class Solution:
         The readings.
     wrench
         (N, 6) true load, base axes [N, N·m].
-    loads, readings
-        What the instruments made of load and displacement.
-    unloaded, rest
-        Equilibrium before the load, under the arm's own weight, and under the load.
+    loads
+        What the force sensor made of the load.
     onset
         (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or N].
+    rest
+        Equilibrium under load and weight.
     """
 
     situation: Situation
     wrench: Array
     loads: Misread
-    unloaded: Equilibrium
     onset: Array
     rest: Equilibrium
+
+
+@dataclass(frozen=True, eq=False)
+class Solution(Standing):
+    """A solved set of displacements; what `Assembly.sensitivities` builds on.
+
+    Attributes
+    ----------
+    unloaded
+        Equilibrium before the load, under the arm's own weight.
+    readings
+        What the instrument made of the displacement.
+    """
+
+    unloaded: Equilibrium
     readings: Misread
 
     @property
@@ -324,38 +356,11 @@ class Solution:
         return np.asarray(np.einsum("nij,nj->ni", axes, self.readings.value))
 
 
-def _misread(
-    effects: list[tuple[Misreading, slice]], situation: Situation, values: Array, x: Array
-) -> Misread:
-    matrix = np.eye(x.shape[-1])
-    columns: list[tuple[slice, Array]] = []
-    for effect, part in effects:
-        own = effect.columns(x, situation)
-        step = effect.matrix(values[part])
-        x = x + own @ values[part]
-        columns = [(earlier, step @ found) for earlier, found in columns]
-        columns.append((part, own))
-        matrix = step @ matrix
-    return Misread(x, matrix, tuple(columns))
-
-
-def _to_sensor(situation: Situation) -> Array:
-    """(N, 6) the reported wrench in sensor axes."""
-    return _rotate(np.swapaxes(situation.rotation, -1, -2), situation.wrench)
-
-
-def _rotate(rotation: Array, wrench: Array) -> Array:
-    force = np.einsum("nij,nj->ni", rotation, wrench[:, :3])
-    moment = np.einsum("nij,nj->ni", rotation, wrench[:, 3:])
-    return np.concatenate([force, moment], axis=1)
-
-
-def _adjoint(rest: Equilibrium, soft: Index) -> Array:
-    """(N, 3, n_z) J (I − ∂e/∂z)⁻¹ at an equilibrium, solved in the soft coordinates only.
+def _adjoint(rest: Equilibrium, soft: Index, J: Array) -> Array:
+    """(N, k, n_z) J (I − ∂e/∂z)⁻¹ at an equilibrium, solved in the soft coordinates only.
 
     With Y = J N⁻¹: Y = J + Y ∂e/∂z, and ∂e/∂z has rows of soft coordinates only.
     """
-    J = rest.screws.linear_jacobian
     if not len(soft):
         return J
     rows = rest.feedback[..., soft, :]

@@ -106,7 +106,6 @@ def test_a_pose_with_zero_rows_only_is_noted(tmp_path: Path) -> None:
         (f"{HEAD}\nA,0,0,0,0,1,0,0\nA,0,1,0,0,2,0,0\nB,0,1,0,0,1,0,0\n",
          ["line 4", "column x[mm]", "'B'", "fx = fy = fz = 0", "dx dy dz"]),
         (f"{HEAD},use\nA,0,0,0,0,1,0,0,0\nA,0,1,0,0,2,0,0,1\n", ["line 3", "'A'"]),
-        (f"{HEAD}\nA,0,0,0,0,1,0,0\nA,0,0,0,0,2,0,0\n", ["no row has a load"]),
         (f"{HEAD},use\nA,0,0,0,0,1,0,0,1\nA,0,1,0,0,2,0,0,0\n", ["every loaded row is masked"]),
         (f"{HEAD}\nA,0,0,0,0,1,0,0\nA,1,1,0,0,2,0,0\n",
          ["line 3", "q1", "1 deg", "0 deg in line 2"]),

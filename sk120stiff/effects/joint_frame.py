@@ -1,0 +1,78 @@
+"""The frame of a joint sits elsewhere, and turned, against the drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.effects.base import Geometric
+from sk120stiff.effects.geometry import length_error
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.anatomy import arm_joint, arm_joints
+
+
+@dataclass(frozen=True)
+class JointFrame(Geometric):
+    """Six small errors of the fixed transform before a joint.
+
+    Of a whole arm many of them cannot be told apart: along parallel axes only sums show, the first
+    joint's are the tracker's frame, the last one's the marker's place.
+    """
+
+    name: ClassVar[str] = "joint_frame"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = "T_true = T_stated * (shift, turn)"
+    axes: ClassVar[str] = "axes of the joint's frame in the URDF"
+    needs: ClassVar[str] = "positions"
+    only_absolute: ClassVar[bool] = True
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Shift along and turn about the three axes of the joint's frame."""
+        shifts = (
+            length_error(
+                axis, typical=3e-4, scale=self.scale,
+                meaning=f"true minus stated origin of the joint's frame along its {axis}",
+            )
+            for axis in "xyz"
+        )  # fmt: skip
+        turns = (
+            ParameterSpec(
+                f"r{axis}", "rad", "rad", plausible=0.05, typical=3e-4,
+                meaning=f"turn of the joint's frame about its {axis}, true minus stated",
+            )
+            for axis in "xyz"
+        )  # fmt: skip
+        return (*shifts, *turns)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The frame of {self.where} sits elsewhere than the URDF states."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every joint on the way to the tool that moves."""
+        return tuple(
+            joint.name
+            for joint in arm_joints(robot)
+            if joint.actuated is not None or joint.name in robot.dependent
+        )
+
+    def applies_to(self, situation: Situation) -> bool:
+        """Displacements hardly show it."""
+        return situation.absolute
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Three rigid slides and three rigid turns where the joint's frame is."""
+        index = arm_joint(robot, self.where).index
+        placement = robot.mechanism().chain.placements[index]
+        return tuple(
+            VirtualJoint(f"{self.id}.{spec.name}", index - 1, placement, axis, revolute=k > 2)
+            for k, (spec, axis) in enumerate(
+                zip(self.parameters, np.tile(np.eye(3), (2, 1)), strict=True)
+            )
+        )

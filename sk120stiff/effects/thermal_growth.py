@@ -1,0 +1,84 @@
+"""A link grows as it gets warmer, or as time passes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Imposed, Options, scale_of
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.anatomy import arm_joint, arm_links
+
+
+@dataclass(frozen=True)
+class ThermalGrowth(Imposed):
+    """A link's length goes with the temperature, or with time where no temperature was read."""
+
+    thermal: bool = False
+    name: ClassVar[str] = "thermal_growth"
+    place: ClassVar[str] = "a link"
+    equation: ClassVar[str] = "length_true = length + g * (temperature or time)"
+    axes: ClassVar[str] = "the line from the link's joint to the next"
+    needs: ClassVar[str] = "positions with a column temperature[degC] or time[s]"
+    only_absolute: ClassVar[bool] = True
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """By the temperature where there is one, else by the clock."""
+        return cls(where, scale_of(robot), options.thermal)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """What the units of the parameters tell."""
+        return Options(thermal="m/K" in parameters.values())
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Growth per kelvin or per second; steel of 1 m grows by 11 µm per kelvin."""
+        unit, typical = ("m/K", 1e-5) if self.thermal else ("m/s", 1e-8)
+        return (
+            ParameterSpec(
+                "growth", unit, unit, plausible=10 * typical * self.scale,
+                typical=typical * self.scale,
+                meaning="growth of the link "
+                + ("per kelvin" if self.thermal else "per second of the clock"),
+            ),
+        )  # fmt: skip
+
+    def sentence(self) -> str:
+        """What happens."""
+        cause = "as it gets warmer" if self.thermal else "as time passes"
+        return f"The link {self.where} grows {cause}."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every link with a length."""
+        return tuple(joint.link for joint in arm_links(robot))
+
+    def _clock(self, situation: Situation) -> Array | None:
+        return situation.temperature if self.thermal else situation.time
+
+    def applies_to(self, situation: Situation) -> bool:
+        """The file must hold what it goes with."""
+        clock = self._clock(situation)
+        return situation.absolute and clock is not None and bool(np.ptp(clock) > 0.0)
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """A rigid slide along the link, at its far end."""
+        link = arm_joint(robot, self.where)
+        placement = np.eye(4)
+        placement[:3, 3] = link.along
+        axis = link.directions()[0]
+        return (VirtualJoint(f"{self.id}.length", link.index, placement, axis, revolute=False),)
+
+    def shifts(self, situation: Situation) -> Array:
+        """Temperature or time of each reading."""
+        clock = self._clock(situation)
+        elapsed = np.zeros(situation.count) if clock is None else clock
+        return np.asarray(elapsed[:, None, None])

@@ -1,0 +1,72 @@
+"""Where the tracker stands: the axes in which positions are read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Viewpoint
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+from sk120stiff.robot.kinematics.rotation import left_jacobian, rotation_of
+
+
+@dataclass(frozen=True)
+class TrackerFrame(Viewpoint):
+    """Turn and shift of the base frame as the tracker sees it."""
+
+    name: ClassVar[str] = "tracker_frame"
+    place: ClassVar[str] = "tracker"
+    equation: ClassVar[str] = "x_read = R(r) x_base + t"
+    axes: ClassVar[str] = "axes of the tracker"
+    needs: ClassVar[str] = "positions"
+    only_absolute: ClassVar[bool] = True
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Origin of the base frame and rotation vector of its axes, as the tracker sees them."""
+        shifts = (
+            ParameterSpec(
+                axis, "m", "m", plausible=200.0, typical=1e-3,
+                meaning=f"origin of the base frame along {axis} of the tracker",
+            )
+            for axis in "xyz"
+        )  # fmt: skip
+        turns = (
+            ParameterSpec(
+                f"r{axis}", "rad", "rad", plausible=6.3, typical=1e-3,
+                meaning=f"turn of the base frame: component {axis} of the rotation vector",
+            )
+            for axis in "xyz"
+        )  # fmt: skip
+        return (*shifts, *turns)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The tracker stands elsewhere, and turned, against the base frame."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """The instrument."""
+        return ("tracker",)
+
+    def applies_to(self, situation: Situation) -> bool:
+        """Displacements have their axes from the file."""
+        return situation.absolute
+
+    def frame(self, values: Array) -> tuple[Array, Array]:
+        """See `Viewpoint.frame`."""
+        return rotation_of(values[3:]), values[:3]
+
+    def columns(self, turned: Array, values: Array) -> Array:
+        """A change of the rotation vector turns about J_l(r) dr (Chirikjian 2012, ch. 10)."""
+        out = np.zeros((len(turned), 6, 6))
+        out[:, :3, :3] = np.eye(3)
+        J = left_jacobian(values[3:])
+        out[:, :3, 3:] = np.cross(J.T[None], turned[:, None, :]).swapaxes(1, 2)
+        out[:, 3:, 3:] = J
+        return out

@@ -1,0 +1,67 @@
+"""A gear turns by a little more or less than its ratio, periodically with the joint's angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Geometric
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+
+HARMONICS = (1, 2)  # once per turn: eccentric; twice: oval
+
+
+@dataclass(frozen=True)
+class TransmissionError(Geometric):
+    """The joint stands off its reading by waves over its angle: a gear or a disc is not round."""
+
+    name: ClassVar[str] = "transmission_error"
+    place: ClassVar[str] = "a joint that turns"
+    equation: ClassVar[str] = "q_true = q + sum over k of a_k sin(k q) + b_k cos(k q)"
+    axes: ClassVar[str] = "the axis of the joint itself"
+    needs: ClassVar[str] = "positions"
+    only_absolute: ClassVar[bool] = True
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Amplitudes of sine and cosine, once and twice per turn of the joint."""
+        return tuple(
+            ParameterSpec(
+                f"{wave}_{k}", "rad", "rad", plausible=5e-3, typical=1e-4,
+                meaning=f"true minus reported angle in proportion to {wave}({k} q)",
+            )
+            for k in HARMONICS
+            for wave in ("sin", "cos")
+        )  # fmt: skip
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"{self.where} stands off its reading by waves over its turn."
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every actuated joint that turns."""
+        return tuple(
+            joint
+            for joint, slides in zip(robot.actuated, robot.prismatic, strict=True)
+            if not slides
+        )
+
+    def applies_to(self, situation: Situation) -> bool:
+        """Displacements hardly show it."""
+        return situation.absolute
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """The joint itself."""
+        return (self.where,)
+
+    def shifts(self, situation: Situation) -> Array:
+        """Waves over the reported angle."""
+        q = situation.a[:, situation.robot.actuated.index(self.where)]
+        waves = [wave(k * q) for k in HARMONICS for wave in (np.sin, np.cos)]
+        return np.stack(waves, axis=-1)[:, None, :]

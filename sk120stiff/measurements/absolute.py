@@ -1,0 +1,274 @@
+"""Readings of where a marker stands, with what the file says of frames, markers and payload."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from sk120stiff import units
+from sk120stiff.arrays import Array, Index
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.channels import Channels
+from sk120stiff.measurements.columns import (
+    ANCHORS,
+    DIRECTIONS,
+    POSITIONS,
+    QUATERNION,
+    ROTATION_VECTOR,
+    UNCERTAINTIES,
+    Roles,
+)
+from sk120stiff.measurements.rows import quantities
+from sk120stiff.measurements.table import Table
+
+if TYPE_CHECKING:
+    from sk120stiff.measurements.settings import SettingsFile
+
+SAME_POSE = 1e-3  # rad or m: encoder values of one pose that differ by less are of one pose
+
+
+@dataclass(frozen=True, eq=False)
+class Absolute:
+    """What N rows say of where markers stand.
+
+    Attributes
+    ----------
+    channels
+        The readings themselves.
+    frame
+        ``"base"``, or ``"unknown"``: the instrument's own axes, registered by the fit.
+    point
+        (N, 3) marker of each row in the tool frame as stated [m].
+    fit_point
+        The marker's place is known only roughly.
+    markers
+        N names of markers.
+    payload, payload_point, fit_payload
+        (N,) mass [kg] on the tool, (3,) where it hangs in the tool frame [m], and whether mass and
+        centre are in doubt.
+    temperature
+        (N,) [degC], or None.
+    series
+        N labels of what may have changed in between, or None.
+    gravity
+        (3,) acceleration in base axes [m/s²] where the file says it.
+    """
+
+    channels: Channels
+    frame: Literal["base", "unknown"]
+    point: Array
+    fit_point: bool
+    markers: tuple[str, ...]
+    payload: Array
+    payload_point: Array = field(default_factory=lambda: np.zeros(3))
+    fit_payload: bool = False
+    temperature: Array | None = None
+    series: tuple[str, ...] | None = None
+    gravity: Array | None = None
+
+    def select(self, index: Index) -> Absolute:
+        """Some of the rows."""
+
+        def cut(labels: tuple[str, ...] | None) -> tuple[str, ...] | None:
+            return None if labels is None else tuple(labels[i] for i in index)
+
+        return dataclasses.replace(
+            self,
+            channels=self.channels.select(index),
+            point=self.point[index],
+            markers=cut(self.markers) or (),
+            payload=self.payload[index],
+            temperature=None if self.temperature is None else self.temperature[index],
+            series=cut(self.series),
+        )
+
+    def with_channels(self, channels: Channels) -> Absolute:
+        """The same rows with other readings."""
+        return dataclasses.replace(self, channels=channels)
+
+    @property
+    def groups(self) -> tuple[str, ...] | None:
+        """N labels of series and markers whose places may differ; None where all is one.
+
+        Markers whose places are known need no group of their own.
+        """
+        apart = self.markers if self.fit_point and len(set(self.markers)) > 1 else None
+        if self.series is None or apart is None:
+            return self.series or apart
+        return tuple(f"{a}/{b}" for a, b in zip(self.series, apart, strict=True))
+
+
+def is_absolute(file: SettingsFile, roles: Roles, loaded: bool, blank: bool) -> bool:
+    """Are these positions to be predicted as such, not as differences to a zero reading?"""
+    settings = file.settings
+    point = settings.point is not None and settings.point.fit
+    told = settings.position is not None and settings.position.frame == "unknown"
+    if roles.absolute or told or point or settings.points or settings.payload:
+        return True
+    return roles.measured == POSITIONS and (not loaded or blank)
+
+
+def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
+    """Channels and what stands beside them.
+
+    Raises
+    ------
+    InputError
+        A group of columns in part, an unknown marker, a direction that is none.
+    """
+    settings, count = file.settings, len(table.lines)
+    channels = _channels(table, roles, file)
+    markers = table.cells["marker"] if "marker" in roles.has else ("",) * count
+    fit_point = settings.point is not None and settings.point.fit
+    point = np.zeros((count, 3))
+    if settings.point is not None:
+        point[:] = settings.point.in_metres(file.place("point.unit"))
+    if settings.points:
+        known = {
+            name: entry.in_metres(file.place(f"points.{name}.unit"))
+            for name, entry in settings.points.items()
+        }
+        if "marker" not in roles.has and len(known) > 1:
+            raise InputError(
+                "several points are stated, and no column says which one was read",
+                where=f"{table.path}, line {table.header_line}",
+                remedy="Add a column marker with one of: " + ", ".join(known) + ".",
+            )
+        if "marker" not in roles.has:
+            markers = (next(iter(known)),) * count
+        point = _places(markers, known, table)
+        fit_point = fit_point or any(entry.fit for entry in settings.points.values())
+    payload = np.zeros(count)
+    if "payload" in roles.has:
+        payload = _payload(table)
+    hung = np.zeros(3)
+    if settings.payload is not None and settings.payload.point is not None:
+        hung = np.array(settings.payload.point.in_metres(file.place("payload.point.unit")))
+    gravity = None
+    if settings.gravity is not None:
+        gravity = np.zeros(3) if settings.gravity == 0 else np.array(settings.gravity, dtype=float)
+    return Absolute(
+        channels=channels,
+        frame="base" if settings.position is None else settings.position.frame,
+        point=point,
+        fit_point=fit_point,
+        markers=markers,
+        payload=payload,
+        payload_point=hung,
+        fit_payload=settings.payload is not None and settings.payload.fit,
+        temperature=_temperature(table) if "temperature" in roles.has else None,
+        series=table.cells["series"] if "series" in roles.has else None,
+        gravity=gravity,
+    )
+
+
+def _places(markers: tuple[str, ...], known: Mapping[str, object], table: Table) -> Array:
+    for row, name in enumerate(markers):
+        if name not in known:
+            raise InputError(
+                f"the marker {name!r} has no place",
+                where=table.place("marker", row),
+                remedy=f"Markers under points are: {', '.join(known)}.",
+            )
+    return np.array([known[name] for name in markers], dtype=float)
+
+
+def _payload(table: Table) -> Array:
+    """(N,) [kg]; a blank cell is no payload."""
+    if table.column_units["payload"] != "kg":
+        raise InputError(
+            "the column 'payload' is a mass, in kg",
+            where=table.place("payload"),
+            remedy="Write its header as payload[kg].",
+        )
+    mass = table.numbers("payload", allow_blank=True)
+    return np.where(np.isfinite(mass), mass, 0.0)
+
+
+def _temperature(table: Table) -> Array:
+    """(N,) [degC]; only differences matter, so kelvin do as well."""
+    unit = table.column_units["temperature"]
+    if unit not in ("degC", "°C", "C", "K"):
+        raise InputError(
+            f"a temperature in {unit!r}" if unit else "the column 'temperature' has no unit",
+            where=table.place("temperature"),
+            remedy="Write its header as temperature[degC].",
+        )
+    return table.numbers("temperature")
+
+
+def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
+    found: dict[str, Array] = {}
+    if roles.has & set(POSITIONS):
+        found["position"] = np.column_stack(
+            [table.quantity(name, "length", allow_blank=True) for name in POSITIONS]
+        )
+    rotation = _rotation(table, roles)
+    if rotation is not None:
+        found["rotation"] = rotation
+    if "l" in roles.has:
+        found["distance"] = table.quantity("l", "length", allow_blank=True)
+        found["anchor"] = quantities(table, ANCHORS, "length")
+    if "d" in roles.has:
+        found["shift"] = table.quantity("d", "length", allow_blank=True)
+        along = np.column_stack([table.numbers(name, allow_blank=True) for name in DIRECTIONS])
+        length = np.linalg.norm(along, axis=1)
+        bad = np.isfinite(found["shift"]) & ~(length > 0.0)
+        if bad.any():
+            row = int(np.argmax(bad))
+            raise InputError(
+                "this reading has no direction",
+                where=table.place("ux", row),
+                remedy="Write the direction it was read along as ux, uy, uz.",
+            )
+        found["along"] = along / np.where(length > 0.0, length, 1.0)[:, None]
+    sigma, noise = {}, file.settings.noise
+    if noise.sigma is not None:
+        size = float(units.to_si(noise.sigma, noise.unit, "length", where=file.place("noise.unit")))
+        sigma = dict.fromkeys(("position", "distance", "shift"), size)
+    if noise.rotation is not None:
+        sigma["rotation"] = float(
+            units.to_si(
+                noise.rotation, noise.rotation_unit, "angle",
+                where=file.place("noise.rotation_unit"),
+            )
+        )  # fmt: skip
+    rows = quantities(table, UNCERTAINTIES, "length") if "sx" in roles.has else None
+    return Channels(**found, sigma=sigma, sigma_of_rows=rows)
+
+
+def _rotation(table: Table, roles: Roles) -> Array | None:
+    """(N, 3, 3); NaN where a cell of a row is blank."""
+    if roles.has & set(QUATERNION):
+        q = np.column_stack([table.numbers(name, allow_blank=True) for name in QUATERNION])
+        length = np.linalg.norm(q, axis=1)
+        bad = np.isfinite(length) & (np.abs(length - 1.0) > 1e-2)
+        if bad.any():
+            raise InputError(
+                f"a quaternion of length {length[bad][0]:.3g}",
+                where=table.place("qw", int(np.argmax(bad))),
+                remedy="Write unit quaternions, qw first.",
+            )
+        q = q / length[:, None]
+        vector = None
+    elif roles.has & set(ROTATION_VECTOR):
+        vector = np.column_stack(
+            [table.quantity(name, "angle", allow_blank=True) for name in ROTATION_VECTOR]
+        )
+        q = vector
+    else:
+        return None
+    out = np.full((len(q), 3, 3), np.nan)
+    known = np.isfinite(q).all(axis=1)
+    turn = (
+        Rotation.from_quat(np.roll(q[known], -1, axis=1))  # scalar last there
+        if vector is None
+        else Rotation.from_rotvec(vector[known])
+    )
+    out[known] = turn.as_matrix()
+    return out

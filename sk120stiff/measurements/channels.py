@@ -1,0 +1,187 @@
+"""A reading is a projection: single numbers, each an axis, a turn or a distance of one prediction.
+
+A row of a file may hold a position, an orientation, a distance to a fixed point, a dial gauge along
+a direction; any cell may be blank. As channels they are one flat vector of M numbers, and whatever
+estimates parameters from them sees a gap (M,) and its derivative (M, P) alone.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.errors import InputError
+
+Kind = Literal["position", "rotation", "distance", "shift"]
+KINDS: tuple[Kind, ...] = ("position", "rotation", "distance", "shift")
+WIDTH = {"position": 3, "rotation": 3, "distance": 1, "shift": 1}
+UNITS = {"position": "m", "rotation": "rad", "distance": "m", "shift": "m"}
+
+
+@dataclass(frozen=True, eq=False)
+class Channels:
+    """What N rows hold; NaN where a cell is blank, None where no row has such a reading.
+
+    Attributes
+    ----------
+    position
+        (N, 3) where the marker stands, axes of the instrument [m].
+    rotation
+        (N, 3, 3) axes of the tool in those of the instrument.
+    distance, anchor
+        (N,) distance of the marker from a fixed point (N, 3), axes of the instrument [m].
+    shift, along
+        (N,) displacement by the load along a direction (N, 3), axes of the displacements [m].
+    sigma
+        Standard uncertainty of each kind of channel as stated [m or rad].
+    sigma_of_rows
+        (N, 3) standard uncertainty of each position [m], or None.
+    """
+
+    position: Array | None = None
+    rotation: Array | None = None
+    distance: Array | None = None
+    anchor: Array | None = None
+    shift: Array | None = None
+    along: Array | None = None
+    sigma: dict[str, float] = dataclasses.field(default_factory=dict)
+    sigma_of_rows: Array | None = None
+
+    def __post_init__(self) -> None:
+        if not self.present:
+            raise InputError("there is no reading")
+        if self.along is not None and self.shift is not None:
+            length = np.linalg.norm(self.along, axis=1)
+            if np.any(np.isfinite(self.shift) & ~(np.abs(length - 1.0) < 1e-6)):
+                raise InputError("a direction of a reading is no unit vector", where="ux uy uz")
+
+    @property
+    def count(self) -> int:
+        """Number of rows N."""
+        return len(getattr(self, self.present[0]))
+
+    @property
+    def present(self) -> tuple[Kind, ...]:
+        """Kinds of channels that there are."""
+        return tuple(kind for kind in KINDS if getattr(self, kind) is not None)
+
+    def held(self, kind: Kind) -> Mask:
+        """(N, w) channels of a kind that were read, w of them in a row."""
+        values: Array = getattr(self, kind)
+        known: Mask = np.isfinite(values.reshape(len(values), -1))
+        if kind == "rotation":
+            known = np.broadcast_to(np.all(known, axis=1, keepdims=True), (len(values), 3))
+        return known
+
+    @property
+    def rows(self) -> Index:
+        """(M,) row of every channel, kind by kind."""
+        return np.concatenate([np.nonzero(self.held(kind))[0] for kind in self.present])
+
+    @property
+    def kinds(self) -> tuple[slice, ...]:
+        """Part of the flat vector that each of the `present` kinds takes."""
+        ends = np.cumsum([0, *(int(self.held(kind).sum()) for kind in self.present)])
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
+
+    @property
+    def filled(self) -> Mask:
+        """(N,) rows that hold any reading."""
+        found = np.zeros(self.count, dtype=np.bool_)
+        found[self.rows] = True
+        return found
+
+    def select(self, index: Index) -> Channels:
+        """The channels of some rows."""
+        cut: dict[str, Any] = {
+            name: None if getattr(self, name) is None else getattr(self, name)[index]
+            for name in (
+                "position", "rotation", "distance", "anchor", "shift", "along", "sigma_of_rows",
+            )
+        }  # fmt: skip
+        return dataclasses.replace(self, **cut)
+
+    def without(self, hidden: Mask) -> Channels:
+        """The same rows, those marked (N,) blank in every channel."""
+        blank: dict[str, Any] = {}
+        for kind in self.present:
+            values = np.array(getattr(self, kind))
+            values[hidden] = np.nan
+            blank[kind] = values
+        return dataclasses.replace(self, **blank)
+
+    def project(
+        self, position: Array, rotation: Array, columns: Array, moved: Array, moving: Array
+    ) -> tuple[Array, Array]:
+        """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction.
+
+        Parameters
+        ----------
+        position, rotation, columns
+            (N, 3), (N, 3, 3) predicted poses and (N, 6, P) their derivative, axes of the
+            instrument.
+        moved, moving
+            (N, 3) predicted displacement by the load and (N, 3, P) its derivative, axes of the
+            displacements; looked at only where there are shifts.
+        """
+        found: list[tuple[Array, Array]] = []
+        if self.position is not None:
+            found.append((self.position - position, columns[:, :3]))
+        if self.rotation is not None:
+            found.append(_turned(self.rotation, rotation, columns[:, 3:]))
+        if self.distance is not None and self.anchor is not None:
+            away = position - self.anchor
+            far = np.linalg.norm(away, axis=1)
+            slope = np.einsum("ni,nip->np", away / far[:, None], columns[:, :3])
+            found.append(((self.distance - far)[:, None], slope[:, None]))
+        if self.shift is not None and self.along is not None:
+            gap = self.shift - np.einsum("ni,ni->n", self.along, moved)
+            found.append((gap[:, None], np.einsum("ni,nip->np", self.along, moving)[:, None]))
+        held = [self.held(kind) for kind in self.present]
+        return (
+            np.concatenate([gap[known] for (gap, _), known in zip(found, held, strict=True)]),
+            np.concatenate([slope[known] for (_, slope), known in zip(found, held, strict=True)]),
+        )
+
+    def scale(self, kind: Kind) -> Array:
+        """(M_kind,) relative standard uncertainty of the channels of a kind [m or rad]."""
+        held = self.held(kind)
+        if kind == "position" and self.sigma_of_rows is not None:
+            return self.sigma_of_rows[held]
+        return np.full(int(held.sum()), self.sigma.get(kind, 1.0))
+
+    def stated(self, kind: Kind) -> bool:
+        """Does the file say how uncertain the readings of a kind are?"""
+        return kind in self.sigma or (kind == "position" and self.sigma_of_rows is not None)
+
+
+def _turned(measured: Array, predicted: Array, columns: Array) -> tuple[Array, Array]:
+    """Rotation vector from predicted to measured axes, and minus its derivative.
+
+    log(exp(g) exp(-d)) = g - (1 + [g]/2 + ...) d.
+    """
+    gap = small_rotation(measured @ np.swapaxes(predicted, -1, -2))
+    half = 0.5 * np.cross(gap[:, None], np.swapaxes(columns, 1, 2))
+    return gap, columns + np.swapaxes(half, 1, 2)
+
+
+def small_rotation(matrix: Array) -> Array:
+    """(N, 3) rotation vector of rotations (N, 3, 3) up to half a turn; NaN stays NaN."""
+    skew = np.stack(
+        [
+            matrix[:, 2, 1] - matrix[:, 1, 2],
+            matrix[:, 0, 2] - matrix[:, 2, 0],
+            matrix[:, 1, 0] - matrix[:, 0, 1],
+        ],
+        axis=1,
+    )
+    sine = 0.5 * np.linalg.norm(skew, axis=1)
+    cosine = 0.5 * (np.trace(matrix, axis1=1, axis2=2) - 1.0)
+    angle = np.arctan2(sine, cosine)
+    factor = np.where(sine > 1e-12, angle / np.maximum(2.0 * sine, 1e-300), 0.5)
+    return skew * factor[:, None]

@@ -1,0 +1,94 @@
+"""Where a marker stands and how the tool is turned, as an instrument with axes of its own sees it.
+
+x = S(R(p) X(z) + t), with X the marker in base axes at the equilibrium z under weight, payload and
+load, R and t the instrument's frame (`Viewpoint`), and S what it misreads (`ReadingError`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import ReadingError, Situation, Viewpoint
+from sk120stiff.model.assembly import Assembly
+from sk120stiff.model.misread import misread
+from sk120stiff.model.model import Model
+
+BLOCK = 512  # readings solved together; memory stays linear in their number
+BUDGET = 2_000_000  # numbers in one (block, n, n) array
+
+
+@dataclass(frozen=True, eq=False)
+class PoseReading:
+    """Poses as read.
+
+    Attributes
+    ----------
+    position, rotation
+        (N, 3) marker [m] and (N, 3, 3) tool axes, axes of the instrument.
+    columns
+        (N, 6, P) derivative of position and orientation by the internal parameter values, in axes
+        of the instrument; no parameters where nobody asked.
+    """
+
+    position: Array
+    rotation: Array
+    columns: Array
+
+
+def read_poses(
+    model: Model, situation: Situation, values: Array | None = None, *, derivative: bool = False
+) -> PoseReading:
+    """Predicted positions and orientations of N readings, in blocks.
+
+    Raises
+    ------
+    Refusal
+        The springs cannot hold the arm's weight or a load.
+    """
+    given = model.values if values is None else values
+    parts = [
+        _read(model.assembly, part, given, derivative)
+        for part in _blocks(situation, model.assembly.mechanism.n)
+    ]
+    return PoseReading(
+        np.concatenate([part.position for part in parts]),
+        np.concatenate([part.rotation for part in parts]),
+        np.concatenate([part.columns for part in parts]),
+    )
+
+
+def _blocks(situation: Situation, n: int) -> Iterator[Situation]:
+    size = max(1, min(BLOCK, BUDGET // n**2))
+    for k in range(0, situation.count, size):
+        yield situation.rows(slice(k, k + size))
+
+
+def _read(assembly: Assembly, situation: Situation, values: Array, derivative: bool) -> PoseReading:
+    stood = assembly.stand(situation, values)
+    screws = stood.rest.screws
+    R, t = np.eye(3), np.zeros(3)
+    views = [
+        (effect, part)
+        for effect, part in zip(assembly.effects, assembly.slices, strict=True)
+        if isinstance(effect, Viewpoint)
+    ]
+    for effect, part in views:
+        own, shift = effect.frame(values[part])
+        R, t = own @ R, own @ t + shift
+    turned = screws.position @ R.T
+    said = misread(assembly.of(ReadingError), situation, values, turned + t)
+    P = len(values) if derivative else 0
+    columns = np.zeros((situation.count, 6, P))
+    if derivative:
+        body = assembly.pose_sensitivities(stood, values)
+        columns[:, :3], columns[:, 3:] = R @ body[:, :3], R @ body[:, 3:]
+        for effect, part in views:
+            columns[:, :, part] += effect.columns(turned, values[part])
+        columns[:, :3] = said.matrix @ columns[:, :3]
+        for part, own in said.columns:
+            columns[:, :3, part] += own
+    return PoseReading(said.value, R @ screws.rotation, columns)
