@@ -9,18 +9,11 @@ from sk120stiff.model.file import (
     robot_of_model,
     write_model,
 )
-from sk120stiff.model.frame import parameter_frame
 from sk120stiff.model.holding import held_loads, warn_of_far_bend
 from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
 from sk120stiff.model.loaded_uncertainty import LoadedUncertainty, loaded_uncertainty
-from sk120stiff.model.model import (
-    ON_BOUND,
-    TOGETHER,
-    UNSEEN,
-    Model,
-    Parameter,
-    joint_spring_model,
-)
+from sk120stiff.model.model import Model, joint_spring_model
+from sk120stiff.model.parameter import ON_BOUND, TOGETHER, UNSEEN, Parameter, parameter_frame
 from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty
 from sk120stiff.model.typical import typical_model, typical_parameters
 from sk120stiff.model.uncertainty import Remainder, Uncertainty

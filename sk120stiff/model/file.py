@@ -30,7 +30,8 @@ from sk120stiff.effects import CATALOGUE, Catalogue, comment_lines
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import parse_yaml, read_text, write_atomically
 from sk120stiff.model.former import translated
-from sk120stiff.model.model import Model, Parameter
+from sk120stiff.model.model import Model
+from sk120stiff.model.parameter import Parameter
 from sk120stiff.model.typical import typical_model
 from sk120stiff.model.uncertainty_file import (
     ModelDumper,

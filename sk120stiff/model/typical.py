@@ -8,7 +8,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import effect
-from sk120stiff.model.model import Model, Parameter, joint_spring_model
+from sk120stiff.model.model import Model, joint_spring_model
+from sk120stiff.model.parameter import Parameter
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joints, arm_length
 

@@ -6,11 +6,11 @@ import math
 import re
 
 import numpy as np
+from lxml.etree import _Element as Element
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
-from sk120stiff.robot.urdf.xml_tree import Element
 
 _NUMBER = re.compile(r"[+-]?(?:\d{1,400}\.?\d{0,400}|\.\d{1,400})(?:[eE][+-]?\d{1,6})?\Z", re.ASCII)
 _NOT_FINITE = re.compile(r"[+-]?(?:inf|infinity|nan)\Z", re.IGNORECASE)
@@ -39,7 +39,7 @@ class Fields:
 
     def place(self, element: Element) -> str:
         """Line and name for messages."""
-        return at(element.line, self.kind, self.name)
+        return at(element.sourceline, self.kind, self.name)
 
     def warn(self, code: str, element: Element, message: str) -> None:
         """Note a repair at an element."""
@@ -150,10 +150,10 @@ class Fields:
     def placement(self, parent: Element) -> Array:
         """(4, 4) placement by the `<origin>` of an element, identity where there is none [m]."""
         T = np.eye(4)
-        origin = parent.first("origin")
+        origin = parent.find("origin")
         if origin is None:
             return T
-        if sum(1 for _ in parent.all("origin")) > 1:
+        if len(parent.findall("origin")) > 1:
             self.warn("duplicate_element", origin, "several <origin>; the first one was used")
         xyz = self.vector(origin, "xyz")
         if xyz is not None:

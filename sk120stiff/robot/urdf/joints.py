@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from lxml.etree import _Element as Element
 
 from sk120stiff.arrays import Array
 from sk120stiff.robot.urdf.document import MOVING, JointSpec, Mimic
 from sk120stiff.robot.urdf.fields import Fields
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
 from sk120stiff.robot.urdf.links import LONGEST_NAME, read_name
-from sk120stiff.robot.urdf.xml_tree import Element
 
 # Joints with several degrees of freedom: present, but held still.
 _LOCKED_TYPES = {"floating": 6, "planar": 3, "spherical": 3, "ball": 3, "universal": 2}
@@ -52,7 +52,7 @@ def read_joint(element: Element, notes: Notebook) -> tuple[JointSpec, str | None
         mimic = None
     joint = JointSpec(
         name, kind, source_type, parent, child, origin, axis,
-        lower, upper, effort, velocity, mimic, element.line,
+        lower, upper, effort, velocity, mimic, element.sourceline,
     )  # fmt: skip
     return joint, locked
 
@@ -73,7 +73,7 @@ def _type(element: Element, fields: Fields) -> str:
 
 def _end(element: Element, tag: str, fields: Fields) -> str:
     """Name of the parent or child link."""
-    ends = list(element.all(tag))
+    ends = element.findall(tag)
     name = (ends[0].get("link") or "").strip() if ends else ""
     if not name:
         fields.notes.refuse(
@@ -98,7 +98,7 @@ def _end(element: Element, tag: str, fields: Fields) -> str:
 
 def _axis(element: Element, fields: Fields, kind: str) -> Array | None:
     """(3,) unit axis; None when the stated one is zero."""
-    stated = element.first("axis")
+    stated = element.find("axis")
     xyz = fields.vector(stated, "xyz") if stated is not None else None
     if xyz is None:
         note = f"{kind} joint without <axis>; the standard says 1 0 0"
@@ -117,7 +117,7 @@ def _axis(element: Element, fields: Fields, kind: str) -> Array | None:
 def _limits(
     element: Element, fields: Fields, kind: str
 ) -> tuple[float | None, float | None, float | None, float | None]:
-    limit = element.first("limit")
+    limit = element.find("limit")
     if limit is None:
         if kind != "continuous":
             note = f"{kind} joint without <limit>; taken as unlimited"
@@ -142,7 +142,7 @@ def _limits(
 def _positive(limit: Element, key: str, fields: Fields) -> float | None:
     value = fields.bound(limit, key)
     if value is None:
-        if key not in limit.attributes:
+        if key not in limit.attrib:
             fields.warn("limit_missing", limit, f"<limit> without {key}; taken as not stated")
         return None
     if value < 0.0:
@@ -152,7 +152,7 @@ def _positive(limit: Element, key: str, fields: Fields) -> float | None:
 
 
 def _mimic(element: Element, fields: Fields) -> Mimic | None:
-    mimics = list(element.all("mimic"))
+    mimics = element.findall("mimic")
     if not mimics:
         return None
     mimic = mimics[0]

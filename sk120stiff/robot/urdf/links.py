@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from lxml.etree import _Element as Element
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot.urdf.document import GeometrySpec, Inertial, LinkSpec, VisualSpec
 from sk120stiff.robot.urdf.fields import Fields
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
-from sk120stiff.robot.urdf.xml_tree import Element
 
 Colour = tuple[float, float, float, float]
 LONGEST_NAME = 500
@@ -28,17 +28,17 @@ def read_name(element: Element, notes: Notebook) -> str:
     if not name:
         notes.refuse(
             f"this {element.tag} has no name",
-            where=at(element.line),
+            where=at(element.sourceline),
             remedy=f'Give it one: <{element.tag} name="...">.',
         )
     if len(name) > LONGEST_NAME:
         notes.refuse(
             f"this name has {len(name)} characters; at most {LONGEST_NAME} can be handled",
-            where=at(element.line, element.tag, name),
+            where=at(element.sourceline, element.tag, name),
             remedy="Shorten it.",
         )
     if name != raw:
-        where = at(element.line, element.tag, name)
+        where = at(element.sourceline, element.tag, name)
         notes.warn("name_blanks", where, "blanks around the name removed")
     return name
 
@@ -52,22 +52,22 @@ def read_link(element: Element, notes: Notebook) -> LinkSpec:
         No name, or something in the inertial is no number.
     """
     name = read_name(element, notes)
-    return LinkSpec(name, _inertial(element, Fields(notes, "link", name)), element.line)
+    return LinkSpec(name, _inertial(element, Fields(notes, "link", name)), element.sourceline)
 
 
 def _inertial(link: Element, fields: Fields) -> Inertial | None:
-    element = link.first("inertial")
+    element = link.find("inertial")
     if element is None:
         return None
-    if sum(1 for _ in link.all("inertial")) > 1:
+    if len(link.findall("inertial")) > 1:
         fields.warn("duplicate_element", element, "several <inertial>; the first one was used")
-    mass_element = element.first("mass")
+    mass_element = element.find("mass")
     mass = fields.number(mass_element, "value") if mass_element is not None else None
     if mass is None:
         fields.warn("mass_missing", element, "<inertial> without a mass; taken as massless")
         mass = 0.0
     inertia = np.zeros((3, 3))
-    inertia_element = element.first("inertia")
+    inertia_element = element.find("inertia")
     if inertia_element is None:
         if mass != 0.0:
             note = "<inertial> without <inertia>; taken as a point mass"
@@ -89,14 +89,13 @@ def read_materials(robot: Element, notes: Notebook) -> dict[str, Colour]:
     The first definition of a name holds.
     """
     colours: dict[str, Colour] = {}
-    top = list(robot.all("material"))
-    inner = [m for link in robot.all("link") for v in link.all("visual") for m in v.all("material")]
-    for number, element in enumerate([*top, *inner]):
+    top = robot.findall("material")
+    for number, element in enumerate([*top, *robot.findall("link/visual/material")]):
         name = (element.get("name") or "").strip()
-        colour = element.first("color")
+        colour = element.find("color")
         if not name or colour is None:
             continue
-        where = at(element.line, "material", name)
+        where = at(element.sourceline, "material", name)
         if name in colours:
             if number < len(top):
                 notes.warn("duplicate_material", where, "defined twice; the first one was used")
@@ -125,7 +124,7 @@ def read_visuals(
 ) -> list[VisualSpec]:
     """Shapes of one link; a shape that cannot be understood is noted and left out."""
     found = []
-    for element in link.all("visual"):
+    for element in link.iterchildren("visual"):
         fields = Fields(notes, "link", name)
         try:
             shape = _visual(element, fields, colours)
@@ -138,7 +137,7 @@ def read_visuals(
 
 
 def _visual(element: Element, fields: Fields, colours: dict[str, Colour]) -> VisualSpec | None:
-    geometry_element = element.first("geometry")
+    geometry_element = element.find("geometry")
     if geometry_element is None:
         fields.warn("unknown_geometry", element, "<visual> without <geometry> was left out")
         return None
@@ -146,19 +145,21 @@ def _visual(element: Element, fields: Fields, colours: dict[str, Colour]) -> Vis
     if geometry is None:
         return None
     rgba = None
-    material = element.first("material")
+    material = element.find("material")
     if material is not None:
-        colour = material.first("color")
+        colour = material.find("color")
         key = (material.get("name") or "").strip()
         rgba = _rgba(colour, fields) if colour is not None else colours.get(key)
-        if colour is None and key and key not in colours and material.first("texture") is None:
+        if colour is None and key and key not in colours and material.find("texture") is None:
             fields.warn("unknown_material", material, f"material {shown(key)} is not defined")
     label = (element.get("name") or "").strip()
-    return VisualSpec(fields.name, label, fields.placement(element), geometry, rgba, element.line)
+    return VisualSpec(
+        fields.name, label, fields.placement(element), geometry, rgba, element.sourceline
+    )
 
 
 def _geometry(element: Element, fields: Fields) -> GeometrySpec | None:
-    for shape in element.children:
+    for shape in element:
         if shape.tag == "mesh":
             filename = (shape.get("filename") or "").strip()
             if not filename:

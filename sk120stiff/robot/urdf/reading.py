@@ -6,6 +6,8 @@ import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from lxml.etree import _Element as Element
+
 from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.robot.urdf.clean import clean_xml
 from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument, VisualSpec
@@ -24,7 +26,7 @@ from sk120stiff.robot.urdf.xacro import (
     with_environment,
 )
 from sk120stiff.robot.urdf.xml_text import decode
-from sk120stiff.robot.urdf.xml_tree import Element, parse_robot
+from sk120stiff.robot.urdf.xml_tree import parse_robot
 
 _FOREIGN = frozenset(
     {
@@ -113,7 +115,7 @@ def _expanded(
     expanded = expand(raw, text, folders, arguments, notes)
     notes.source = f"{raw.label} (expanded)"
     root = parse_robot(expanded, notes)
-    if root.first("link") is None:
+    if root.find("link") is None:
         refuse_empty(raw, text, notes)
     return _document(root, raw, folders, notes)
 
@@ -123,12 +125,12 @@ def _document(
 ) -> UrdfDocument:
     name = _robot_name(root, raw, notes)
     _note_foreign(root, notes)
-    link_elements = list(root.all("link"))
+    link_elements = root.findall("link")
     declared = [read_link(element, notes) for element in link_elements]
     same_names([(link.name, link.line) for link in declared], "link", notes)
     joints: list[JointSpec] = []
     locked: dict[str, str] = {}
-    for element in root.all("joint"):
+    for element in root.iterchildren("joint"):
         joint, why = read_joint(element, notes)
         joints.append(joint)
         if why is not None:
@@ -136,7 +138,7 @@ def _document(
     same_names([(joint.name, joint.line) for joint in joints], "joint", notes)
     _refuse_reserved(joints, notes)
     links = declared_links(declared, joints, notes) if declared else tuple(declared)
-    tree_root = find_root(links, joints, notes, root.line)
+    tree_root = find_root(links, joints, notes, root.sourceline)
     coupled, orphans = without_orphans(tuple(joints), notes)
     checked = checked_mimics(coupled, locked, notes)
     colours = read_materials(root, notes)
@@ -164,18 +166,20 @@ def _robot_name(root: Element, raw: RawSource, notes: Notebook) -> str:
         return name
     name = raw.path.name.split(".")[0] if raw.path is not None else ""
     name = name or "robot"
-    notes.warn("robot_name_missing", at(root.line), f"<robot> has no name; called {name!r}")
+    notes.warn("robot_name_missing", at(root.sourceline), f"<robot> has no name; called {name!r}")
     return name
 
 
 def _note_foreign(root: Element, notes: Notebook) -> None:
     seen: set[str] = set()
-    for child in root.children:
+    for child in root:
         tag = child.tag
-        if tag in ("link", "joint", "material") or tag in _FOREIGN or ":" in tag or tag in seen:
+        if tag in ("link", "joint", "material") or tag in _FOREIGN or "{" in tag or tag in seen:
             continue
         seen.add(tag)
-        notes.warn("unknown_element", at(child.line), f"<{tag[:40]}> is not URDF and was ignored")
+        notes.warn(
+            "unknown_element", at(child.sourceline), f"<{tag[:40]}> is not URDF and was ignored"
+        )
 
 
 def _refuse_reserved(joints: list[JointSpec], notes: Notebook) -> None:

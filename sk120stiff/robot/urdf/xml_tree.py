@@ -1,26 +1,25 @@
-"""URDF text as a small tree of elements that know their line; nothing is expanded or fetched.
+"""URDF text as lxml's elements, which know their line; nothing is expanded or fetched.
 
-The parser is expat with its doors shut: a document type that defines entities is refused before any
-is expanded, depth and number of elements are bounded, and the tree is built without recursion.
+Entity definitions are refused before a parser sees them, and depth and number of elements are
+bounded while the tree grows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import io
+import re
 from typing import NoReturn
-from xml.parsers import expat
+
+from lxml import etree
+from lxml.etree import _Element as Element
 
 from sk120stiff.robot.urdf.findings import Notebook, shown
-from sk120stiff.robot.urdf.xml_text import mended, without_prologue
+from sk120stiff.robot.urdf.xml_text import mended, without_comments, without_prologue
 
-MAX_ELEMENTS = 2_000_000
-MAX_KEPT = 1_000_000
+MAX_ELEMENTS = 1_000_000
 MAX_NESTING = 200
-
-# Elements of a robot that carry kinematics or pictures; the inside of all others is skipped.
-_KEPT_TOP = frozenset({"link", "joint", "material"})
-_SKIPPED_INSIDE = frozenset({"collision", "sensor", "gazebo", "transmission"})
+_ENTITIES = re.compile(r"<!(?:DOCTYPE|ENTITY)\b")
+_UNDECLARED = re.compile(r"Namespace prefix (\S{1,100}) ")
 
 _OTHER_ROOTS = {
     "mujoco": "an MJCF model of MuJoCo",
@@ -34,36 +33,6 @@ _OTHER_ROOTS = {
     "launch": "a ROS launch file",
     "srdf": "an SRDF",
 }
-
-
-@dataclass(eq=False)
-class Element:
-    """One XML element: tag, attributes, children and the line it opens on."""
-
-    tag: str
-    attributes: dict[str, str]
-    line: int
-    children: list[Element] = field(default_factory=list)
-
-    def all(self, tag: str) -> Iterator[Element]:
-        """Direct children of one tag."""
-        return (child for child in self.children if child.tag == tag)
-
-    def first(self, tag: str) -> Element | None:
-        """First direct child of one tag."""
-        return next(self.all(tag), None)
-
-    def get(self, name: str) -> str | None:
-        """Attribute value, or None."""
-        return self.attributes.get(name)
-
-
-class _Stop(Exception):
-    """A signal through expat, never seen outside."""
-
-    def __init__(self, what: str, line: int, remedy: str) -> None:
-        super().__init__(what)
-        self.what, self.line, self.remedy = what, line, remedy
 
 
 def parse_robot(text: str, notes: Notebook) -> Element:
@@ -83,23 +52,25 @@ def parse_robot(text: str, notes: Notebook) -> Element:
             remedy="Give a URDF: <robot> with links and joints.",
         )
     _refuse_pointer(text, notes)
+    defined = _ENTITIES.search(without_comments(text))
+    if defined:
+        notes.refuse(
+            "the file defines a document type; entity definitions are never expanded",
+            where=f"line {text.count(chr(10), 0, defined.start()) + 1}",
+            remedy="Remove the <!DOCTYPE ...> and write the values where they are used.",
+        )
     try:
-        root = _build(text)
-    except expat.ExpatError as first:
-        again = mended(text, notes)
+        root = _build(text, notes)
+    except etree.XMLSyntaxError as first:
         try:
-            root = _build(again)
-        except expat.ExpatError:
+            root = _build(_with_prefixes(mended(text, notes), first), notes)
+        except etree.XMLSyntaxError:
             _refuse_markup(first, notes)
-        except _Stop as stop:
-            notes.refuse(stop.what, where=f"line {stop.line}", remedy=stop.remedy)
-    except _Stop as stop:
-        notes.refuse(stop.what, where=f"line {stop.line}", remedy=stop.remedy)
     if root.tag != "robot":
         kind = _OTHER_ROOTS.get(root.tag, f"a file whose outermost element is <{root.tag[:40]}>")
         notes.refuse(
             f"this is {kind}, not a URDF",
-            where=f"line {root.line}",
+            where=f"line {root.sourceline}",
             remedy="Give the file whose outermost element is <robot>.",
         )
     return root
@@ -121,86 +92,57 @@ def _refuse_pointer(text: str, notes: Notebook) -> None:
         )
 
 
-def _refuse_markup(error: expat.ExpatError, notes: Notebook) -> NoReturn:
-    place = f"line {error.lineno}, column {error.offset + 1}"
-    if error.code == expat.errors.codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
+def _refuse_markup(error: etree.XMLSyntaxError, notes: Notebook) -> NoReturn:
+    kinds = etree.ErrorTypes
+    told = [entry for entry in error.error_log if entry.type != kinds.NS_ERR_UNDEFINED_NAMESPACE]
+    (line, column), code, said = error.position, error.code, str(error.msg)
+    if told:
+        line, column, code, said = told[0].line, told[0].column, told[0].type, told[0].message
+    place = f"line {line}, column {column}"
+    if code == kinds.ERR_DOCUMENT_END:
         notes.refuse(
             "there is more than one outermost element",
             where=place,
             remedy="Keep one <robot> per file and nothing behind it.",
         )
+    if code == kinds.ERR_RESOURCE_LIMIT:
+        _refuse_size("elements are nested too deeply", line, notes)
     notes.refuse(
-        f"this is not well-formed XML ({expat.ErrorString(error.code)})",
+        f"this is not well-formed XML ({shown(said, 120)[1:-1]})",
         where=place,
         remedy="Mend the markup at that place; an XML editor shows it.",
     )
 
 
-def _build(text: str) -> Element:
-    builder = _Builder()
-    parser = expat.ParserCreate("utf-8")
-    parser.buffer_text = True
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.StartDoctypeDeclHandler = builder.doctype
-    parser.EntityDeclHandler = builder.entity
-    parser.ExternalEntityRefHandler = builder.entity
-    parser.SkippedEntityHandler = builder.entity
-    builder.parser = parser
-    parser.Parse(text.encode("utf-8", "replace"), True)
-    assert builder.root is not None  # noqa: S101 - expat raises for a document without element
-    return builder.root
+def _refuse_size(what: str, line: int, notes: Notebook) -> NoReturn:
+    notes.refuse(what, where=f"line {line}", remedy="Give a smaller file.")
 
 
-class _Builder:
-    def __init__(self) -> None:
-        self.root: Element | None = None
-        self.parser: expat.XMLParserType
-        self._open: list[Element] = []
-        self._skipping = 0
-        self._seen = self._kept = 0
+def _with_prefixes(text: str, error: etree.XMLSyntaxError) -> str:
+    """The text with every prefix declared that the parser missed; what has one is foreign to us."""
+    missed = dict.fromkeys(_UNDECLARED.findall("\n".join(e.message for e in error.error_log)))
+    declared = "".join(f' xmlns:{name}="undeclared:{name}"' for name in missed)
+    return text.replace("<robot", f"<robot{declared}", 1)
 
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        self._seen += 1
-        if self._seen > MAX_ELEMENTS:
-            self._stop(f"there are more than {MAX_ELEMENTS} elements", "Give a smaller file.")
-        depth = len(self._open)
-        if self._skipping:
-            self._skipping += 1
-            if self._skipping > MAX_NESTING:
-                self._stop("elements are nested too deeply", "Remove the nesting.")
-            return
+
+def _build(text: str, notes: Notebook) -> Element:
+    etree.clear_error_log()  # of this thread; errors would carry those of earlier files
+    growing = etree.iterparse(
+        io.BytesIO(text.encode("utf-8", "replace")),
+        events=("start", "end"),
+        encoding="utf-8",
+        huge_tree=True,
+        no_network=True,
+        resolve_entities=False,
+        remove_comments=True,
+        remove_pis=True,
+    )
+    count = depth = 0
+    for event, element in growing:
+        count += event == "start"
+        depth += 1 if event == "start" else -1
+        if count > MAX_ELEMENTS:
+            _refuse_size(f"there are more than {MAX_ELEMENTS} elements", element.sourceline, notes)
         if depth > MAX_NESTING:
-            self._stop("elements are nested too deeply", "Remove the nesting.")
-        self._kept += 1
-        if self._kept > MAX_KEPT:
-            self._stop(f"there are more than {MAX_KEPT} elements", "Give a smaller file.")
-        element = Element(tag, attributes, self.parser.CurrentLineNumber)
-        if depth:
-            self._open[-1].children.append(element)
-        else:
-            self.root = element
-        # The inside of foreign elements may hold <joint> and <link> of another meaning.
-        if (depth == 1 and tag not in _KEPT_TOP) or (depth > 1 and tag in _SKIPPED_INSIDE):
-            self._skipping = 1
-        else:
-            self._open.append(element)
-
-    def end(self, _tag: str) -> None:
-        if self._skipping:
-            self._skipping -= 1
-        else:
-            self._open.pop()
-
-    def doctype(self, *_parts: object) -> None:
-        self._stop(
-            "the file defines a document type; entity definitions are never expanded",
-            "Remove the <!DOCTYPE ...> and write the values where they are used.",
-        )
-
-    def entity(self, *_parts: object) -> int:
-        self._stop("the file defines or fetches entities", "Write the values where they are used.")
-        return 0
-
-    def _stop(self, what: str, remedy: str) -> None:
-        raise _Stop(what, self.parser.CurrentLineNumber, remedy)
+            _refuse_size("elements are nested too deeply", element.sourceline, notes)
+    return growing.root

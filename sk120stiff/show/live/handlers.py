@@ -6,7 +6,7 @@ import asyncio
 import json
 import logging
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import urlsplit
 
 from tornado.iostream import StreamClosedError
@@ -15,9 +15,7 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from sk120stiff.errors import ToolkitError
 from sk120stiff.show.live.messages import read_request
-
-if TYPE_CHECKING:
-    from sk120stiff.show.live.server import LiveServer
+from sk120stiff.show.live.served import Served
 
 MAX_PAGES = 32  # open at the same time
 PAUSE = 0.002  # seconds after an answer in which other pages have their turn
@@ -41,7 +39,7 @@ _POLICY = (
 class _Local(RequestHandler):
     """Answers only requests that name this server as their host: other names may be a trap."""
 
-    def initialize(self, server: LiveServer) -> None:
+    def initialize(self, server: Served) -> None:
         self.server = server
 
     def prepare(self) -> None:
@@ -89,7 +87,7 @@ class MissingHandler(_Local):
 class SocketHandler(WebSocketHandler):
     """One open page. It keeps nothing but its connection: the state lives in the page."""
 
-    def initialize(self, server: LiveServer) -> None:
+    def initialize(self, server: Served) -> None:
         """Called by tornado for each connection."""
         self.server = server
         self.refused = 0

@@ -14,24 +14,22 @@ from tornado.netutil import bind_sockets
 from tornado.web import Application
 
 from sk120stiff.errors import InputError
-from sk120stiff.show.frame import Request, compute_frame
 from sk120stiff.show.live.handlers import (
     MissingHandler,
     PageHandler,
     SocketHandler,
     ViewerHandler,
 )
-from sk120stiff.show.live.messages import MAX_BYTES, Bounds
-from sk120stiff.show.payload import frame_payload, scene_payload
+from sk120stiff.show.live.messages import MAX_BYTES
+from sk120stiff.show.live.served import Served
 from sk120stiff.show.scene import Scene
-from sk120stiff.show.static import render_page, viewer_script
 
 LOOPBACK = "127.0.0.1"
 FIRST_PORT = 7400
 TRIES = 50
 
 
-class LiveServer:
+class LiveServer(Served):
     """Serves one scene to any number of pages, each with its own pose and load.
 
     Parameters
@@ -50,12 +48,7 @@ class LiveServer:
     """
 
     def __init__(self, scene: Scene, *, host: str = LOOPBACK, port: int = FIRST_PORT) -> None:
-        self.scene = scene
-        payload = scene_payload(scene, live=True)
-        self.bounds = Bounds.of(payload)
-        self.page = render_page(payload, viewer=None)
-        self.viewer = viewer_script()
-        self.sockets: set[SocketHandler] = set()
+        super().__init__(scene)
         self._listening = _bind(host, port)
         self.host = host
         self.port = int(self._listening[0].getsockname()[1])
@@ -66,10 +59,6 @@ class LiveServer:
     def url(self) -> str:
         """Address of the page."""
         return f"http://{_bracketed(self.host)}:{self.port}/"
-
-    def frame(self, request: Request) -> dict[str, Any]:
-        """What the page draws for a request."""
-        return frame_payload(compute_frame(self.scene.tree, self.scene.elastic, request))
 
     def start(self) -> HTTPServer:
         """Begin to answer, in the running event loop."""
@@ -118,30 +107,6 @@ class LiveServer:
 
         with suppress(KeyboardInterrupt):
             asyncio.run(self.run(announce))
-
-
-def serve(
-    scene: Scene,
-    *,
-    host: str = LOOPBACK,
-    port: int = FIRST_PORT,
-    open_browser: bool = True,
-    ready: Callable[[str], None] | None = None,
-) -> None:
-    """Show a scene live until the program is interrupted (Ctrl-C).
-
-    Parameters
-    ----------
-    scene
-        What to show.
-    host, port
-        See `LiveServer`.
-    open_browser
-        Open the page in the default browser.
-    ready
-        Called with the address as soon as the page can be opened.
-    """
-    LiveServer(scene, host=host, port=port).serve(open_browser=open_browser, ready=ready)
 
 
 def _bind(host: str, port: int) -> list[Any]:

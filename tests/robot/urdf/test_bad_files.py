@@ -18,7 +18,7 @@ BAD = Path(__file__).resolve().parent.parent / "bad"
 
 # file, line (0: the whole file), words of the message, words of the remedy
 REFUSED = [
-    ("attribute_twice.urdf", 13, "duplicate attribute", "XML editor"),
+    ("attribute_twice.urdf", 13, "redefined", "XML editor"),
     ("attribute_without_quotes.urdf", 10, "not well-formed XML", "XML editor"),
     ("binary.urdf", 0, "a binary file", "URDF text"),
     ("blank.urdf", 1, "the file is empty", "Give a URDF"),
@@ -28,7 +28,7 @@ REFUSED = [
     ("empty.urdf", 1, "the file is empty", "Give a URDF"),
     ("entity_bomb.urdf", 2, "entity definitions are never expanded", "Remove the <!DOCTYPE"),
     ("entity_from_file.urdf", 2, "entity definitions are never expanded", "Remove the <!DOCTYPE"),
-    ("entity_unknown.urdf", 2, "undefined entity", "XML editor"),
+    ("entity_unknown.urdf", 2, "Entity 'nbsp' not defined", "XML editor"),
     ("expression.urdf", 12, "'0 0 pi/2'> is an expression of xacro", "Give the .xacro"),
     ("joint_named_universe.urdf", 10, "'universe' is reserved", "Rename"),
     ("joint_spherical.urdf", 10, "it is spherical, with 3 degrees of freedom", "three revolute"),
@@ -61,7 +61,7 @@ REFUSED = [
     ("number_with_unit.urdf", 12, "'0 0 500mm'> is not a number", "plain numbers"),
     ("package_unknown.xacro", 0, "package 'no_such_package' was not found", "ROS_PACKAGE_PATH"),
     ("sdf.urdf", 2, "an SDF model", "outermost element is <robot>"),
-    ("tag_not_closed.urdf", 21, "mismatched tag", "XML editor"),
+    ("tag_not_closed.urdf", 21, "tag mismatch", "XML editor"),
     ("two_robots.urdf", 23, "more than one outermost element", "one <robot>"),
     ("two_roots.urdf", 22, "'base' (line 3), 'gripper' (line 22)", "fixed joint"),
     (
@@ -146,7 +146,12 @@ REPAIRED = [
 ]
 
 # Read without a word: nothing in them is wrong.
-HARMLESS_FILES = ["blank_before_declaration.urdf", "byte_order_mark.urdf", "encoding_utf16.urdf"]
+HARMLESS_FILES = [
+    "blank_before_declaration.urdf",
+    "byte_order_mark.urdf",
+    "encoding_utf16.urdf",
+    "prefix_undeclared.urdf",
+]
 
 
 def files(folder: str) -> set[str]:
