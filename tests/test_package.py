@@ -6,6 +6,8 @@ import subprocess
 import sys
 import tomllib
 import zipfile
+from collections.abc import Iterable
+from importlib.metadata import requires
 from pathlib import Path
 
 import pytest
@@ -59,27 +61,42 @@ def test_the_checkout_finds_its_robots() -> None:
 
 
 OTHER_NAMES = {"pinocchio": "pin", "yaml": "pyyaml"}  # import → package
-OPTIONAL = {"dask": "cluster", "distributed": "cluster", "xacro": "xacro"}  # import → extra
+OPTIONAL = {"distributed": "cluster", "xacro": "xacro"}  # import → extra
+# Not imported here, but without it a library of ours cannot do what we ask of it.
+THROUGH = {"pycollada": "trimesh"}
 
 
-def test_every_library_that_is_imported_is_a_named_dependency() -> None:
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+def names(entries: Iterable[str]) -> set[str]:
+    return {re.split(r"[ \[<>=!;]", entry)[0].lower() for entry in entries}
 
-    def names(entries: list[str]) -> set[str]:
-        return {re.split(r"[\[<>=;]", entry)[0] for entry in entries}
 
-    named = names(project["dependencies"])
-    extras = {extra: names(entries) for extra, entries in project["optional-dependencies"].items()}
-    for path in (ROOT / "sk120stiff").rglob("*.py"):
+def libraries_in(folder: str) -> dict[str, Path]:
+    """Libraries that the code imports or looks for at any level of a file, each with a file."""
+    found: dict[str, Path] = {}
+    for path in (ROOT / folder).rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             if isinstance(node, ast.ImportFrom) and not node.level:
                 modules = [node.module or ""]
-            for top in {module.partition(".")[0] for module in modules}:
-                if top == "sk120stiff" or top in sys.stdlib_module_names:
-                    continue
-                where = extras[OPTIONAL[top]] if top in OPTIONAL else named
-                assert OTHER_NAMES.get(top, top) in where, f"{path} imports {top}"
+            if isinstance(node, ast.Call) and "find_spec" in ast.unparse(node.func):
+                modules = [str(a.value) for a in node.args if isinstance(a, ast.Constant)]
+            found |= {module.partition(".")[0]: path for module in modules}
+    known = {*sys.stdlib_module_names, "sk120stiff"}
+    return {top: path for top, path in found.items() if top not in known}
+
+
+def test_libraries_that_are_imported_are_those_that_are_declared() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    named = names(project["dependencies"])
+    extras = {extra: names(entries) for extra, entries in project["optional-dependencies"].items()}
+    imported = libraries_in("sk120stiff")
+    for top, path in imported.items():
+        where = extras[OPTIONAL[top]] if top in OPTIONAL else named
+        assert OTHER_NAMES.get(top, top) in where, f"{path} imports {top}"
+    for library, user in THROUGH.items():
+        assert user in imported and library in names(requires(user) or ())
+    declared = named | extras["xacro"] | extras["cluster"]
+    assert declared == {OTHER_NAMES.get(top, top) for top in imported} | set(THROUGH)
 
 
 @pytest.fixture(scope="session")

@@ -26,7 +26,8 @@ Map (`sk120stiff.show.cloud`)
     coloured points of a map. ``figures_of_map(dataset)``: slices of it as figures.
 
 Live (`sk120stiff.show.live`)
-    ``serve(scene, port=..., open_browser=...)``: the same page with everything computed by Python.
+    ``LiveServer(scene, port=...).serve(open_browser=...)``: the same page with everything computed
+    by Python.
 """
 
 from __future__ import annotations
