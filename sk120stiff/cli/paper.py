@@ -99,12 +99,11 @@ def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> li
 def _printable(table: SideBySide) -> Table:
     """Numbers that belong together share a column, and some columns are left to the CSV file."""
     made = Table(title=table.title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False)
-    shown = [column for column in table.columns if column.brief]
-    for k, column in enumerate(shown):
+    for k, column in enumerate(table.brief):
         head = column.name + (f"\n{column.shown_unit}" if column.unit else "")
         made.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
     for row in range(table.count):
-        made.add_row(*(column.text(row) for column in shown))
+        made.add_row(*(column.text(row) for column in table.brief))
     return made
 
 

@@ -22,10 +22,43 @@ from sk120stiff.paper.setting import Setting, random_poses
 
 #: Every length that Appendix I names.
 LENGTHS = ("L1", "L2", "L3", "L4", "L5", "L6", "D1", "D3", "D4", "D5", "D6")
+#: Eq. (17) term by term as printed, misprints included; s1 is sin θ1', c23 is cos(θ2' − θ3').
+PRINTED = {
+    "J11": (
+        "L4 c1 s4 - D3 c1 - L1 s1 + L6 c1 s4 c5 c6 + D5 c1 c4 + L6 c1 c4 s6 + L5 c1 s4 c5 "
+        "+ D6 c1 s4 s5 - D6 s1 c3 c5 + L5 s1 c3 s5 - L5 s1 s3 c4 c5 + L6 s1 c3 s5 c6 "
+        "- L3 s1 s3 - L6 s1 s3 c4 c5 c6 + L6 s1 s3 s4 s6 - D6 s1 s3 c4 s5 + D5 s1 s3 s4 "
+        "- L4 s1 s3 c4 - D4 s1 c3 - L2 s1 s3 s23 + L2 s1 c3 c23"
+    ),
+    "J12": "L2 c1 s2",
+    "J13": (
+        "L6 c1 s3 s5 c6 - L6 c1 c3 s4 s6 - D4 c1 s3 + L3 c1 c3 + D6 c1 c3 c4 s5 "
+        "+ L5 c1 c3 c4 c5 + L6 c1 c3 c4 c5 c6 + L4 c1 c3 c4 - D6 c1 s3 c5 - D5 c1 c3 s4 "
+        "+ L5 c1 s3 s5"
+    ),
+    "J21": (
+        "-D4 c1 c3 + L3 c1 s3 - L6 c1 c3 s5 c6 + D6 c1 s3 c4 s5 + D6 c1 c3 c5 - D5 c1 s3 s4 "
+        "+ L6 s1 s4 c5 c6 + D6 s1 s4 s5 + L6 s1 c4 s6 + L5 s1 s4 c5 + L4 s1 s4 + D5 s1 c4 "
+        "- D1 s1 + L6 c1 s3 c4 c5 c6 - L6 c1 s3 s4 s6 + L4 c1 s3 c4 - L5 c1 c3 s5 "
+        "+ L5 c1 s3 c4 c5 + L1 c1 - L2 c1 c3 c23 + L2 c1 s3 s23"
+    ),
+    "J22": "L2 s1 s2",
+    "J23": (
+        "-D5 s1 c3 s4 + L5 s1 c3 c4 c5 + L3 s1 c3 - L6 s1 c3 s4 s6 + L6 s1 s3 s5 c6 "
+        "+ L4 s1 c3 c4 - D4 s1 s3 + L5 s1 s3 s5 + D6 s1 c3 c4 s5 - D6 s1 s3 c5 "
+        "+ L6 s1 c3 c4 c5 c6"
+    ),
+    "J31": "",
+    "J32": "L2 c2",
+    "J33": (
+        "D5 s3 s4 - L4 s3 c4 - L5 s3 c4 c5 - D4 c3 + L6 s3 s4 s6 - D6 s3 c4 s5 "
+        "- L6 s3 c4 c5 c6 - D6 c3 c5 + L5 c3 s5 - L3 s3 + L6 c3 s5 c6"
+    ),
+}
 
 
 def printed_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
-    """Eq. (17) term by term as printed, misprints included.
+    """(..., 3, 3) derivatives of x, y, z by θ1', θ2', θ3' by eq. (17) as printed [m/rad].
 
     Parameters
     ----------
@@ -33,83 +66,25 @@ def printed_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
         (..., 6) the paper's angles θ1' to θ6' [rad].
     lengths
         Any of `LENGTHS` [m]; the others are zero.
-
-    Returns
-    -------
-    (..., 3, 3) derivatives of x, y, z by θ1', θ2', θ3' [m/rad].
     """
-    t1, t2, t3, t4, t5, t6 = np.moveaxis(np.asarray(angles, dtype=float), -1, 0)
-    s1, c1, s2, c2 = np.sin(t1), np.cos(t1), np.sin(t2), np.cos(t2)
-    s3, c3, s4, c4 = np.sin(t3), np.cos(t3), np.sin(t4), np.cos(t4)
-    s5, c5, s6, c6 = np.sin(t5), np.cos(t5), np.sin(t6), np.cos(t6)
-    s23, c23 = np.sin(t2 - t3), np.cos(t2 - t3)
-    L1, L2, L3, L4, L5, L6, D1, D3, D4, D5, D6 = (lengths.get(name, 0.0) for name in LENGTHS)
-    J11 = (
-        L4 * c1 * s4 - D3 * c1 - L1 * s1
-        + L6 * c1 * s4 * c5 * c6 + D5 * c1 * c4
-        + L6 * c1 * c4 * s6 + L5 * c1 * s4 * c5
-        + D6 * c1 * s4 * s5 - D6 * s1 * c3 * c5
-        + L5 * s1 * c3 * s5 - L5 * s1 * s3 * c4 * c5
-        + L6 * s1 * c3 * s5 * c6 - L3 * s1 * s3
-        - L6 * s1 * s3 * c4 * c5 * c6
-        + L6 * s1 * s3 * s4 * s6
-        - D6 * s1 * s3 * c4 * s5
-        + D5 * s1 * s3 * s4 - L4 * s1 * s3 * c4
-        - D4 * s1 * c3 - L2 * s1 * s3 * s23
-        + L2 * s1 * c3 * c23
-    )  # fmt: skip
-    J12 = L2 * c1 * s2
-    J13 = (
-        L6 * c1 * s3 * s5 * c6
-        - L6 * c1 * c3 * s4 * s6 - D4 * c1 * s3
-        + L3 * c1 * c3 + D6 * c1 * c3 * c4 * s5
-        + L5 * c1 * c3 * c4 * c5
-        + L6 * c1 * c3 * c4 * c5 * c6
-        + L4 * c1 * c3 * c4 - D6 * c1 * s3 * c5
-        - D5 * c1 * c3 * s4 + L5 * c1 * s3 * s5
-    )  # fmt: skip
-    J21 = (
-        -D4 * c1 * c3 + L3 * c1 * s3
-        - L6 * c1 * c3 * s5 * c6
-        + D6 * c1 * s3 * c4 * s5
-        + D6 * c1 * c3 * c5 - D5 * c1 * s3 * s4
-        + L6 * s1 * s4 * c5 * c6
-        + D6 * s1 * s4 * s5 + L6 * s1 * c4 * s6
-        + L5 * s1 * s4 * c5 + L4 * s1 * s4
-        + D5 * s1 * c4 - D1 * s1
-        + L6 * c1 * s3 * c4 * c5 * c6
-        - L6 * c1 * s3 * s4 * s6
-        + L4 * c1 * s3 * c4 - L5 * c1 * c3 * s5
-        + L5 * c1 * s3 * c4 * c5 + L1 * c1
-        - L2 * c1 * c3 * c23
-        + L2 * c1 * s3 * s23
-    )  # fmt: skip
-    J22 = L2 * s1 * s2
-    J23 = (
-        -D5 * s1 * c3 * s4 + L5 * s1 * c3 * c4 * c5
-        + L3 * s1 * c3 - L6 * s1 * c3 * s4 * s6
-        + L6 * s1 * s3 * s5 * c6 + L4 * s1 * c3 * c4
-        - D4 * s1 * s3 + L5 * s1 * s3 * s5
-        + D6 * s1 * c3 * c4 * s5 - D6 * s1 * s3 * c5
-        + L6 * s1 * c3 * c4 * c5 * c6
-    )  # fmt: skip
-    J31 = np.zeros_like(t1)
-    J32 = L2 * c2
-    J33 = (
-        D5 * s3 * s4 - L4 * s3 * c4
-        - L5 * s3 * c4 * c5 - D4 * c3
-        + L6 * s3 * s4 * s6 - D6 * s3 * c4 * s5
-        - L6 * s3 * c4 * c5 * c6 - D6 * c3 * c5
-        + L5 * c3 * s5 - L3 * s3 + L6 * c3 * s5 * c6
-    )  # fmt: skip
-    rows = [(J11, J12, J13), (J21, J22, J23), (J31, J32 + 0.0 * t1, J33)]
-    return np.stack([np.stack(np.broadcast_arrays(*row), axis=-1) for row in rows], axis=-2)
+    given = np.asarray(angles, dtype=float)
+    named = {str(k + 1): given[..., k] for k in range(6)} | {"23": given[..., 1] - given[..., 2]}
+    factors = {f"s{k}": np.sin(angle) for k, angle in named.items()}
+    factors |= {f"c{k}": np.cos(angle) for k, angle in named.items()}
+    J = np.zeros((*given.shape[:-1], 3, 3))
+    for element, text in PRINTED.items():
+        for term in text.replace("- ", "+ -").split("+ "):
+            length, *angular = term.removeprefix("-").split() or [""]
+            if length in lengths:
+                value = -lengths[length] if term.startswith("-") else lengths[length]
+                value = value * np.prod([factors[name] for name in angular], axis=0)
+                J[..., int(element[1]) - 1, int(element[2]) - 1] += value
+    return J
 
 
 def mended_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
     """Eq. (17) with + D4 cos θ1 cos θ3 and − D3 sin θ1 in J21."""
-    t1, _, t3 = np.moveaxis(np.asarray(angles, dtype=float)[..., :3], -1, 0)
-    J = printed_jacobian(angles, lengths)
+    J, (t1, _, t3) = printed_jacobian(angles, lengths), np.moveaxis(angles[..., :3], -1, 0)
     D4, D1, D3 = (lengths.get(name, 0.0) for name in ("D4", "D1", "D3"))
     J[..., 1, 0] += 2.0 * D4 * np.cos(t1) * np.cos(t3) + (D1 - D3) * np.sin(t1)
     return J
@@ -125,15 +100,7 @@ def paper_angles(readings: Array) -> Array:
 
 @dataclass(frozen=True)
 class Slip:
-    """A term of eq. (17) that contradicts the others.
-
-    Attributes
-    ----------
-    element, length
-        Where it stands, e.g. ``"J21"`` and ``"D4"``.
-    size
-        How far it is off, in units of that length.
-    """
+    """A term of eq. (17) that contradicts the others, off by `size` times its length."""
 
     element: str
     length: str
@@ -144,13 +111,8 @@ class Slip:
 class Appendix:
     """Appendix I against the bundled robot.
 
-    Attributes
-    ----------
-    slips
-        Terms that contradict the rest of eq. (17), found without our kinematics.
-    printed_error, mended_error
-        (3, 3) largest difference to our Jacobian over random poses of all six joints, at the
-        reflector [m/rad].
+    `slips` are found without our kinematics; the errors are (3, 3) largest differences to our
+    Jacobian over random poses of all six joints, at the reflector [m/rad].
     """
 
     slips: tuple[Slip, ...]

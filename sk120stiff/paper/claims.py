@@ -1,15 +1,9 @@
 """Every claim of the paper, in its order, with a verdict that follows from computed numbers."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from sk120stiff.paper.claims_of_data import claims_of_data
 from sk120stiff.paper.claims_of_theory import claims_of_theory
+from sk120stiff.paper.findings import Findings
 from sk120stiff.paper.verdict import Claim, Verdict
-
-if TYPE_CHECKING:
-    from sk120stiff.paper.reproduction import Reproduction
 
 __all__ = ["Claim", "Verdict", "claims"]
 
@@ -17,7 +11,7 @@ __all__ = ["Claim", "Verdict", "claims"]
 _ORDER = ("II", "III", "IV", "V", "VI", "Abstract", "Appendix I", "Appendix II")
 
 
-def claims(found: Reproduction) -> tuple[Claim, ...]:
+def claims(found: Findings) -> tuple[Claim, ...]:
     """All claims, section by section."""
     every = [*claims_of_theory(found), *claims_of_data(found)]
     return tuple(sorted(every, key=lambda claim: _ORDER.index(claim.where.split(",")[0])))

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from sk120stiff.paper.findings import Findings
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE, COMPONENT
 from sk120stiff.paper.verdict import Claim, Verdict, reproduced_if, small
-
-if TYPE_CHECKING:
-    from sk120stiff.paper.reproduction import Reproduction
 
 ROUNDING = 1e-9
 
 
-def claims_of_theory(found: Reproduction) -> list[Claim]:
+def claims_of_theory(found: Findings) -> list[Claim]:
     """Claims that need no measured data."""
     return [
         *_kinematics(found),
@@ -25,7 +21,7 @@ def claims_of_theory(found: Reproduction) -> list[Claim]:
     ]
 
 
-def _kinematics(found: Reproduction) -> list[Claim]:
+def _kinematics(found: Findings) -> list[Claim]:
     appendix, posture = found.appendix, found.posture
     printed, mended = float(appendix.printed_error.max()), float(appendix.mended_error.max())
     slips = [slip for slip in appendix.slips if slip.length == "D4"]
@@ -38,7 +34,6 @@ def _kinematics(found: Reproduction) -> list[Claim]:
             reproduced_if(found.formulation.loop_error < ROUNDING),
             "The loop of crank, rod and forearm stays closed to "
             f"{small(found.formulation.loop_error)} m over the whole motion range.",
-            {"loop_error_m": found.formulation.loop_error},
         ),
         Claim(
             "Appendix I",
@@ -49,7 +44,6 @@ def _kinematics(found: Reproduction) -> list[Claim]:
             f"{printed:.2f} m/rad. With it mended all nine elements agree with ours to "
             f"{small(mended)} m/rad at random poses of all six joints. J11 and J21 also name "
             f"different lengths, {' and '.join(harmless)}; both are zero in Table I.",
-            {"printed_error_m_per_rad": printed, "mended_error_m_per_rad": mended},
         ),
         Claim(
             "IV, B",
@@ -57,12 +51,11 @@ def _kinematics(found: Reproduction) -> list[Claim]:
             reproduced_if(posture.tool_error < np.radians(0.01)),
             f"All printed configurations have it straight down to "
             f"{np.degrees(posture.tool_error):.4f}°.",
-            {"tool_error_deg": float(np.degrees(posture.tool_error))},
         ),
     ]
 
 
-def _stiffness(found: Reproduction) -> list[Claim]:
+def _stiffness(found: Findings) -> list[Claim]:
     form = found.formulation
     return [
         Claim(
@@ -71,7 +64,6 @@ def _stiffness(found: Reproduction) -> list[Claim]:
             reproduced_if(form.enhanced_error < 1e-6),
             f"The slope of the exact deflection under {form.load / 1e3:.0f} kN agrees with it to "
             f"{small(form.enhanced_error)}, taken at the loaded pose.",
-            {"relative_error": form.enhanced_error, "load_N": form.load},
         ),
         Claim(
             "III, eq. (8)",
@@ -81,7 +73,6 @@ def _stiffness(found: Reproduction) -> list[Claim]:
             f"{100 * form.conventional_error:.1f} %, without a load by nothing. At the loads of "
             f"Table II K_C changes the deflection by "
             f"{1e6 * max(found.table2.effect_of_K_C.values()):.2f} µm rms or less.",
-            {"relative_error": form.conventional_error, "load_N": form.load},
         ),
         Claim(
             "V",
@@ -91,7 +82,6 @@ def _stiffness(found: Reproduction) -> list[Claim]:
             f"{small(form.third_derivatives)}. A moment about fixed axes, which the paper leaves "
             "out, has no potential: its K_C is not symmetric "
             f"(‖K_C − K_Cᵀ‖ up to {form.moment_asymmetry:.2f} ‖K_C‖).",
-            {"force_asymmetry": form.force_asymmetry, "moment_asymmetry": form.moment_asymmetry},
         ),
         Claim(
             "VI, eq. (16)",
@@ -117,7 +107,7 @@ def _stiffness(found: Reproduction) -> list[Claim]:
     ]
 
 
-def _definiteness(found: Reproduction) -> list[Claim]:
+def _definiteness(found: Findings) -> list[Claim]:
     form, table = found.formulation, found.table4
     size = COMPONENT * 3**0.5
     positive = int(table.difference_positive.min())
@@ -138,7 +128,6 @@ def _definiteness(found: Reproduction) -> list[Claim]:
             "Corollary 1: where K_C is ND or NSD, K_θ − K_C is PD.",
             reproduced_if(form.negative_failures == 0 and form.negative_cases > 0),
             f"No exception among {form.negative_cases} poses and loads, up to 10⁸ N.",
-            {"cases": form.negative_cases, "exceptions": form.negative_failures},
         ),
         Claim(
             "V",
@@ -154,7 +143,6 @@ def _definiteness(found: Reproduction) -> list[Claim]:
             "det(K_C) > 0. Two negative eigenvalues give that too: in case "
             f"{worst + 1} {table.counts[worst, 0]} matrices are positive definite, not "
             f"{table.printed[worst, 0]}.",
-            {"configurations": every, "rows_reproduced": len(table.reproduced)},
         ),
         Claim(
             "VI, Table IV",
@@ -164,14 +152,12 @@ def _definiteness(found: Reproduction) -> list[Claim]:
             + ("ours obey it, " if ours else "")
             + f"the printed pairs {', '.join(broken)} do not. Even read as signs of the "
             f"determinant, the PD counts of cases {', '.join(odd)} do not add up to {every}.",
-            {"pairs_broken": len(broken), "sums_off": len(odd)},
         ),
         Claim(
             "VI",
             "K_C is not always positive definite.",
             reproduced_if(indefinite > 0),
             f"It is indefinite at {indefinite} of {every} configurations or more, in every case.",
-            {"indefinite_at_least": indefinite},
         ),
         Claim(
             "VI",
@@ -179,7 +165,6 @@ def _definiteness(found: Reproduction) -> list[Claim]:
             reproduced_if(positive == every),
             f"At {positive} of {every} configurations in every case; {size:.0f} N is "
             f"{100 * size / found.critical.smallest:.2f} % of the smallest critical force.",
-            {"positive": positive, "configurations": every},
         ),
         Claim(
             "Appendix II",
@@ -187,7 +172,6 @@ def _definiteness(found: Reproduction) -> list[Claim]:
             reproduced_if(form.congruence_failures == 0 and form.congruent_cases > 0),
             f"The classes agree in all {form.congruent_cases} poses and loads tried, away from "
             "singular poses, where K_X does not exist.",
-            {"cases": form.congruent_cases, "exceptions": form.congruence_failures},
         ),
         Claim(
             "Appendix II, eq. (20)",
@@ -199,7 +183,7 @@ def _definiteness(found: Reproduction) -> list[Claim]:
     ]
 
 
-def _critical(found: Reproduction) -> list[Claim]:
+def _critical(found: Findings) -> list[Claim]:
     found_at = found.critical
     ratio = found_at.smallest / CLAIMED_CRITICAL_FORCE
     by_diagonal = float(found_at.by_diagonal.min())
@@ -214,12 +198,6 @@ def _critical(found: Reproduction) -> list[Claim]:
             f"{found_at.quantiles[0.5] / 1e3:.0f} kN, and for {100 * found_at.without:.0f} % no "
             f"force is critical. At 10 kN K_C takes up {100 * found_at.share:.1f} % of K_θ, and "
             f"the flange would move {1e3 * found_at.deflection:.0f} mm.",
-            {
-                "smallest_N": found_at.smallest,
-                "median_N": found_at.quantiles[0.5],
-                "share_at_10_kN": found_at.share,
-                "deflection_at_10_kN_m": found_at.deflection,
-            },
         ),
         Claim(
             "VI",
@@ -228,7 +206,6 @@ def _critical(found: Reproduction) -> list[Claim]:
             f"Sufficient, as corollary 2 says: no diagonal element gets there below "
             f"{by_diagonal / 1e3:.0f} kN. On this arm it is also where definiteness goes first, "
             "because joints 2 and 3 turn absolute angles and do not couple in K_C.",
-            {"by_diagonal_N": by_diagonal, "smallest_N": found_at.smallest},
         ),
         Claim(
             "Abstract",
@@ -236,6 +213,5 @@ def _critical(found: Reproduction) -> list[Claim]:
             reproduced_if(found_at.smallest > 10 * CLAIMED_CRITICAL_FORCE),
             f"True for every force this arm can carry. From "
             f"{found_at.smallest / 1e3:.0f} kN on, in the worst direction, it decides stability.",
-            {"smallest_N": found_at.smallest},
         ),
     ]

@@ -2,26 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict
-from typing import TYPE_CHECKING
 
 from sk120stiff.identify import Fit
-from sk120stiff.paper.table2 import FORMULAS
+from sk120stiff.paper.reproduction import Reproduction
+from sk120stiff.paper.table2 import FORMULAS, Table2
+from sk120stiff.paper.table3 import Table3
+from sk120stiff.paper.table4 import Table4
 from sk120stiff.stiffness import CLASSES
-
-if TYPE_CHECKING:
-    from sk120stiff.paper.reproduction import Reproduction
 
 
 def as_document(found: Reproduction) -> dict[str, object]:
     """Keys ``table2 table3 table4 identified critical appendix formulation parts claims``."""
+    fitted, second = found.identified, _table2(found.table2)
+    second["measured_rms_um"] = {
+        "paper_springs": _micrometres(found.table2.measured_rms()),
+        "identified": _micrometres(found.table2.per_pose(fitted.fit.gap)),
+    }
     return {
         "robot": found.setting.robot.name,
         "paper_springs": found.setting.arm_springs,
-        "table2": _table2(found),
-        "identified": _identified(found),
-        "table3": _table3(found),
-        "table4": _table4(found),
+        "table2": second,
+        "identified": {
+            **_fit(fitted.fit),
+            "equal_weights": _fit(fitted.equal_weights),
+            "attempts": fitted.attempts,
+            "relative_spread_of_attempts": fitted.spread,
+            "by_pose": {
+                pose: {"springs": springs, "std": errors}
+                for pose, (springs, errors) in fitted.by_pose.items()
+            },
+            "common_springs": {"F": fitted.F, "probability": fitted.probability},
+        },
+        "table3": _table3(found.table3),
+        "table4": _table4(found.table4),
         "critical": asdict(found.critical),
         "appendix": asdict(found.appendix),
         "formulation": asdict(found.formulation),
@@ -31,62 +46,27 @@ def as_document(found: Reproduction) -> dict[str, object]:
     }
 
 
-def _table2(found: Reproduction) -> dict[str, object]:
-    table = found.table2
+def _table2(table: Table2) -> dict[str, object]:
     return {
         "negated_in_print": table.negated,
         "calculated_rms_um": {name: _micrometres(table.calculated_rms(name)) for name in FORMULAS},
         "K_C_effect_rms_um": _micrometres(table.effect_of_K_C),
-        "measured_rms_um": {
-            "paper_springs": _micrometres(table.measured_rms()),
-            "identified": _micrometres(table.per_pose(found.identified.fit.gap)),
-        },
-        "variants": [
-            {
-                "name": variant.name,
-                "calculated_rms_um": 1e6 * variant.calculated_rms,
-                "measured_rms_um": 1e6 * variant.measured_rms,
-            }
-            for variant in table.variants
-        ],
-        "rows": [
-            {
-                "pose": pose,
-                "joints": table.measured.joints[k],
-                "force": table.measured.wrench[k, :3],
-                "calculated_theirs": table.calculated[k],
-                **{f"calculated_{name}": getattr(table.ours, name)[k] for name in FORMULAS},
-                "measured": table.displacement[k],
-            }
-            for k, pose in enumerate(table.printed.pose)
-        ],
-    }
-
-
-def _identified(found: Reproduction) -> dict[str, object]:
-    fitted = found.identified
-    return {
-        **_fit(fitted.fit),
-        "equal_weights": _fit(fitted.equal_weights),
-        "attempts": fitted.attempts,
-        "relative_spread_of_attempts": fitted.spread,
-        "by_pose": {
-            pose: {"springs": springs, "std": errors}
-            for pose, (springs, errors) in fitted.by_pose.items()
-        },
-        "common_springs": {"F": fitted.F, "probability": fitted.probability},
+        "variants": table.variants,
+        "rows": _rows(
+            pose=table.printed.pose,
+            joints=table.measured.joints,
+            force=table.measured.wrench[:, :3],
+            calculated_theirs=table.calculated,
+            **{f"calculated_{name}": getattr(table.ours, name) for name in FORMULAS},
+            measured=table.displacement,
+        ),
     }
 
 
 def _fit(fitted: Fit) -> dict[str, object]:
     return {
         "parameters": [
-            {
-                "name": p.name,
-                "value": p.value,
-                "std": p.std,
-                "unit": p.spec.unit,
-            }
+            {"name": p.name, "value": p.value, "std": p.std, "unit": p.spec.unit}
             for p in fitted.parameters
         ],
         "rms_um": 1e6 * fitted.rms,
@@ -96,8 +76,7 @@ def _fit(fitted: Fit) -> dict[str, object]:
     }
 
 
-def _table3(found: Reproduction) -> dict[str, object]:
-    table = found.table3
+def _table3(table: Table3) -> dict[str, object]:
     return {
         "unit_printed": "joule",
         "unit_found": "N*mm",
@@ -105,55 +84,56 @@ def _table3(found: Reproduction) -> dict[str, object]:
         "identity_error": table.identity_error,
         "balance_error": table.balance_error,
         "overcount": [float(table.overcount.min()), float(table.overcount.max())],
-        "rows": [
-            {
-                "pose": pose,
-                "force": table.printed.force[k],
-                "cartesian_theirs": table.printed_cartesian[k],
-                "joint_conventional_theirs": table.printed_conventional[k],
-                "cartesian": table.works.cartesian[k],
-                "joint_enhanced": table.works.joint_enhanced[k],
-                "joint_conventional": table.works.joint_conventional[k],
-                "work_along_path": table.work[k],
-                "energy": table.energy[k],
-                "largest_in_any_direction": table.largest[k],
-            }
-            for k, pose in enumerate(table.printed.pose)
-        ],
+        "rows": _rows(
+            pose=table.printed.pose,
+            force=table.printed.force,
+            cartesian_theirs=table.printed_cartesian,
+            joint_conventional_theirs=table.printed_conventional,
+            cartesian=table.works.cartesian,
+            joint_enhanced=table.works.joint_enhanced,
+            joint_conventional=table.works.joint_conventional,
+            work_along_path=table.work,
+            energy=table.energy,
+            largest_in_any_direction=table.largest,
+        ),
     }
 
 
-def _table4(found: Reproduction) -> dict[str, object]:
-    table = found.table4
+def _table4(table: Table4) -> dict[str, object]:
     names = [c.short for c in CLASSES]
+    theirs, counts, determinant = (
+        [dict(zip(keys, row, strict=True)) for row in rows.tolist()]
+        for keys, rows in (
+            (names, table.printed),
+            (names, table.counts),
+            (("positive", "ND", "rest"), table.determinant_counts),
+        )
+    )
     return {
         "configurations": table.configurations,
         "cases_reproduced_by_determinant": table.reproduced,
         "pd_columns_reproduced_by_determinant": table.reproduced_determinant,
-        "printed_opposites_mirror": {
-            f"{i}/{k}": holds for (i, k), holds in table.mirrored(table.printed).items()
+        **{
+            name: {f"{i}/{k}": holds for (i, k), holds in table.mirrored(of).items()}
+            for name, of in (
+                ("printed_opposites_mirror", table.printed),
+                ("opposites_mirror", table.counts),
+            )
         },
-        "opposites_mirror": {
-            f"{i}/{k}": holds for (i, k), holds in table.mirrored(table.counts).items()
-        },
-        "cases": [
-            {
-                "case": k + 1,
-                "signs": table.signs[k],
-                "theirs": dict(zip(names, table.printed[k].tolist(), strict=True)),
-                "counts": dict(zip(names, table.counts[k].tolist(), strict=True)),
-                "determinant": dict(
-                    zip(
-                        ("positive", "ND", "rest"),
-                        table.determinant_counts[k].tolist(),
-                        strict=True,
-                    )
-                ),
-                "K_theta_minus_K_C_PD": table.difference_positive[k],
-            }
-            for k in range(len(table.signs))
-        ],
+        "cases": _rows(
+            case=range(1, len(counts) + 1),
+            signs=table.signs,
+            theirs=theirs,
+            counts=counts,
+            determinant=determinant,
+            K_theta_minus_K_C_PD=table.difference_positive,
+        ),
     }
+
+
+def _rows(**columns: Iterable[object]) -> list[dict[str, object]]:
+    """Columns as one container a row."""
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _micrometres(values: dict[str, float]) -> dict[str, float]:

@@ -7,8 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.paper.critical import even_directions
-from sk120stiff.paper.setting import Setting, motion_grid, random_poses, wrench_of
+from sk120stiff.paper.setting import (
+    Setting,
+    even_directions,
+    motion_grid,
+    random_poses,
+    straight,
+    wrench_of,
+)
 from sk120stiff.stiffness import (
     cartesian_compliance,
     cartesian_stiffness,
@@ -79,25 +85,29 @@ def formulation(setting: Setting, *, seed: int = 0) -> Formulation:
     rng = np.random.default_rng(seed)
     poses = random_poses(rng, 12)
     enhanced, conventional = _loaded_compliance(setting, poses, rng)
-    cases, failures, same, different, minors = _classes(setting)
+    unloaded = complementary_stiffness(setting.arm(poses), np.zeros(6))
+    force_asymmetry, moment_asymmetry = (_asymmetry(setting, rng, k) for k in (0, 3))
+    negative, failures, congruent, different, minors = _classes(setting)
+    rod, lever = (
+        setting.robot.placement(straight(motion_grid()), frame)[:, :3, 3]
+        for frame in ("rod_end", "forearm_lever_end")
+    )
     return Formulation(
-        load=HEAVY,
-        enhanced_error=enhanced,
-        conventional_error=conventional,
-        unloaded_difference=float(
-            np.max(np.abs(complementary_stiffness(setting.arm(poses), np.zeros(6))))
-        ),
-        force_asymmetry=_asymmetry(setting, rng, moment=False),
-        moment_asymmetry=_asymmetry(setting, rng, moment=True),
-        third_derivatives=_third_derivatives(setting, poses),
-        negative_cases=cases,
-        negative_failures=failures,
-        congruent_cases=same + different,
-        congruence_failures=different,
-        minors_agree=minors,
-        enhanced_cycle=_cycle(setting, poses, enhanced=True),
-        conventional_cycle=_cycle(setting, poses, enhanced=False),
-        loop_error=_loop(setting),
+        HEAVY,
+        enhanced,
+        conventional,
+        float(np.max(np.abs(unloaded))),
+        force_asymmetry,
+        moment_asymmetry,
+        _third_derivatives(setting, poses),
+        negative,
+        failures,
+        congruent,
+        different,
+        minors,
+        _cycle(setting, poses, enhanced=True),
+        _cycle(setting, poses, enhanced=False),
+        float(np.max(np.abs(rod - lever))),
     )
 
 
@@ -119,8 +129,7 @@ def _loaded_compliance(
 ) -> tuple[float, float]:
     force = rng.normal(size=(len(poses), 3))
     force *= HEAVY / np.linalg.norm(force, axis=1, keepdims=True)
-    start = np.concatenate([poses, np.zeros_like(poses)], axis=1)
-    law = linear_springs(setting.springs)
+    start, law = straight(poses), linear_springs(setting.springs)
 
     def position(extra: Array) -> Array:
         load = wrench_of(force + extra)
@@ -149,8 +158,7 @@ def _cycle(setting: Setting, poses: Array, *, enhanced: bool, steps: int = 60) -
 
     Joint angles and work are carried along the circle by Runge and Kutta's fourth-order steps.
     """
-    start = np.concatenate([poses, np.zeros_like(poses)], axis=1)
-    law = linear_springs(setting.springs)
+    start, law = straight(poses), linear_springs(setting.springs)
     theta = equilibrium(setting.mechanism, start, wrench_of([HEAVY, 0.0, 0.0]), law).z[:, :3]
     energy = 0.5 * (setting.arm_springs * (theta - poses) ** 2).sum(axis=1)
 
@@ -176,9 +184,11 @@ def _cycle(setting: Setting, poses: Array, *, enhanced: bool, steps: int = 60) -
     return float(np.max(np.abs(work / energy)))
 
 
-def _asymmetry(setting: Setting, rng: np.random.Generator, *, moment: bool) -> float:
+def _asymmetry(setting: Setting, rng: np.random.Generator, first: int) -> float:
+    """Of K_C on all six joints, for forces (`first` 0) or moments (3)."""
     a = np.concatenate([random_poses(rng, 50), rng.uniform(-2.0, 2.0, (50, 3))], axis=1)
-    load = rng.normal(size=(50, 6)) * (np.arange(6) >= 3 if moment else np.arange(6) < 3)
+    load = np.zeros((50, 6))
+    load[:, first : first + 3] = rng.normal(size=(50, 3))
     K_C = complementary_stiffness(setting.robot.screws(a), load)
     skew = np.linalg.norm(K_C - np.swapaxes(K_C, -1, -2), axis=(1, 2))
     return float(np.max(skew / np.linalg.norm(K_C, axis=(1, 2))))
@@ -200,28 +210,19 @@ def _classes(setting: Setting) -> tuple[int, int, int, int, bool]:
     """Corollary 1, Appendix II and the printed minors, over the grid and many loads."""
     screws = setting.arm(motion_grid()[::7])
     J = screws.linear_jacobian
-    negative = failures = same = different = 0
+    # Close to a singular pose rounding blurs the eigenvalues of K_X.
+    regular = np.linalg.svd(J, compute_uv=False)[:, -1] > 0.05
+    negative = failures = congruent = different = 0
     minors = True
-    for size in SIZES:
-        for unit in even_directions(12):
-            K_C = complementary_stiffness(screws, wrench_of(size * unit))
-            K = setting.K_theta - K_C
-            of_K_C, of_K = definiteness(K_C), definiteness(K)
-            below = (of_K_C == 2) | (of_K_C == 3)
-            negative += int(below.sum())
-            failures += int((below & (of_K != 0)).sum())
-            minors &= bool(
-                np.array_equal((printed_minors(setting.K_theta, K_C) > 0).all(axis=-1), of_K == 0)
-            )
-            # Close to a singular pose rounding blurs the eigenvalues of K_X.
-            K_X = cartesian_stiffness(J, K)
-            regular = np.linalg.svd(J, compute_uv=False)[:, -1] > 0.05
-            equal = definiteness(K_X[regular]) == of_K[regular]
-            same, different = same + int(equal.sum()), different + int((~equal).sum())
-    return negative, failures, same, different, minors
-
-
-def _loop(setting: Setting) -> float:
-    grid = np.concatenate([motion_grid(), np.zeros((len(motion_grid()), 3))], axis=1)
-    rod, lever = (setting.robot.placement(grid, f) for f in ("rod_end", "forearm_lever_end"))
-    return float(np.max(np.abs(rod - lever)[..., :3, 3]))
+    for load in (wrench_of(size * unit) for size in SIZES for unit in even_directions(12)):
+        K_C = complementary_stiffness(screws, load)
+        K = setting.K_theta - K_C
+        of_K_C, of_K = definiteness(K_C), definiteness(K)
+        below = (of_K_C == 2) | (of_K_C == 3)
+        negative += int(below.sum())
+        failures += int((below & (of_K != 0)).sum())
+        signs = (printed_minors(setting.K_theta, K_C) > 0).all(axis=-1)
+        minors &= bool(np.array_equal(signs, of_K == 0))
+        congruent += int(regular.sum())
+        different += int((definiteness(cartesian_stiffness(J, K)[regular]) != of_K[regular]).sum())
+    return negative, failures, congruent, different, minors

@@ -16,8 +16,12 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.paper.setting import Setting
 
+Method = Literal["trf", "lm"]
+METHODS: tuple[Method, ...] = ("trf", "lm")
 #: Starting values for all three springs [N·m/rad]: 1e5 to 1e10 N·mm/rad; the paper starts from 1e8.
 STARTS = (1e2, 1e4, 1e5, 1e7)
+#: Fits that `identify_springs` makes of three poses.
+FITS = 3 + len(METHODS) * len(STARTS) + 3
 
 # Scatter is not published: these have a scale to start from, and are compared with each other only.
 SHARED_ZERO = NoiseModel(10e-6, zero="shared", freedom=0)
@@ -26,19 +30,9 @@ EQUAL_WEIGHTS = NoiseModel(10e-6, zero="separate", freedom=0)
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """One run of one algorithm.
+    """One run of one algorithm: the start of all three springs, and (3,) its end [N·m/rad]."""
 
-    Attributes
-    ----------
-    method
-        ``trf`` (interior-reflective Newton) or ``lm`` (Levenberg–Marquardt).
-    start
-        Starting value of all three springs [N·m/rad].
-    springs
-        (3,) where it ended [N·m/rad].
-    """
-
-    method: str
+    method: Method
     start: float
     springs: Array
 
@@ -90,43 +84,24 @@ class Identified:
 def identify_springs(
     setting: Setting, measured: Measurements, step: Callable[[], None] = lambda: None
 ) -> Identified:
-    """Identify the three springs from the measured rows.
+    """Identify the three springs from the measured rows; `step` is called after each fit."""
 
-    Parameters
-    ----------
-    setting
-        Robot and the paper's model, which gives the start.
-    measured
-        Table II's measured columns.
-    step
-        Called after each fit.
-    """
-
-    def one(
-        model: Model,
-        data: Measurements,
-        noise: NoiseModel,
-        method: Literal["trf", "lm"] = "trf",
-    ) -> Fit:
+    def one(model: Model, data: Measurements, noise: NoiseModel | None, method: Method) -> Fit:
         found = fit(model, data, noise=noise, method=method)
         step()
         return found
 
     model = setting.model
-    found = fit(model, measured)
-    step()
-    common = one(model, measured, SHARED_ZERO)
+    common = one(model, measured, SHARED_ZERO, "trf")
     attempts = []
-    methods: tuple[Literal["trf", "lm"], ...] = ("trf", "lm")
-    for method in methods:
+    for method in METHODS:
         for start in STARTS:
             far = model.with_public(**dict.fromkeys(model.names, start))
-            attempts.append(
-                Attempt(method, start, springs_of(one(far, measured, SHARED_ZERO, method)))
-            )
+            found = one(far, measured, SHARED_ZERO, method)
+            attempts.append(Attempt(method, start, springs_of(found)))
     labels = np.array(measured.pose)
     alone = {
-        pose: one(model, measured.select(np.flatnonzero(labels == pose)), SHARED_ZERO)
+        pose: one(model, measured.select(np.flatnonzero(labels == pose)), SHARED_ZERO, "trf")
         for pose in measured.poses
     }
     # Fits of parts and of the whole have the same noise model up to its scale: their χ² compare.
@@ -135,17 +110,13 @@ def identify_springs(
     left = common.degrees_of_freedom - more
     F = (common.chi_square - apart) / more / (apart / left)
     return Identified(
-        fit=found,
-        equal_weights=one(model, measured, EQUAL_WEIGHTS),
+        fit=one(model, measured, None, "trf"),
+        equal_weights=one(model, measured, EQUAL_WEIGHTS, "trf"),
         attempts=tuple(attempts),
         by_pose={pose: (springs_of(f), errors_of(f)) for pose, f in alone.items()},
         F=float(F),
         probability=float(stats.f.sf(F, more, left)),
     )
-
-
-#: Fits that `identify_springs` makes of three poses.
-FITS = 3 + 2 * len(STARTS) + 3
 
 
 def springs_of(found: Fit) -> Array:

@@ -1,4 +1,8 @@
-"""Remarks of the text that a printed row can confirm or not: tool direction, loads, stiffness."""
+"""The printed configurations: tool direction, size of the loads, stiffness, pulls of Figs. 4 to 6.
+
+The paper's points of Figs. 4 to 6 are drawn, not printed, and so are their forces. The curves here
+are the models', for deadweights of 0 to 50 kg hung along each base axis.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +12,9 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import DEADWEIGHTS, FIGURE_POSES, PrintedLoads
-from sk120stiff.paper.setting import Setting, motion_grid
+from sk120stiff.paper.setting import Setting, motion_grid, straight, wrench_of
 from sk120stiff.robot import STANDARD_GRAVITY
-from sk120stiff.stiffness import cartesian_compliance, principal_stiffness
+from sk120stiff.stiffness import cartesian_compliance, deflection, principal_stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,26 +43,54 @@ class Posture:
 
 def posture(setting: Setting, tables: tuple[PrintedLoads, ...]) -> Posture:
     """Look at every printed configuration and load."""
-    joints = np.concatenate(
-        [table.joints for table in tables] + [np.array([*FIGURE_POSES.values()])]
-    )
-    out = setting.robot.placement(joints)[:, :3, 2]
+    figures = np.array([*FIGURE_POSES.values()])
+    joints = np.concatenate([*(table.joints for table in tables), figures])
+    down = -setting.robot.placement(joints)[:, 2, 2]
     share = []
     for table in tables:
         for pose in table.poses:
             size = np.linalg.norm(table.force[table.rows(pose)], axis=1)
             share.append(size / (STANDARD_GRAVITY * DEADWEIGHTS[1 : len(size) + 1]))
-    softest = _softest(setting, motion_grid())
+    softest = dict(zip(FIGURE_POSES, _softest(setting, figures[:, :3]).tolist(), strict=True))
     return Posture(
-        tool_error=float(np.max(np.arccos(np.clip(-out[:, 2], -1.0, 1.0)))),
+        tool_error=float(np.max(np.arccos(np.clip(down, -1.0, 1.0)))),
         force_share=np.array([np.min(share), np.max(share)]),
-        softest=np.quantile(softest, [0.0, 0.25, 0.5, 0.75, 1.0]),
-        softest_of_figures={
-            figure: float(_softest(setting, pose[:3])) for figure, pose in FIGURE_POSES.items()
-        },
+        softest=np.quantile(_softest(setting, motion_grid()), [0.0, 0.25, 0.5, 0.75, 1.0]),
+        softest_of_figures=softest,
     )
 
 
 def _softest(setting: Setting, joints: Array) -> Array:
     J = setting.arm(joints).linear_jacobian
     return principal_stiffness(cartesian_compliance(J, setting.K_theta)).values[..., 0]
+
+
+@dataclass(frozen=True, eq=False)
+class Pull:
+    """A force that grows along one base axis at the configuration of Fig. 4, 5 or 6.
+
+    `force` is (k,) its size [N], `displacement` model name → (k, 3) of the flange, exact [m].
+    """
+
+    figure: str
+    axis: str
+    force: Array
+    displacement: dict[str, Array]
+
+
+def pulls(setting: Setting, springs: dict[str, Array]) -> tuple[Pull, ...]:
+    """Curves of each printed configuration and axis, for each model's (3,) springs [N·m/rad]."""
+    force, rigid = STANDARD_GRAVITY * DEADWEIGHTS, np.full(3, np.inf)
+    found = []
+    for figure, joints in FIGURE_POSES.items():
+        pose = straight(joints[:3])
+        for axis, along in zip("xyz", np.eye(3), strict=True):
+            wrench = wrench_of(force[:, None] * along)
+            moved = {
+                name: deflection(
+                    setting.mechanism, pose, wrench, np.append(values, rigid)
+                ).equilibrium
+                for name, values in springs.items()
+            }
+            found.append(Pull(figure, axis, force, moved))
+    return tuple(found)

@@ -1,8 +1,8 @@
 """What the paper prints: its tables as data, and the numbers of its text.
 
 G. Alici, B. Shirinzadeh, "Enhanced Stiffness Modeling, Identification and Characterization for
-Robot Manipulators", IEEE Transactions on Robotics, 2005. Values are the printed ones, converted to
-SI and nothing else; signs are untouched.
+Robot Manipulators", IEEE Transactions on Robotics, 2005. Values are the printed ones in SI; signs
+are untouched.
 """
 
 from __future__ import annotations
@@ -23,26 +23,22 @@ from sk120stiff.units import split_header, to_si
 LOWER: Array = np.radians([-180.0, -70.0, -115.0])
 UPPER: Array = np.radians([180.0, 70.0, 35.0])
 STEP = 0.2
-#: Section VI: size of each force component of Table IV [N].
+#: Section VI: size of each force component of Table IV; "forces as large as 10 kN are needed" [N].
 COMPONENT = 100.0
-#: Section VI: "the forces as large as 10 kN are needed" [N].
 CLAIMED_CRITICAL_FORCE = 10e3
 #: Section IV-B: "with a residual norm of 2.2106", unit not given (mm² by eq. (12)).
 RESIDUAL_NORM = 2.2106
-#: Section IV-B: configurations, load levels.
+#: Section IV-B: configurations, load levels, and deadweights [kg].
 CONFIGURATIONS, LOADINGS = 20, 5
-#: Section IV-B: deadweights 0 to 50 kg in steps of 10 kg [kg].
 DEADWEIGHTS = np.array([0.0, 10.0, 20.0, 30.0, 40.0, 50.0])
 #: Section I: resolution of the laser tracker [m].
 RESOLUTION = 1.26e-6
-
 #: Configurations of Figs. 4 to 6, six joint readings each [rad].
 FIGURE_POSES = {
     "4": np.radians([-89.3803, -62.9809, 21.2489, 0.0, -111.2492, -90.0]),
     "5": np.radians([98.1065, 23.2088, -20.7957, 0.0, -69.2041, 90.0]),
     "6": np.radians([-13.6727, -10.9660, -37.4489, 0.0, -52.5514, -90.0]),
 }
-
 #: Table I and section II [m]; lengths that Table I gives as zero are left out.
 DIMENSIONS = {"L1": 0.215, "L2": 1.100, "L3": 0.250, "D4": 1.300, "D6": 0.230}
 #: Section II, the fixture: ahead of the flange, and off its axis [m].
@@ -53,18 +49,9 @@ _KINDS = {"joint": "angle", "f": "force", "d": "length", "calc": "length"}
 
 @dataclass(frozen=True, eq=False)
 class PrintedLoads:
-    """Rows of Table II or III.
+    """N rows of Table II or III: labels, (N, 6) joints [rad], (N, 3) force [N], other columns.
 
-    Attributes
-    ----------
-    pose
-        N labels.
-    joints
-        (N, 6) joint readings [rad].
-    force
-        (N, 3) [N].
-    columns
-        Every other column (N,) by its printed name, in SI where it has a unit.
+    `columns` holds (N,) values by the printed name, in SI where they have a unit.
     """
 
     pose: tuple[str, ...]
@@ -83,13 +70,7 @@ class PrintedLoads:
 
 
 def data_folder() -> Path:
-    """The bundled data of the SK120.
-
-    Raises
-    ------
-    InputError
-        The installation lacks the bundled robot.
-    """
+    """The bundled data of the SK120; `InputError` where the installation lacks the robot."""
     robots = bundled_robots()
     if "motoman_sk120" not in robots:
         raise InputError(
@@ -102,21 +83,17 @@ def printed_loads(table: int) -> PrintedLoads:
     """Table II or III as printed."""
     rows = _rows(table)
     values: dict[str, Array] = {}
-    for header in rows[0]:
+    for header in list(rows[0])[1:]:
         name, unit = split_header(header)
-        if name == "pose":
-            continue
-        numbers = np.array([float(row[header]) for row in rows])
         kind = _KINDS.get(name.split("_")[0].rstrip("xyz"))
-        known = unit is not None and kind is not None
-        values[name] = to_si(numbers, str(unit), str(kind)) if known else numbers
+        numbers = np.array([float(row[header]) for row in rows])
+        values[name] = to_si(numbers, unit, kind) if unit and kind else numbers
     joints = [name for name in values if name.startswith("joint_")]
-    forces = ["fx", "fy", "fz"]
     return PrintedLoads(
         pose=tuple(row["pose"] for row in rows),
-        joints=np.stack([values[name] for name in joints], axis=1),
-        force=np.stack([values[name] for name in forces], axis=1),
-        columns={k: v for k, v in values.items() if k not in joints and k not in forces},
+        joints=np.stack([values.pop(name) for name in joints], axis=1),
+        force=np.stack([values.pop(name) for name in ("fx", "fy", "fz")], axis=1),
+        columns=values,
     )
 
 
@@ -124,8 +101,7 @@ def printed_counts() -> tuple[Array, Index]:
     """Table IV: signs of the force components (8, 3), and counts (8, 5) PD, PSD, ND, NSD, ID."""
     rows = _rows(4)
     signs = [[1.0 if sign == "+" else -1.0 for sign in row["force_signs_xyz"]] for row in rows]
-    names = ("PD", "PSD", "ND", "NSD", "ID")
-    counts = [[int(row[name]) for name in names] for row in rows]
+    counts = [[int(row[name]) for name in ("PD", "PSD", "ND", "NSD", "ID")] for row in rows]
     return np.array(signs), np.array(counts, dtype=np.intp)
 
 

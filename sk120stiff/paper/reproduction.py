@@ -3,41 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
 
-from sk120stiff.paper.appendix import Appendix, appendix
+from sk120stiff.paper.appendix import appendix
 from sk120stiff.paper.claims import Claim, claims
-from sk120stiff.paper.critical import Critical, critical
-from sk120stiff.paper.curves import Pull, pulls
-from sk120stiff.paper.formulation import Formulation, formulation
-from sk120stiff.paper.identified import FITS, Identified, identify_springs
-from sk120stiff.paper.parts import DiagonalParts, diagonal_parts
-from sk120stiff.paper.posture import Posture, posture
-from sk120stiff.paper.setting import Setting, setting
-from sk120stiff.paper.table2 import Table2, table2
-from sk120stiff.paper.table3 import Table3, table3
-from sk120stiff.paper.table4 import Table4, table4
+from sk120stiff.paper.findings import Findings
+from sk120stiff.paper.forces import critical, diagonal_parts
+from sk120stiff.paper.formulation import formulation
+from sk120stiff.paper.identified import FITS, identify_springs
+from sk120stiff.paper.posture import posture, pulls
+from sk120stiff.paper.setting import setting
+from sk120stiff.paper.table2 import table2
+from sk120stiff.paper.table3 import table3
+from sk120stiff.paper.table4 import table4
 
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, eq=False)
-class Reproduction:
+class Reproduction(Findings):
     """Every table, figure and claim of the paper beside ours; made by `reproduce`."""
-
-    setting: Setting
-    table2: Table2
-    identified: Identified
-    table3: Table3
-    table4: Table4
-    critical: Critical
-    appendix: Appendix
-    formulation: Formulation
-    posture: Posture
-    parts: DiagonalParts
-    pulls: tuple[Pull, ...]
 
     @cached_property
     def claims(self) -> tuple[Claim, ...]:
@@ -48,10 +33,7 @@ class Reproduction:
 def reproduce(report: Callable[[int, int], None] = lambda _done, _total: None) -> Reproduction:
     """Recompute the paper's tables and figures with the bundled SK120.
 
-    Parameters
-    ----------
-    report
-        Called with steps done and steps in all.
+    `report` is called with steps done and steps in all.
     """
     done, total = 0, FITS + 9
 

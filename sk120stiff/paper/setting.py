@@ -1,4 +1,4 @@
-"""The arm on which the paper's numbers are recomputed."""
+"""The arm on which the paper's numbers are recomputed: the SK120 with the paper's springs."""
 
 from __future__ import annotations
 
@@ -18,15 +18,7 @@ from sk120stiff.stiffness import spring_matrix
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """The SK120 with the springs that the paper identified, loaded at its flange.
-
-    Attributes
-    ----------
-    robot
-        The bundled SK120.
-    model
-        Its base model: three springs, wrist rigid.
-    """
+    """The bundled SK120 and its base model, three springs and a rigid wrist; flange loaded."""
 
     robot: Robot
     model: Model
@@ -51,17 +43,9 @@ class Setting:
         """(3, 3) joint stiffness [N·m/rad]."""
         return spring_matrix(self.arm_springs)
 
-    def arm(
-        self, joints: ArrayLike, frame: str | None = None, point: ArrayLike | None = None
-    ) -> Screws:
-        """Kinematics by the first three joints alone, at (..., 3) or (..., 6) joint readings [rad].
-
-        Three readings stand for a straight wrist.
-        """
-        given = np.asarray(joints, dtype=float)
-        a = np.zeros((*given.shape[:-1], 6))
-        a[..., : given.shape[-1]] = given
-        screws = self.robot.screws(a, frame, point)
+    def arm(self, joints: Array, frame: str | None = None) -> Screws:
+        """Kinematics by the first three joints alone, at (..., 3 or 6) joint readings [rad]."""
+        screws = self.robot.screws(straight(joints), frame)
         return replace(screws, first=screws.first[..., :3])
 
 
@@ -71,13 +55,16 @@ def setting() -> Setting:
     return Setting(robot, base_model(robot))
 
 
-def motion_axes() -> tuple[Array, Array, Array]:
+def straight(joints: Array) -> Array:
+    """(..., 6) readings for (..., 3 or 6): the wrist is straight where it is not given [rad]."""
+    rest = np.zeros((*joints.shape[:-1], 6 - joints.shape[-1]))
+    return np.concatenate([joints, rest], axis=-1)
+
+
+def motion_axes() -> tuple[Array, ...]:
     """Values of joints 1, 2, 3 that section VI steps through, each from its lower limit [rad]."""
-    first, second, third = (
-        low + STEP * np.arange(int((high - low) / STEP + 1e-9) + 1)
-        for low, high in zip(LOWER, UPPER, strict=True)
-    )
-    return first, second, third
+    ends = zip(LOWER, UPPER, strict=True)
+    return tuple(low + STEP * np.arange(int((high - low) / STEP + 1e-9) + 1) for low, high in ends)
 
 
 def motion_grid() -> Array:
@@ -88,6 +75,15 @@ def motion_grid() -> Array:
 def random_poses(rng: np.random.Generator, count: int) -> Array:
     """(count, 3) readings of the first three joints, evenly over their ranges [rad]."""
     return rng.uniform(LOWER, UPPER, size=(count, 3))
+
+
+def even_directions(count: int) -> Array:
+    """(count, 3) unit vectors spread evenly over the sphere, on a spiral."""
+    k = np.arange(count) + 0.5
+    z = 1.0 - 2.0 * k / count
+    angle = np.pi * (1.0 + 5.0**0.5) * k
+    across = np.sqrt(1.0 - z**2)
+    return np.stack([across * np.cos(angle), across * np.sin(angle), z], axis=1)
 
 
 def wrench_of(force: ArrayLike) -> Array:

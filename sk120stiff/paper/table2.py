@@ -25,77 +25,53 @@ FORMULAS = ("conventional", "enhanced", "second_order", "equilibrium")
 
 @dataclass(frozen=True)
 class Variant:
-    """Another reading of where the load acted, and how far it is from the printed columns.
-
-    Attributes
-    ----------
-    name
-        Wrist and point.
-    calculated_rms, measured_rms
-        Root mean square over all rows and axes [m].
-    """
+    """Another reading of where the load acted, and its rms over all rows and axes [µm]."""
 
     name: str
-    calculated_rms: float
-    measured_rms: float
+    calculated_rms_um: float
+    measured_rms_um: float
 
 
 @dataclass(frozen=True, eq=False)
 class Table2:
-    """Rows of Table II in the frame `base_link`.
+    """N rows of Table II in the frame `base_link`.
 
-    Attributes
-    ----------
-    printed
-        The table as printed.
-    measured
-        The measured columns as measurements.
-    calculated
-        (N, 3) the calculated columns, signs converted [m].
-    ours
-        Our deflections by four formulas, with the paper's springs.
-    variants
-        Other readings of the load's point.
+    `calculated` and `displacement` are the paper's two columns with their signs converted, (N, 3)
+    [m]; `ours` are our deflections with the paper's springs by four formulas.
     """
 
     printed: PrintedLoads
     measured: Measurements
     calculated: Array
+    displacement: Array
     ours: Deflection
     variants: tuple[Variant, ...]
 
-    @property
-    def poses(self) -> tuple[str, ...]:
-        """Labels of the poses."""
-        return self.printed.poses
-
     @cached_property
-    def displacement(self) -> Array:
-        """(N, 3) measured displacements [m]."""
-        return _displacement(self.measured)
+    def gap(self) -> Array:
+        """(N, 3) measured minus predicted at exact equilibrium [m]."""
+        return np.asarray(self.displacement - self.ours.equilibrium)
 
     @cached_property
     def negated(self) -> dict[str, tuple[str, ...]]:
         """Columns whose printed sign was changed, by pose."""
-        found = {}
-        for pose in self.poses:
-            rows = self.printed.rows(pose)
-            changed = [
-                f"f{axis}"
-                for k, axis in enumerate("xyz")
-                if _negated(self.printed.force[rows, k], self.measured.wrench[rows, k])
-            ]
-            changed += [
-                f"d{axis}"
-                for k, axis in enumerate("xyz")
-                if _negated(self.printed.columns[f"d{axis}"][rows], self.displacement[rows, k])
-            ]
-            found[pose] = tuple(changed)
-        return found
+        pairs = {
+            **{f"f{x}": (self.printed.force[:, k], self.measured.wrench[:, k]) for k, x in _AXES},
+            **{f"d{x}": (self.printed.columns[f"d{x}"], self.displacement[:, k]) for k, x in _AXES},
+        }
+        return {
+            pose: tuple(
+                name
+                for name, (theirs, ours) in pairs.items()
+                if np.allclose(theirs[rows], -ours[rows], rtol=1e-12, atol=0.0)
+            )
+            for pose in self.printed.poses
+            for rows in [self.printed.rows(pose)]
+        }
 
     def per_pose(self, gap: Array) -> dict[str, float]:
         """Root mean square of (N, 3) over the rows and axes of each pose [m]."""
-        return {pose: rms(gap[self.printed.rows(pose)]) for pose in self.poses}
+        return {pose: rms(gap[self.printed.rows(pose)]) for pose in self.printed.poses}
 
     def calculated_rms(self, formula: str) -> dict[str, float]:
         """Ours minus the printed calculated column, by one of `FORMULAS`, per pose [m]."""
@@ -111,54 +87,38 @@ class Table2:
         return self.per_pose(self.ours.enhanced - self.ours.conventional)
 
 
+_AXES = tuple(enumerate("xyz"))
+
+
 def table2(setting: Setting) -> Table2:
     """Recompute Table II with the paper's springs."""
     printed = printed_loads(2)
-    folder = data_folder()
-    measured = read_measurements(folder / "table2_measured.csv", setting.robot.actuated)
-    calculated = _displacement(
-        read_measurements(folder / "table2_calculated.csv", setting.robot.actuated)
+    measured, calculated = (
+        read_measurements(data_folder() / f"table2_{column}.csv", setting.robot.actuated)
+        for column in ("measured", "calculated")
     )
-    ours = deflection(
-        setting.mechanism, measured.joints, measured.wrench, setting.springs, measured.point
-    )
-    return Table2(
-        printed=printed,
-        measured=measured,
-        calculated=calculated,
-        ours=ours,
-        variants=_variants(setting, printed, measured, calculated),
-    )
-
-
-def _variants(
-    setting: Setting, printed: PrintedLoads, measured: Measurements, calculated: Array
-) -> tuple[Variant, ...]:
-    """Straight or printed wrist, flange or reflector."""
-    found = []
-    displacement = _displacement(measured)
+    if measured.displacement is None or calculated.displacement is None:
+        raise InputError("Table II lacks displacements", remedy="Reinstall the package.")
+    variants = []
     for wrist, joints in (("straight", measured.joints), ("as printed", printed.joints)):
-        for frame in ("tool0", "reflector"):
-            mechanism = setting.robot.mechanism(frame)
-            moved = deflection(mechanism, joints, measured.wrench, setting.springs).equilibrium
-            point = "flange" if frame == "tool0" else "reflector on the fixture"
-            found.append(
+        for frame, point in (("tool0", "flange"), ("reflector", "reflector on the fixture")):
+            moved = deflection(
+                setting.robot.mechanism(frame), joints, measured.wrench, setting.springs
+            ).equilibrium
+            variants.append(
                 Variant(
                     f"wrist {wrist}, load at the {point}",
-                    calculated_rms=rms(moved - calculated),
-                    measured_rms=rms(moved - displacement),
+                    1e6 * rms(moved - calculated.displacement),
+                    1e6 * rms(moved - measured.displacement),
                 )
             )
-    return tuple(found)
-
-
-def _displacement(measurements: Measurements) -> Array:
-    if measurements.displacement is None:
-        raise InputError(
-            "there are no displacements", where=str(measurements.path), remedy="Reinstall the data."
-        )
-    return measurements.displacement
-
-
-def _negated(printed: Array, converted: Array) -> bool:
-    return bool(np.allclose(printed, -converted, rtol=1e-12, atol=0.0))
+    return Table2(
+        printed,
+        measured,
+        calculated.displacement,
+        measured.displacement,
+        deflection(
+            setting.mechanism, measured.joints, measured.wrench, setting.springs, measured.point
+        ),
+        tuple(variants),
+    )

@@ -13,7 +13,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import PrintedLoads, printed_loads
-from sk120stiff.paper.setting import Setting, wrench_of
+from sk120stiff.paper.setting import Setting, straight, wrench_of
 from sk120stiff.stiffness import (
     PaperWork,
     cartesian_compliance,
@@ -26,27 +26,22 @@ from sk120stiff.stiffness import (
 
 @dataclass(frozen=True, eq=False)
 class Table3:
-    """N loads of Table III.
+    """N loads of Table III, all works in J; `printed` has the unit of the file, "as printed".
 
     Attributes
     ----------
-    printed
-        The table as printed; its works are in the unit of the file, which says "as printed".
-    displacement
-        (N, 3) predicted by the paper's springs at exact equilibrium [m].
     works
-        Eq. (14) and (15) for these displacements [J].
+        Eq. (14) and (15) for the displacements that the paper's springs predict.
     any_displacement
-        The same formulas for displacements drawn at random, 0.1 to 1 mm: the identity of the
-        enhanced works does not ask what was displaced [J].
+        The same for displacements drawn at random, 0.1 to 1 mm: the identity of the enhanced works
+        does not ask what was displaced.
     work, energy
-        (N,) ∫ F · dX along the loading path, and energy in the springs at its end [J].
+        (N,) ∫ F · dX along the loading path, and energy in the springs at its end.
     largest
-        (N,) the most that eq. (14) can give for a force of this size in any direction [J].
+        (N,) the most that eq. (14) can give for a force of this size in any direction.
     """
 
     printed: PrintedLoads
-    displacement: Array
     works: PaperWork
     any_displacement: PaperWork
     work: Array
@@ -62,6 +57,12 @@ class Table3:
     def printed_conventional(self) -> Array:
         """(N,) as printed, read as N·mm [J]."""
         return 1e-3 * self.printed.columns["work_joint_conventional"]
+
+    @cached_property
+    def differences(self) -> tuple[Array, Array]:
+        """(N,) conventional joint work minus Cartesian work: theirs, ours [J]."""
+        ours = self.works.joint_conventional - self.works.cartesian
+        return self.printed_conventional - self.printed_cartesian, ours
 
     @cached_property
     def ratio(self) -> Array:
@@ -87,12 +88,9 @@ class Table3:
     @cached_property
     def repeated(self) -> tuple[tuple[int, int], ...]:
         """Pairs of neighbouring rows of one pose that print the same Fy and Fz."""
-        F, pose = self.printed.force, self.printed.pose
-        return tuple(
-            (k, k + 1)
-            for k in range(len(pose) - 1)
-            if pose[k] == pose[k + 1] and (F[k, 1:] == F[k + 1, 1:]).all()
-        )
+        F, pose = self.printed.force, np.array(self.printed.pose)
+        same = (pose[1:] == pose[:-1]) & (F[1:, 1:] == F[:-1, 1:]).all(axis=1)
+        return tuple((int(k), int(k) + 1) for k in np.flatnonzero(same))
 
     @cached_property
     def work_per_force_squared(self) -> Array:
@@ -103,23 +101,18 @@ class Table3:
 def table3(setting: Setting, *, seed: int = 0) -> Table3:
     """Recompute Table III at the flange with a straight wrist, as Table II comes out."""
     printed = printed_loads(3)
-    wrench = wrench_of(printed.force)
-    joints = printed.joints.copy()
-    joints[:, 3:] = 0.0
+    wrench, joints = wrench_of(printed.force), straight(printed.joints[:, :3])
     moved = deflection(setting.mechanism, joints, wrench, setting.springs).equilibrium
     screws = setting.arm(joints)
     rng = np.random.default_rng(seed)
     drawn = rng.uniform(1e-4, 1e-3, moved.shape) * rng.choice([-1.0, 1.0], moved.shape)
     work, energy = loading_balance(setting.mechanism, joints, wrench, setting.springs)
-    softest = principal_stiffness(
-        cartesian_compliance(screws.linear_jacobian, setting.K_theta)
-    ).values[:, 0]
+    compliance = cartesian_compliance(screws.linear_jacobian, setting.K_theta)
     return Table3(
-        printed=printed,
-        displacement=moved,
-        works=paper_work(screws, setting.arm_springs, printed.force, moved),
-        any_displacement=paper_work(screws, setting.arm_springs, printed.force, drawn),
-        work=work,
-        energy=energy,
-        largest=1.5 * (printed.force**2).sum(axis=1) / softest,
+        printed,
+        paper_work(screws, setting.arm_springs, printed.force, moved),
+        paper_work(screws, setting.arm_springs, printed.force, drawn),
+        work,
+        energy,
+        1.5 * (printed.force**2).sum(axis=1) / principal_stiffness(compliance).values[:, 0],
     )

@@ -16,7 +16,7 @@ from sk120stiff.stiffness import CLASSES, complementary_stiffness, definiteness
 
 @dataclass(frozen=True, eq=False)
 class Table4:
-    """Counts of configurations; columns of counts are PD, PSD, ND, NSD, ID.
+    """Counts of configurations; columns of counts are PD, PSD, ND, NSD, ID, cases count from 1.
 
     Attributes
     ----------
@@ -26,10 +26,8 @@ class Table4:
         (8, 5) the paper's counts.
     classes
         (8, G) class of K_C at every configuration of the grid, as an index into `CLASSES`.
-    determinant
-        (8,) configurations with det(K_C) > 0.
-    difference_positive
-        (8,) configurations at which K_θ − K_C is positive definite.
+    determinant, difference_positive
+        (8,) configurations with det(K_C) > 0, and with K_θ − K_C positive definite.
     """
 
     signs: Array
@@ -57,33 +55,25 @@ class Table4:
 
     @cached_property
     def reproduced(self) -> tuple[int, ...]:
-        """Cases (from 1) whose printed row equals `determinant_counts`."""
+        """Cases whose printed row equals `determinant_counts`."""
         same = (self.printed[:, [0, 2, 4]] == self.determinant_counts).all(axis=1)
         return tuple(int(k) + 1 for k in np.flatnonzero(same))
 
     @cached_property
     def reproduced_determinant(self) -> tuple[int, ...]:
-        """Cases (from 1) whose printed PD column equals the count of det(K_C) > 0."""
+        """Cases whose printed PD column equals the count of det(K_C) > 0."""
         return tuple(int(k) + 1 for k in np.flatnonzero(self.printed[:, 0] == self.determinant))
 
     @cached_property
     def opposites(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of cases (from 1) with opposite forces."""
-        return tuple(
-            (i + 1, k + 1)
-            for i, k in combinations(range(len(self.signs)), 2)
-            if (self.signs[i] == -self.signs[k]).all()
-        )
+        """Pairs of cases with opposite forces."""
+        pairs = combinations(range(len(self.signs)), 2)
+        return tuple((i + 1, k + 1) for i, k in pairs if (self.signs[i] == -self.signs[k]).all())
 
     def mirrored(self, counts: Index) -> dict[tuple[int, int], bool]:
-        """For each pair of opposite forces: is PD(F) = ND(−F) and ND(F) = PD(−F)?
-
-        K_C is linear in F, so it must be.
-        """
+        """By pair of opposite forces: PD(F) = ND(−F) and ND(F) = PD(−F)? K_C is linear in F."""
         return {
-            (i, k): bool(
-                counts[i - 1, 0] == counts[k - 1, 2] and counts[i - 1, 2] == counts[k - 1, 0]
-            )
+            (i, k): bool((counts[i - 1, [0, 2]] == counts[k - 1, [2, 0]]).all())
             for i, k in self.opposites
         }
 
@@ -93,25 +83,18 @@ class Table4:
 
         det(−K_C) = −det(K_C), so counts of det(K_C) > 0 must add up to the size of the grid.
         """
-        return {
-            (i, k): int(self.printed[i - 1, 0] + self.printed[k - 1, 0]) for i, k in self.opposites
-        }
+        return {(i, k): int(self.printed[[i - 1, k - 1], 0].sum()) for i, k in self.opposites}
 
 
 def table4(setting: Setting) -> Table4:
     """Classes of K_C at the flange on the grid of section VI, for forces of ±100 N per axis."""
     signs, printed = printed_counts()
     screws = setting.arm(motion_grid())
-    classes, determinant, positive = [], [], []
-    for row in signs:
-        K_C = complementary_stiffness(screws, wrench_of(COMPONENT * row))
-        classes.append(definiteness(K_C))
-        determinant.append(int((np.linalg.det(K_C) > 0.0).sum()))
-        positive.append(int((definiteness(setting.K_theta - K_C) == 0).sum()))
+    K_C = [complementary_stiffness(screws, wrench_of(COMPONENT * row)) for row in signs]
     return Table4(
-        signs=signs,
-        printed=printed,
-        classes=np.array(classes),
-        determinant=np.array(determinant, dtype=np.intp),
-        difference_positive=np.array(positive, dtype=np.intp),
+        signs,
+        printed,
+        np.array([definiteness(K) for K in K_C]),
+        np.array([(np.linalg.det(K) > 0.0).sum() for K in K_C], dtype=np.intp),
+        np.array([(definiteness(setting.K_theta - K) == 0).sum() for K in K_C], dtype=np.intp),
     )

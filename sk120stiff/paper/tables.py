@@ -4,39 +4,25 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
+from sk120stiff.paper.identified import springs_of
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE
+from sk120stiff.paper.reproduction import Reproduction
 from sk120stiff.stiffness import CLASSES
-
-if TYPE_CHECKING:
-    from sk120stiff.paper.reproduction import Reproduction
-
-_AXES = ("x", "y", "z")
 
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """One column, or three that belong together.
+    """One column, or three that belong together: N words, or (N,) or (N, 3) numbers.
 
-    Attributes
-    ----------
-    name
-        What it holds, and whose it is.
-    values
-        N words, or (N,) or (N, 3) numbers.
-    unit
-        Empty for words and counts.
-    decimals
-        Places after the point; None writes counts and words as they are.
-    brief
-        Shown where room is short.
+    `decimals` None writes counts and words as they are; a column that is not `brief` stands in the
+    CSV file alone.
     """
 
     name: str
@@ -60,46 +46,34 @@ class Column:
         """The unit as people write it."""
         return self.unit.replace("*", "·").replace("um", "µm").replace("uJ", "µJ")
 
+    @property
+    def names(self) -> list[str]:
+        """One name per number, with the axis where there are three."""
+        return [self.name] if self.width == 1 else [f"{self.name} {axis}" for axis in "xyz"]
+
+    def cells(self, row: int, *, more: int = 0) -> list[str]:
+        """The numbers of a row as text, with `more` decimals than people need."""
+        given = [self.values[row]] if self.width == 1 else list(self.values[row])
+        if self.decimals is None:
+            return [str(value) for value in given]
+        return [f"{float(value):z.{self.decimals + more}f}" for value in given]
+
     def text(self, row: int) -> str:
         """The numbers of a row side by side, each as wide as the widest of its kind."""
-        return " ".join(
-            cell.rjust(width) for cell, width in zip(self.cells(row), self._widths, strict=True)
-        )
+        pairs = zip(self.cells(row), self._widths, strict=True)
+        return " ".join(cell.rjust(width) for cell, width in pairs)
 
     @cached_property
     def _widths(self) -> list[int]:
         if self.width == 1:
             return [0]
-        cells = [self.cells(row) for row in range(len(self.values))]
-        return [max(len(row[k]) for row in cells) for k in range(self.width)]
-
-    def names(self) -> list[str]:
-        """One name per number, with the axis where there are three."""
-        return [self.name] if self.width == 1 else [f"{self.name} {axis}" for axis in _AXES]
-
-    def cells(self, row: int, *, more: int = 0) -> list[str]:
-        """The numbers of a row as text, with `more` decimals than people need."""
-        value = self.values[row]
-        given = [value] if self.width == 1 else list(value)
-        places = None if self.decimals is None else self.decimals + more
-        return [_cell(x, places) for x in given]
+        rows = [self.cells(row) for row in range(len(self.values))]
+        return [max(map(len, cells)) for cells in zip(*rows, strict=True)]
 
 
 @dataclass(frozen=True, eq=False)
 class SideBySide:
-    """A table of the paper beside ours.
-
-    Attributes
-    ----------
-    name
-        Name of its file, without ending.
-    title
-        Heading.
-    columns
-        All of one length.
-    note
-        What it shows, in a sentence or two.
-    """
+    """A table of the paper beside ours; `name` is that of its file, without ending."""
 
     name: str
     title: str
@@ -111,13 +85,16 @@ class SideBySide:
         """Number of rows."""
         return len(self.columns[0].values)
 
-    def header(self) -> list[str]:
-        """Names of single columns."""
-        return [name for column in self.columns for name in column.names()]
+    @property
+    def brief(self) -> tuple[Column, ...]:
+        """The columns that are shown where room is short."""
+        return tuple(column for column in self.columns if column.brief)
 
-    def units(self) -> list[str]:
-        """Units of single columns."""
-        return [column.unit for column in self.columns for _ in column.names()]
+    @property
+    def header(self) -> list[str]:
+        """Names of single columns with their units."""
+        units = {column.name: f"[{column.unit}]" if column.unit else "" for column in self.columns}
+        return [name + units[column.name] for column in self.columns for name in column.names]
 
     def rows(self, *, more: int = 0) -> list[list[str]]:
         """Single cells as text, numbers with `more` decimals than people need."""
@@ -127,38 +104,25 @@ class SideBySide:
         ]
 
     def csv(self) -> str:
-        """The table as CSV text, units in the header, three decimals more than shown elsewhere."""
+        """The table as CSV text, three decimals more than shown elsewhere."""
         stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        heads = zip(self.header(), self.units(), strict=True)
-        writer.writerow([f"{name}[{unit}]" if unit else name for name, unit in heads])
-        writer.writerows(self.rows(more=3))
+        csv.writer(stream, lineterminator="\n").writerows([self.header, *self.rows(more=3)])
         return stream.getvalue()
 
 
 def side_by_side(found: Reproduction) -> tuple[SideBySide, ...]:
     """Every table, in the order of the paper."""
-    return (
-        _table2_gaps(found),
-        _table2(found),
-        _springs(found),
-        _table3(found),
-        _table4(found),
-        _critical(found),
-        _appendix(found),
-        _parts(found),
-        _claims(found),
-    )
+    made = (_gaps, _table2, _springs, _table3, _table4, _critical, _appendix, _parts, _claims)
+    return tuple(table(found) for table in made)
 
 
-def _table2_gaps(found: Reproduction) -> SideBySide:
+def _gaps(found: Reproduction) -> SideBySide:
     table = found.table2
-    poses = table.poses
-    identified = table.per_pose(found.identified.fit.gap)
+    poses = table.printed.poses
     signs = [" ".join(table.negated[p]) for p in poses]
     told = "; ".join(f"pose {p} {names}" for p, names in zip(poses, signs, strict=True))
 
-    def column(name: str, values: dict[str, float], decimals: int = 2) -> Column:
+    def column(name: str, values: Mapping[str, float], decimals: int = 2) -> Column:
         return Column(name, 1e6 * np.array([values[p] for p in poses]), "um", decimals)
 
     return SideBySide(
@@ -172,7 +136,7 @@ def _table2_gaps(found: Reproduction) -> SideBySide:
             column("calc., exact", table.calculated_rms("equilibrium")),
             column("K_C on/off", table.effect_of_K_C),
             column("meas., paper's springs", table.measured_rms(), 1),
-            column("meas., identified", identified, 1),
+            column("meas., identified", table.per_pose(found.identified.fit.gap), 1),
         ),
         "Ours against the printed calculated column by three formulas, and the measured column "
         "against the paper's springs and against springs identified from these rows. Printed with "
@@ -182,19 +146,22 @@ def _table2_gaps(found: Reproduction) -> SideBySide:
 
 def _table2(found: Reproduction) -> SideBySide:
     table = found.table2
-    gap = table.displacement - table.ours.equilibrium
+
+    def column(name: str, values: Array, *, brief: bool = True) -> Column:
+        return Column(name, 1e6 * values, "um", 1, brief)
+
     return SideBySide(
         "table2",
         "Table II, deflections in base_link",
         (
             Column("pose", table.printed.pose),
             Column("force", table.measured.wrench[:, :3], "N", 1, brief=False),
-            Column("calculated, theirs", 1e6 * table.calculated, "um", 1),
-            Column("ours, eq. (11)", 1e6 * table.ours.enhanced, "um", 1, brief=False),
-            Column("ours, exact", 1e6 * table.ours.equilibrium, "um", 1),
-            Column("measured", 1e6 * table.displacement, "um", 1),
-            Column("gap", 1e6 * gap, "um", 1, brief=False),
-            Column("gap, identified", 1e6 * found.identified.fit.gap, "um", 1, brief=False),
+            column("calculated, theirs", table.calculated),
+            column("ours, eq. (11)", table.ours.enhanced, brief=False),
+            column("ours, exact", table.ours.equilibrium),
+            column("measured", table.displacement),
+            column("gap", table.gap, brief=False),
+            column("gap, identified", found.identified.fit.gap, brief=False),
         ),
         "Printed signs converted to one frame; load at the flange, wrist straight. A gap is "
         "measured minus predicted at exact equilibrium.",
@@ -203,26 +170,21 @@ def _table2(found: Reproduction) -> SideBySide:
 
 def _springs(found: Reproduction) -> SideBySide:
     fitted = found.identified
-    columns = [
-        Column("joint", [p.effect.where for p in fitted.fit.parameters]),
-        Column("paper", 1e-6 * found.setting.arm_springs, "MN*m/rad", 4),
-        Column("identified", 1e-6 * fitted.springs, "MN*m/rad", 4),
-        Column("std. error", 1e-6 * fitted.errors, "MN*m/rad", 4),
-        Column(
-            "equal weights",
-            1e-6 * np.array([p.value for p in fitted.equal_weights.parameters]),
-            "MN*m/rad",
-            4,
-        ),
-    ]
-    columns += [
-        Column(f"pose {pose} alone", 1e-6 * springs, "MN*m/rad", 4, brief=False)
-        for pose, (springs, _) in fitted.by_pose.items()
-    ]
+
+    def column(name: str, values: Array, *, brief: bool = True) -> Column:
+        return Column(name, 1e-6 * values, "MN*m/rad", 4, brief)
+
     return SideBySide(
         "identified",
         "Springs identified from Table II",
-        tuple(columns),
+        (
+            Column("joint", [p.effect.where for p in fitted.fit.parameters]),
+            column("paper", found.setting.arm_springs),
+            column("identified", fitted.springs),
+            column("std. error", fitted.errors),
+            column("equal weights", springs_of(fitted.equal_weights)),
+            *(column(f"pose {p} alone", k, brief=False) for p, (k, _) in fitted.by_pose.items()),
+        ),
         f"Three of the paper's twenty poses. {len(fitted.attempts)} runs of both algorithms from "
         f"far starts agree to {fitted.spread:.0e}. Equal weights is the paper's eq. (12).",
     )
@@ -230,22 +192,24 @@ def _springs(found: Reproduction) -> SideBySide:
 
 def _table3(found: Reproduction) -> SideBySide:
     table = found.table3
-    mJ = 1e3  # 1 N·mm is 1 mJ
-    theirs = table.printed_conventional - table.printed_cartesian
-    ours = table.works.joint_conventional - table.works.cartesian
+    theirs, ours = table.differences
+
+    def column(name: str, values: Array, *, brief: bool = True) -> Column:
+        return Column(name, 1e3 * values, "mJ", 3, brief)  # 1 N·mm is 1 mJ
+
     return SideBySide(
         "table3",
         "Table III, works",
         (
             Column("pose", table.printed.pose),
             Column("force", table.printed.force, "N", 1, brief=False),
-            Column("Cartesian, theirs", mJ * table.printed_cartesian, "mJ", 3),
-            Column("eq. (14), ours", mJ * table.works.cartesian, "mJ", 3),
-            Column("eq. (15) with K_C, ours", mJ * table.works.joint_enhanced, "mJ", 3),
+            column("Cartesian, theirs", table.printed_cartesian),
+            column("eq. (14), ours", table.works.cartesian),
+            column("eq. (15) with K_C, ours", table.works.joint_enhanced),
             Column("without - with, theirs", 1e6 * theirs, "uJ", 1),
             Column("without - with, ours", 1e6 * ours, "uJ", 1),
-            Column("work along the path", mJ * table.work, "mJ", 3),
-            Column("energy in the springs", mJ * table.energy, "mJ", 3, brief=False),
+            column("work along the path", table.work),
+            column("energy in the springs", table.energy, brief=False),
         ),
         "Theirs printed as joule, read as N·mm; the deflections behind them are not printed, ours "
         "are those predicted. Eq. (14) counts three times the work along the path.",
@@ -254,23 +218,25 @@ def _table3(found: Reproduction) -> SideBySide:
 
 def _table4(found: Reproduction) -> SideBySide:
     table = found.table4
-    theirs = {"PD": 0, "ND": 2, "ID": 4}
     signs = ["".join("+" if x > 0 else "-" for x in row) for row in table.signs]
-    counted = table.determinant_counts
+    theirs = [Column(f"paper {name}", table.printed[:, k]) for name, k in _COUNTED.items()]
+    counted = [
+        Column(name, column, brief=name != "ND")
+        for name, column in zip(("det > 0", "ND", "rest"), table.determinant_counts.T, strict=True)
+    ]
+    true = [
+        Column(f"true {c.short}", column, brief=bool(column.any()))
+        for c, column in zip(CLASSES, table.counts.T, strict=True)
+    ]
     return SideBySide(
         "table4",
         f"Table IV, classes of K_C over {table.configurations} configurations",
         (
             Column("case", [str(k + 1) for k in range(len(signs))]),
             Column("force", signs),
-            *(Column(f"paper {name}", table.printed[:, k]) for name, k in theirs.items()),
-            Column("det > 0", counted[:, 0]),
-            Column("ND", counted[:, 1], brief=False),
-            Column("rest", counted[:, 2]),
-            *(
-                Column(f"true {c.short}", table.counts[:, k], brief=bool(table.counts[:, k].any()))
-                for k, c in enumerate(CLASSES)
-            ),
+            *theirs,
+            *counted,
+            *true,
             Column("K_theta - K_C PD", table.difference_positive, brief=False),
         ),
         "Theirs beside signs of the determinant, beside the classes by definition. PD(F) = ND(−F) "
@@ -280,15 +246,18 @@ def _table4(found: Reproduction) -> SideBySide:
     )
 
 
+_COUNTED = {"PD": 0, "ND": 2, "ID": 4}  # classes that the paper found, by their place
+
+
 def _critical(found: Reproduction) -> SideBySide:
     forces = found.critical
     rows = {
         "the paper, about": CLAIMED_CRITICAL_FORCE,
         "smallest, all poses and directions": forces.smallest,
+        "upper arm as a column, K2 / L2": forces.column,
+        **{f"quantile {q:g}": value for q, value in forces.quantiles.items() if q > 0},
+        **{f"C{k}{k} reaches K{k}": v for k, v in enumerate(forces.by_diagonal, start=1)},
     }
-    rows["upper arm as a column, K2 / L2"] = forces.column
-    rows |= {f"quantile {q:g}": value for q, value in forces.quantiles.items() if q > 0}
-    rows |= {f"C{k + 1}{k + 1} reaches K{k + 1}": v for k, v in enumerate(forces.by_diagonal)}
     return SideBySide(
         "critical",
         "Forces at which K_θ − K_C loses definiteness",
@@ -318,34 +287,18 @@ def _appendix(found: Reproduction) -> SideBySide:
 
 
 def _parts(found: Reproduction) -> SideBySide:
-    low, high = found.parts.lowest, found.parts.highest
     return SideBySide(
         "diagonal_parts",
         "Figs. 7 to 9, range of each part over the motion range",
         (
             Column("element", [s.element for s in found.parts.surfaces]),
-            Column("lowest, force along", low, "N*m/rad/N", 3),
-            Column("highest, force along", high, "N*m/rad/N", 3),
+            Column("lowest, force along", found.parts.lowest, "N*m/rad/N", 3),
+            Column("highest, force along", found.parts.highest, "N*m/rad/N", 3),
         ),
     )
 
 
 def _claims(found: Reproduction) -> SideBySide:
-    every = found.claims
-    return SideBySide(
-        "claims",
-        "Claims",
-        (
-            Column("where", [claim.where for claim in every]),
-            Column("claim", [claim.claim for claim in every]),
-            Column("verdict", [claim.verdict.value for claim in every]),
-            Column("evidence", [claim.evidence for claim in every]),
-        ),
-    )
-
-
-def _cell(value: object, decimals: int | None) -> str:
-    if decimals is None:
-        return str(value)
-    text = f"{float(value):.{decimals}f}"  # type: ignore[arg-type]
-    return text.lstrip("-") if float(text) == 0.0 else text
+    names = ("where", "claim", "verdict", "evidence")
+    columns = (Column(n, [str(getattr(claim, n)) for claim in found.claims]) for n in names)
+    return SideBySide("claims", "Claims", tuple(columns))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
 
 
@@ -17,27 +16,12 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and what became of it.
-
-    Attributes
-    ----------
-    where
-        Section, table, figure or equation.
-    claim
-        What the paper says, in short.
-    verdict
-        Ours.
-    evidence
-        Why, in one or two sentences with the numbers computed.
-    numbers
-        The same numbers by name, unit in the name, SI but for µm.
-    """
+    """A claim of the paper, its section, table or equation, and what became of it, and why."""
 
     where: str
     claim: str
     verdict: Verdict
     evidence: str
-    numbers: Mapping[str, float] = field(default_factory=dict)
 
 
 def small(value: float) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from sk120stiff.arrays import Array
 from sk120stiff.paper import Reproduction, Verdict
 from sk120stiff.paper.printed import FIGURE_POSES, data_folder
 from sk120stiff.paper.setting import motion_axes
@@ -35,7 +36,11 @@ from sk120stiff.show.report import (
     reproducibility,
 )
 
-_JOINT = {1: "θ1", 2: "θ2", 3: "θ3"}
+_KINDS = {
+    Verdict.REPRODUCED: "result",
+    Verdict.NOT_REPRODUCIBLE: "caution",
+    Verdict.WRONG: "problem",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,34 +66,23 @@ def report_of(
     found: Reproduction, tables: Sequence[SideBySide], figures: Sequence[PaperFigure]
 ) -> Report:
     """The page that `sk120stiff paper --out` writes."""
-    block = {table.name: _table(table) for table in tables}
-    note = {table.name: table.note for table in tables}
+    told: dict[str, list[str | Table]] = {t.name: [t.note, _table(t)] for t in tables}
     picture = {figure.name: figure.picture() for figure in figures}
-    exact = found.table2.calculated_rms("equilibrium")
-    counts = Counter(claim.verdict for claim in found.claims)
-    key = KeyFigures(
-        [
-            KeyFigure(
-                "Table II, calculated",
-                f"≤ {1e6 * max(exact.values()):.2f}",
-                "µm rms",
-                "ours minus theirs, per pose",
-            ),
-            KeyFigure(
-                "Table II, measured",
-                f"{1e6 * found.identified.fit.rms:.1f}",
-                "µm rms",
-                "after identification",
-            ),
-            KeyFigure(
-                "smallest critical force",
-                f"{found.critical.smallest / 1e3:.0f}",
-                "kN",
-                "the paper says about 10",
-            ),
-            *(KeyFigure(f"claims {verdict.value}", str(counts[verdict])) for verdict in Verdict),
-        ]
+    parts = [f"figure_{s.figure}{end}" for s in found.parts.surfaces for end in ("_surface", "")]
+    gaps = [*told["table2_gaps"], picture["table2"], picture["table2_gaps"]]
+    angles = (
+        "Its angles follow from the robot's readings by θ1' = θ1, θ2' = θ2 + 90°, θ3' = −θ3, "
+        "θ4' = θ4, θ5' = θ5, θ6' = θ6; the fixture adds 112.65 mm to D6 and is L6 = 205.32 mm."
     )
+    claims: list[Note | Items] = [
+        Note(
+            claim.evidence,
+            kind=_KINDS[claim.verdict],  # type: ignore[arg-type]
+            title=f"{claim.where}: {claim.claim} {claim.verdict.value.capitalize()}",
+        )
+        for claim in found.claims
+    ]
+    more = "The CSV files beside this page hold more columns and more digits."
     folder = data_folder()
     files = [folder / "printed" / f"table{k}.csv" for k in (2, 3, 4)]
     return Report(
@@ -99,48 +93,16 @@ def report_of(
         "micrometre, some of the paper's numbers do not, and some of its conclusions are wrong; "
         "each claim below says which, and why.",
         sections=[
-            Section(
-                "In short",
-                [key, "The CSV files beside this page hold more columns and more digits."],
-            ),
-            Section("Every claim", _claims(found)),
-            Section(
-                "Table II",
-                [
-                    note["table2_gaps"],
-                    block["table2_gaps"],
-                    picture["table2"],
-                    picture["table2_gaps"],
-                    note["table2"],
-                    block["table2"],
-                ],
-            ),
-            Section("Springs", [note["identified"], block["identified"], picture["identified"]]),
-            Section("Table III", [note["table3"], block["table3"]]),
-            Section("Table IV", [note["table4"], block["table4"], picture["table4"]]),
-            Section("Critical forces", [note["critical"], block["critical"]]),
+            Section("In short", [_key_figures(found), more]),
+            Section("Every claim", claims),
+            Section("Table II", [*gaps, *told["table2"]]),
+            Section("Springs", [*told["identified"], picture["identified"]]),
+            Section("Table III", told["table3"]),
+            Section("Table IV", [*told["table4"], picture["table4"]]),
+            Section("Critical forces", told["critical"]),
             Section("Figs. 4 to 6", [picture[f"figure_{figure}"] for figure in FIGURE_POSES]),
-            Section(
-                "Figs. 7 to 9",
-                [
-                    block["diagonal_parts"],
-                    *(
-                        picture[f"figure_{s.figure}{ending}"]
-                        for s in found.parts.surfaces
-                        for ending in ("_surface", "")
-                    ),
-                ],
-            ),
-            Section(
-                "Appendix I",
-                [
-                    note["appendix"],
-                    "Its angles follow from the robot's readings by θ1' = θ1, θ2' = θ2 + 90°, "
-                    "θ3' = −θ3, θ4' = θ4, θ5' = θ5, θ6' = θ6; the fixture adds 112.65 mm to D6 and "
-                    "is L6 = 205.32 mm.",
-                    block["appendix"],
-                ],
-            ),
+            Section("Figs. 7 to 9", [told["diagonal_parts"][1], *(picture[p] for p in parts)]),
+            Section("Appendix I", [told["appendix"][0], angles, told["appendix"][1]]),
         ],
         reproducibility=reproducibility(
             "sk120stiff paper --out DIR", [*files, folder / "table2_measured.csv"]
@@ -148,30 +110,32 @@ def report_of(
     )
 
 
-def _claims(found: Reproduction) -> list[Note | Items]:
-    kinds = {
-        Verdict.REPRODUCED: "result",
-        Verdict.NOT_REPRODUCIBLE: "caution",
-        Verdict.WRONG: "problem",
-    }
-    return [
-        Note(
-            claim.evidence,
-            kind=kinds[claim.verdict],  # type: ignore[arg-type]
-            title=f"{claim.where}: {claim.claim} {claim.verdict.value.capitalize()}",
-        )
-        for claim in found.claims
-    ]
+def _key_figures(found: Reproduction) -> KeyFigures:
+    exact = 1e6 * max(found.table2.calculated_rms("equilibrium").values())
+    left = 1e6 * found.identified.fit.rms
+    critical = found.critical.smallest / 1e3
+    counts = Counter(claim.verdict for claim in found.claims)
+    return KeyFigures(
+        [
+            KeyFigure(
+                "Table II, calculated", f"≤ {exact:.2f}", "µm rms", "ours minus theirs, per pose"
+            ),
+            KeyFigure("Table II, measured", f"{left:.1f}", "µm rms", "after identification"),
+            KeyFigure(
+                "smallest critical force", f"{critical:.0f}", "kN", "the paper says about 10"
+            ),
+            *(KeyFigure(f"claims {verdict.value}", str(counts[verdict])) for verdict in Verdict),
+        ]
+    )
 
 
 def _table(table: SideBySide) -> Table:
     """A page is narrower than a CSV file: some columns stay there, and some share a cell."""
-    shown = [column for column in table.columns if column.brief]
     return Table(
-        header=[column.name for column in shown],
-        rows=[[_cell(column, row) for column in shown] for row in range(table.count)],
+        header=[column.name for column in table.brief],
+        rows=[[_cell(column, row) for column in table.brief] for row in range(table.count)],
         caption=table.title,
-        units=[column.shown_unit for column in shown],
+        units=[column.shown_unit for column in table.brief],
         digits=6,
     )
 
@@ -188,35 +152,28 @@ def _cell(column: Column, row: int) -> object:
 
 def _table2(found: Reproduction) -> tuple[PaperFigure, ...]:
     table, fitted = found.table2, found.identified
-    identified = table.displacement - fitted.fit.gap
+    models = {
+        "paper's springs": table.ours.equilibrium,
+        "identified": table.displacement - fitted.fit.gap,
+    }
     curves = []
-    for pose in table.poses:
+    for pose in table.printed.poses:
         rows = table.printed.rows(pose)
         curves.append(
             LoadCurve(
                 title=f"pose {pose}",
                 force=np.linalg.norm(table.measured.wrench[rows, :3], axis=1),
                 measured=table.displacement[rows],
-                models={
-                    "paper's springs": table.ours.equilibrium[rows],
-                    "identified": identified[rows],
-                },
+                models={name: moved[rows] for name, moved in models.items()},
             )
         )
-    before, after = table.measured_rms(), table.per_pose(fitted.fit.gap)
-    gaps = {
-        "paper's springs": np.array([*before.values()]),
-        "identified": np.array([*after.values()]),
+    gaps: dict[str, Array] = {
+        name: np.array([*table.per_pose(table.displacement - moved).values()])
+        for name, moved in models.items()
     }
     estimates = [
-        Estimate(
-            name=parameter.effect.where,
-            value=float(value),
-            std=float(error),
-            unit="N·m/rad",
-            reference=float(paper),
-        )
-        for parameter, value, error, paper in zip(
+        Estimate(p.effect.where, float(value), float(error), "N·m/rad", reference=float(paper))
+        for p, value, error, paper in zip(
             fitted.fit.parameters, fitted.springs, fitted.errors, found.setting.arm_springs,
             strict=True,
         )
@@ -230,7 +187,7 @@ def _table2(found: Reproduction) -> tuple[PaperFigure, ...]:
         ),
         PaperFigure(
             "table2_gaps",
-            gap_per_pose(table.poses, gaps),
+            gap_per_pose(table.printed.poses, gaps),
             "Root-mean-square gap per pose with the paper's and with identified springs.",
             "What the models leave of the measured column.",
         ),
@@ -282,26 +239,18 @@ def _pulls(found: Reproduction) -> list[PaperFigure]:
 
 def _parts(found: Reproduction) -> list[PaperFigure]:
     """Each of Figs. 7 to 9 twice: as surfaces in perspective, and as maps to read values from."""
+    drawings = (("_surface", relief_parts, "as surfaces"), ("", surface_parts, "as maps"))
     figures = []
-    for surface in found.parts.surfaces:
-        held = f"{_JOINT[surface.held[0]]} = {np.degrees(surface.held[1]):.0f}°"
-        drawings = (("_surface", relief_parts, "as surfaces"), ("", surface_parts, "as maps"))
+    for s in found.parts.surfaces:
+        held = f"θ{s.held[0]} = {np.degrees(s.held[1]):.0f}°"
+        x, y = (f"θ{joint}" for joint in s.joints)
         for ending, draw, kind in drawings:
-            figure = draw(
-                surface.x,
-                surface.y,
-                surface.parts,
-                element=surface.element,
-                x_label=_JOINT[surface.joints[0]],
-                y_label=_JOINT[surface.joints[1]],
-            )
             figures.append(
                 PaperFigure(
-                    f"figure_{surface.figure}{ending}",
-                    figure,
-                    f"Parts of {surface.element} for unit forces over two joints, {kind}.",
-                    f"Fig. {surface.figure} {kind}: parts of {surface.element} for unit forces, at "
-                    f"{held}.",
+                    f"figure_{s.figure}{ending}",
+                    draw(s.x, s.y, s.parts, element=s.element, x_label=x, y_label=y),
+                    f"Parts of {s.element} for unit forces over two joints, {kind}.",
+                    f"Fig. {s.figure} {kind}: parts of {s.element} for unit forces, at {held}.",
                 )
             )
     return figures

@@ -54,7 +54,6 @@ def test_every_claim_has_a_reason(found):
         assert claim.where and claim.claim.endswith((".", ")"))
         assert claim.evidence.endswith(".") and len(claim.evidence) > 40
         assert not re.search(r"\b(nan|inf)\b", claim.evidence)
-        assert np.isfinite([*claim.numbers.values()]).all()
     assert len({(c.where, c.claim) for c in found.claims}) == len(found.claims)
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sk120stiff.paper.critical import critical, even_directions
-from sk120stiff.paper.parts import parts_at
+from sk120stiff.paper.forces import critical, parts_at
+from sk120stiff.paper.setting import even_directions
 from tests.paper.closed_forms import K_C, SPRINGS, grid
 
 

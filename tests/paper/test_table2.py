@@ -50,8 +50,8 @@ def test_negated_columns_are_those_of_the_sources(found):
 
 def test_only_the_straight_wrist_at_the_flange_reproduces(found):
     best, *others = found.table2.variants
-    assert best.calculated_rms < 0.3e-6 and best.measured_rms < 27e-6
-    assert all(v.calculated_rms > 50e-6 and v.measured_rms > 40e-6 for v in others)
+    assert best.calculated_rms_um < 0.3 and best.measured_rms_um < 27
+    assert all(v.calculated_rms_um > 50 and v.measured_rms_um > 40 for v in others)
 
 
 def test_printed_loads_are_the_printed_digits(found):

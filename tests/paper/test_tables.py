@@ -34,8 +34,7 @@ def test_csv_has_units_and_every_row(found):
 def test_columns():
     column = Column("d", np.array([[-0.04, 12.5, 3.0], [100.0, -7.25, 0.0]]), "um", 1)
     table = SideBySide("t", "T", (Column("pose", ["a", "b"]), column))
-    assert table.header() == ["pose", "d x", "d y", "d z"]
-    assert table.units() == ["", "um", "um", "um"]
+    assert table.header == ["pose", "d x[um]", "d y[um]", "d z[um]"]
     assert table.rows() == [["a", "0.0", "12.5", "3.0"], ["b", "100.0", "-7.2", "0.0"]]
     assert column.text(0) == "  0.0 12.5 3.0" and column.text(1) == "100.0 -7.2 0.0"
     assert column.shown_unit == "µm"

@@ -1,0 +1,174 @@
+"""What forces do to K_C and K_θ − K_C over the motion range: Figs. 7 to 9, and critical forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE, DIMENSIONS, LOWER, UPPER
+from sk120stiff.paper.setting import (
+    Setting,
+    even_directions,
+    motion_axes,
+    motion_grid,
+    straight,
+    wrench_of,
+)
+from sk120stiff.robot import Screws
+from sk120stiff.stiffness import complementary_stiffness, critical_load, deflection
+
+QUANTILES = (0.0, 0.01, 0.05, 0.25, 0.5)
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """One of Figs. 7 to 9 as maps over two joints.
+
+    Attributes
+    ----------
+    figure, element
+        ``"7"`` and ``"C11"``, and so on.
+    x, y
+        (nx,), (ny,) values of the two joints [rad].
+    joints, held
+        Their numbers, from 1; number and value of the third joint [rad].
+    parts
+        (3, ny, nx) contribution of a unit force along x, y, z [N·m/rad per N].
+    """
+
+    figure: str
+    element: str
+    x: Array
+    y: Array
+    joints: tuple[int, int]
+    held: tuple[int, float]
+    parts: Array
+
+
+@dataclass(frozen=True, eq=False)
+class DiagonalParts:
+    """Parts of C11, C22, C33 for unit forces: three figures, and their range over the grid.
+
+    `lowest` and `highest` are (3, 3), element by force component [N·m/rad per N].
+    """
+
+    surfaces: tuple[Surface, ...]
+    lowest: Array
+    highest: Array
+
+
+def unit_parts(screws: Screws) -> Array:
+    """(..., 3, n, n) K_C of a unit force along x, y and z [N·m/rad per N]."""
+    return np.stack([complementary_stiffness(screws, unit) for unit in np.eye(6)[:3]], axis=-3)
+
+
+def parts_at(setting: Setting, joints: Array) -> Array:
+    """(..., 3, 3) parts of C_ii by force component k, at joint readings (..., 3) [rad]."""
+    diagonal = np.diagonal(unit_parts(setting.arm(joints)), axis1=-2, axis2=-1)
+    return np.swapaxes(diagonal, -1, -2)
+
+
+def diagonal_parts(setting: Setting, *, count: int = 61) -> DiagonalParts:
+    """The parts over the grid, and as maps over the two joints that matter to each most."""
+    on_grid = parts_at(setting, motion_grid())
+    middle = float(0.5 * (LOWER[2] + UPPER[2]))
+    shown = (((1, 2), (3, middle)), ((1, 2), (3, middle)), ((1, 3), (2, 0.0)))
+    surfaces = []
+    for k, (joints, held) in enumerate(shown):
+        x, y = (np.linspace(float(LOWER[j - 1]), float(UPPER[j - 1]), count) for j in joints)
+        poses = np.full((count, count, 3), held[1])
+        poses[..., joints[0] - 1], poses[..., joints[1] - 1] = np.meshgrid(x, y)
+        parts = np.moveaxis(parts_at(setting, poses)[..., k, :], -1, 0)
+        surfaces.append(Surface(str(7 + k), f"C{k + 1}{k + 1}", x, y, joints, held, parts))
+    return DiagonalParts(tuple(surfaces), on_grid.min(axis=0), on_grid.max(axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class Critical:
+    """Forces at which K_θ − K_C loses definiteness, K_C taken at the unloaded pose as in the paper.
+
+    Attributes
+    ----------
+    smallest
+        The smallest critical force of all poses and directions [N].
+    everywhere
+        The largest, over the poses, of the smallest over the directions [N]: where it equals
+        `smallest`, every pose has its direction that is as bad as the worst.
+    column
+        Spring of joint 2 over the length of the upper arm: a column that is pressed along itself
+        [N].
+    pose, direction
+        (3,) joint readings [rad] and unit force where `smallest` was found.
+    quantiles, without
+        Quantile over poses and directions, spread evenly → critical force [N]; share of them at
+        which no force is critical.
+    by_diagonal
+        (3,) smallest force at which a diagonal element of K_C reaches that of K_θ: the criterion
+        of section VI [N].
+    share, deflection
+        Under the claimed force: largest share of the joint stiffness that K_C takes up, and largest
+        exact deflection among the sampled poses [m].
+    """
+
+    smallest: float
+    everywhere: float
+    column: float
+    pose: Array
+    direction: Array
+    quantiles: dict[float, float]
+    without: float
+    by_diagonal: Array
+    share: float
+    deflection: float
+
+
+def critical(setting: Setting, *, directions: int = 200) -> Critical:
+    """Critical forces over the grid of section VI.
+
+    The arm turns about a vertical axis as a whole: joint 1 changes directions only, so it is held.
+    """
+    _, second, third = motion_axes()
+    poses = np.stack(np.meshgrid([0.0], second, third, indexing="ij"), axis=-1).reshape(-1, 3)
+    screws, springs = setting.arm(poses), setting.arm_springs
+    units = even_directions(directions)
+    forces = np.stack(
+        [critical_load(screws, springs, wrench_of(unit)) for unit in units], axis=1
+    )  # (poses, directions)
+    worst, direction = _worst(setting, screws, units[np.argmin(forces, axis=1)])
+    k = int(np.argmin(worst))
+    loads = wrench_of(CLAIMED_CRITICAL_FORCE * direction)
+    moved = deflection(setting.mechanism, straight(poses), loads, setting.springs).equilibrium
+    size = np.linalg.norm(parts_at(setting, motion_grid()), axis=-1)  # (G, 3) |∂C_ii/∂F|
+    return Critical(
+        smallest=float(worst[k]),
+        everywhere=float(np.max(worst)),
+        column=float(springs[1]) / DIMENSIONS["L2"],
+        pose=poses[k],
+        direction=direction[k],
+        quantiles={q: float(np.quantile(forces, q, method="inverted_cdf")) for q in QUANTILES},
+        without=float(np.mean(np.isinf(forces))),
+        by_diagonal=np.min(springs / size, axis=0),
+        share=CLAIMED_CRITICAL_FORCE / float(worst[k]),
+        deflection=float(np.max(np.linalg.norm(moved, axis=1))),
+    )
+
+
+def _worst(setting: Setting, screws: Screws, start: Array) -> tuple[Array, Array]:
+    """Smallest critical force of each pose over all directions (P,), and its direction (P, 3).
+
+    For a joint motion x the best direction is known, and for a direction the best motion: taken in
+    turns they climb to a maximum of xᵀ K_C(u) x over unit u and xᵀ K_θ x = 1.
+    """
+    root = 1.0 / np.sqrt(setting.arm_springs)
+    scaled = root[:, None] * unit_parts(screws) * root  # (P, 3 components, 3, 3) [1/N]
+    u = start
+    for _ in range(200):
+        motion = np.linalg.eigh(np.einsum("pk,pkij->pij", u, scaled))[1][..., -1]
+        gradient = np.einsum("pi,pkij,pj->pk", motion, scaled, motion)
+        size = np.linalg.norm(gradient, axis=1)
+        u, before = gradient / size[:, None], u
+        if np.max(np.abs(u - before)) < 1e-12:
+            break
+    return 1.0 / size, u
