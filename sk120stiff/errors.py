@@ -12,14 +12,10 @@ from typing import ClassVar
 class ToolkitError(Exception):
     """One message in three parts: what is wrong, where, and what to do about it.
 
-    Parameters
-    ----------
-    what
-        The finding, without a final full stop.
-    where
-        File, line, column, joint or frame that it was found at.
-    remedy
-        What the reader can do.
+    Args:
+        what: The finding, without a final full stop.
+        where: File, line, column, joint or frame that it was found at.
+        remedy: What the reader can do.
     """
 
     exit_code: ClassVar[int] = 1

@@ -85,10 +85,8 @@ _NOT_FINITE = re.compile(r"\s*[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
 def split_header(header: str, *, where: str | None = None) -> tuple[str, str | None]:
     """Name and unit of a column header: ``"fx[N]"`` gives ``("fx", "N")``, ``"pose"`` no unit.
 
-    Raises
-    ------
-    InputError
-        The square brackets are not one pair at the end.
+    Raises:
+        InputError: The square brackets are not one pair at the end.
     """
     text = header.strip()
     name, opening, rest = text.partition("[")
@@ -106,21 +104,15 @@ def split_header(header: str, *, where: str | None = None) -> tuple[str, str | N
 def to_si(values: ArrayLike, unit: str | None, kind: str, *, where: str | None = None) -> Array:
     """Numbers with a unit as SI numbers of the same shape.
 
-    Parameters
-    ----------
-    values
-        Any shape, finite.
-    unit
-        As written by a person: ``deg``, ``°``, ``µm``, ``Nm`` (newton-metre), ``N·mm/rad`` ...
-    kind
-        What the numbers are: a key of `KINDS` or an SI unit.
-    where
-        Place for the message: a file with line and column, or an option.
+    Args:
+        values: Any shape, finite.
+        unit: As written by a person: ``deg``, ``°``, ``µm``, ``Nm`` (newton-metre), ``N·mm/rad``
+            ...
+        kind: What the numbers are: a key of `KINDS` or an SI unit.
+        where: Place for the message: a file with line and column, or an option.
 
-    Raises
-    ------
-    InputError
-        No unit, an unknown unit, a unit of another kind, or a number beyond `LARGEST`.
+    Raises:
+        InputError: No unit, an unknown unit, a unit of another kind, or a number beyond `LARGEST`.
     """
     array = _finite(values, where)
     if np.any(np.abs(array) > LARGEST):
@@ -156,10 +148,8 @@ def parse_values(text: str, kind: str, *, where: str | None = None) -> Array:
     A unit holds for the numbers before it that have none. Numbers are separated by commas,
     semicolons or blanks.
 
-    Raises
-    ------
-    InputError
-        No number, a word that is no number, a missing, unknown or unfit unit.
+    Raises:
+        InputError: No number, a word that is no number, a missing, unknown or unfit unit.
     """
     numbers, units, spare = _numbers_with_units(text, where, f"10,20,-30 {_usual(kind)[0]}")
     if spare:
@@ -179,17 +169,12 @@ def parse_pose(
     ``"10,20,-30,0,0,0 deg"`` gives every joint in the order of `names`; ``"joint_2_l=20 deg"``
     names some, and the rest are zero. A robot with slides mixes units: ``"10,20 deg, 100 mm"``.
 
-    Parameters
-    ----------
-    names
-        The n actuated joints.
-    kinds
-        ``"angle"`` or ``"length"`` per joint, or one for all.
+    Args:
+        names: The n actuated joints.
+        kinds: ``"angle"`` or ``"length"`` per joint, or one for all.
 
-    Raises
-    ------
-    InputError
-        Wrong count, unknown or repeated joint, or what `to_si` refuses.
+    Raises:
+        InputError: Wrong count, unknown or repeated joint, or what `to_si` refuses.
     """
     each = [kinds] * len(names) if isinstance(kinds, str) else list(kinds)
     if len(each) != len(names):
@@ -216,10 +201,8 @@ def parse_pose(
 def parse_wrench(text: str, *, where: str | None = None) -> Array:
     """Force and moment (6,) in N and N·m: ``"100,0,-200 N"`` or ``"100,0,-200,0,0,5 N, N*m"``.
 
-    Raises
-    ------
-    InputError
-        Neither three nor six numbers, six with one unit only, or what `to_si` refuses.
+    Raises:
+        InputError: Neither three nor six numbers, six with one unit only, or what `to_si` refuses.
     """
     remedy = "Write three forces, '100,0,-200 N', or forces and moments, '100,0,-200,0,0,5 N, N*m'."
     numbers, units, spare = _numbers_with_units(text, where, "100,0,-200 N")

@@ -33,18 +33,12 @@ TOLD = 3  # sentences on where the gap lives that are printed; the report has al
 class Task:
     """What was explained.
 
-    Attributes
-    ----------
-    readings
-        The measurements.
-    data
-        Their file.
-    inputs
-        All input files, for the report.
-    holdout
-        File of held-out readings, or None.
-    seed
-        Of folds and resampling.
+    Attributes:
+        readings: The measurements.
+        data: Their file.
+        inputs: All input files, for the report.
+        holdout: File of held-out readings, or None.
+        seed: Of folds and resampling.
     """
 
     readings: Measurements
@@ -57,11 +51,9 @@ class Task:
 def check_folder(out: Path) -> None:
     """Complain before the work, not after it.
 
-    Raises
-    ------
-    InputError
-        `out` is a file, or no folder that may be written to; a file of it that would be replaced
-        is an input, or is not of an earlier run.
+    Raises:
+        InputError: `out` is a file, or no folder that may be written to; a file of it that would be
+            replaced is an input, or is not of an earlier run.
     """
     if out.exists() and not out.is_dir():
         raise InputError(
@@ -97,10 +89,8 @@ def write_answer(
 
     A page that cannot be made is a warning: what was found stands on the disk by then.
 
-    Returns
-    -------
-    dict
-        The content of `verdict.json`, and where the files are that were written.
+    Returns:
+        dict: The content of `verdict.json`, and where the files are that were written.
     """
     tell = progress or (lambda _done, _total: None)
     document = answer.save(out, provenance=provenance(task.data, task.readings))

@@ -38,16 +38,11 @@ NOBODY_READS = 141  # as a shell reports a process whose reader has gone
 class Answer:
     """What a command has found.
 
-    Attributes
-    ----------
-    document
-        The JSON document: plain containers, numbers, arrays, dataclasses; SI.
-    parts
-        The same for people: lines of text and rich renderables, printed in order.
-    exit_code
-        1 where the answer is a refusal that `parts` and `document` explain.
-    afterwards
-        What the command goes on with once its answer is printed (a server that runs).
+    Attributes:
+        document: The JSON document: plain containers, numbers, arrays, dataclasses; SI.
+        parts: The same for people: lines of text and rich renderables, printed in order.
+        exit_code: 1 where the answer is a refusal that `parts` and `document` explain.
+        afterwards: What the command goes on with once its answer is printed (a server that runs).
     """
 
     document: Mapping[str, object]
@@ -97,12 +92,9 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
 def guarded(*, debug: bool, as_json: bool = False) -> Iterator[None]:
     """Turn whatever goes wrong inside into one message on stderr and an exit code.
 
-    Parameters
-    ----------
-    debug
-        Show the traceback too.
-    as_json
-        Print the message as a JSON document on stdout too.
+    Args:
+        debug: Show the traceback too.
+        as_json: Print the message as a JSON document on stdout too.
     """
     try:
         yield
@@ -139,14 +131,12 @@ def guarded(*, debug: bool, as_json: bool = False) -> Iterator[None]:
 class Failure:
     """What a failed command says in JSON.
 
-    Attributes
-    ----------
-    exit_code
-        Of the process.
-    kind
-        ``usage``, ``input``, ``refusal``, ``system`` (disk, memory), ``internal``, ``interrupted``.
-    message, where, remedy
-        What is wrong, where, and what to do; None where there is nothing to say.
+    Attributes:
+        exit_code: Of the process.
+        kind: ``usage``, ``input``, ``refusal``, ``system`` (disk, memory), ``internal``,
+            ``interrupted``.
+        message, where, remedy: What is wrong, where, and what to do; None where there is nothing to
+            say.
     """
 
     exit_code: int
@@ -165,10 +155,8 @@ class Failure:
 def emit(answer: Answer, *, as_json: bool, warned: Sequence[str] = ()) -> None:
     """Print an answer on stdout: one JSON document, or its parts for people.
 
-    Raises
-    ------
-    Refusal
-        There is no standard output.
+    Raises:
+        Refusal: There is no standard output.
     """
     if sys.stdout is None:
         raise Refusal("standard output is closed, so the answer cannot be printed")

@@ -199,10 +199,8 @@ def parameter_rows(
 def with_effect(model: Model, text: str, readings: Measurements) -> Model:
     """The model with an effect more, given as ``name`` or ``name:where``.
 
-    Raises
-    ------
-    InputError
-        No such effect, it cannot act there, or the readings lack what its law needs.
+    Raises:
+        InputError: No such effect, it cannot act there, or the readings lack what its law needs.
     """
     from sk120stiff.effects import situation_of
 
@@ -223,10 +221,8 @@ def with_effect(model: Model, text: str, readings: Measurements) -> Model:
 def with_freedom(model: Model, fix: Sequence[str], free: Sequence[str] | None) -> Model:
     """The model with the named parameters fixed, or only the named ones free.
 
-    Raises
-    ------
-    InputError
-        The model has no such parameter.
+    Raises:
+        InputError: The model has no such parameter.
     """
     for name in (*fix, *(free or ())):
         model.parameter(name)  # refuses unknown names

@@ -204,10 +204,8 @@ def _judged(
 ) -> tuple[str, list[str]]:
     """What is said of the fit, and what is doubted.
 
-    Raises
-    ------
-    Refusal
-        The positions are not those of this robot.
+    Raises:
+        Refusal: The positions are not those of this robot.
     """
     if fitted is None:
         return "Fewer than three poses: whether they are this robot's was not checked.", []

@@ -112,10 +112,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     With ``--json`` among the arguments every failure prints one JSON document on stdout.
 
-    Parameters
-    ----------
-    arguments
-        What follows the program's name; the process's own arguments by default.
+    Args:
+        arguments: What follows the program's name; the process's own arguments by default.
     """
     prepare()
     words = list(sys.argv[1:] if arguments is None else arguments)

@@ -15,19 +15,13 @@ from sk120stiff.workspace import elbow_sides, joint_heights, open_map
 def postures(robot: Robot, store: Path, *, led: bool) -> tuple[dict[str, object], str]:
     """How many points have the elbow up or down, and the lowest joint; the same in a sentence.
 
-    Parameters
-    ----------
-    robot
-        The robot.
-    store
-        A finished map over positions.
-    led
-        Was the arm led from a start pose?
+    Args:
+        robot: The robot.
+        store: A finished map over positions.
+        led: Was the arm led from a start pose?
 
-    Warns
-    -----
-    ToolkitWarning
-        At some points a joint lies below the base plane and below the point itself.
+    Warns:
+        ToolkitWarning: At some points a joint lies below the base plane and below the point itself.
     """
     dataset = open_map(store)
     joints = np.asarray(dataset["joints"].values).reshape(-1, robot.n)

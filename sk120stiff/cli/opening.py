@@ -32,10 +32,8 @@ class Opened(NamedTuple):
 def declare_readings(out: Path | None) -> None:
     """Declare readings as an output, with the YAML file that is written beside them.
 
-    Raises
-    ------
-    InputError
-        One of the two is an input, or cannot be written.
+    Raises:
+        InputError: One of the two is an input, or cannot be written.
     """
     from sk120stiff.measurements.writing import check_name
 
@@ -73,15 +71,11 @@ def open_model(
 ) -> Model:
     """The model that the words of a command line mean: those of a robot or of a model.
 
-    Parameters
-    ----------
-    named
-        ROBOT or MODEL. A model file knows its robot; a robot has the model beside its
-        `robot.yaml`, or else springs typical of its size, which is told.
-    path
-        What --model names, if anything: it is put on the robot of `named`.
-    base, tool
-        Frames in the place of the robot's own.
+    Args:
+        named: ROBOT or MODEL. A model file knows its robot; a robot has the model beside its
+            `robot.yaml`, or else springs typical of its size, which is told.
+        path: What --model names, if anything: it is put on the robot of `named`.
+        base, tool: Frames in the place of the robot's own.
     """
     from sk120stiff.model import base_model, read_model
 
@@ -184,10 +178,8 @@ def wrench_of(text: str | None) -> Array:
 def open_data(path: Path, base: str | None = None, tool: str | None = None) -> Opened:
     """Measurements, and the robot that their YAML file names.
 
-    Raises
-    ------
-    InputError
-        The data cannot be read, name no robot, or do not fit it.
+    Raises:
+        InputError: The data cannot be read, name no robot, or do not fit it.
     """
     from sk120stiff.measurements import read_measurements
 
@@ -244,10 +236,8 @@ def provenance(path: Path, data: Measurements) -> dict[str, str]:
 def direction_of(text: str, option: str) -> Array:
     """(3,) unit vector of text like ``0,0,-1``; it has no unit.
 
-    Raises
-    ------
-    InputError
-        Not three finite numbers, or all zero.
+    Raises:
+        InputError: Not three finite numbers, or all zero.
     """
     try:
         vector = np.array([float(part) for part in text.replace(",", " ").split()])

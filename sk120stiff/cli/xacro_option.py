@@ -32,10 +32,8 @@ def takes_robot(parameter: inspect.Parameter) -> bool:
 def with_xacro_arguments(options: dict[str, Any], robots: list[str], words: list[str]) -> None:
     """Put the words of `--xacro-arg` behind the robots that a command was given.
 
-    Raises
-    ------
-    InputError
-        A word is no ``NAME:=VALUE``, or a model was given, which knows its robot.
+    Raises:
+        InputError: A word is no ``NAME:=VALUE``, or a model was given, which knows its robot.
     """
     from sk120stiff.robot.naming import robot_name, xacro_arguments  # Pinocchio comes with it
 

@@ -66,12 +66,9 @@ def together(*, stale: Iterable[Path] = (), last: Path | None = None) -> Iterato
     Whatever ends the block early leaves the files of an earlier run as they were. Ctrl-C within
     that moment waits for its end. Within another such block the files wait for the outer one.
 
-    Parameters
-    ----------
-    stale
-        Files of an earlier run that must not stand beside the new ones; they are removed.
-    last
-        The file that says that all others are there.
+    Args:
+        stale: Files of an earlier run that must not stand beside the new ones; they are removed.
+        last: The file that says that all others are there.
     """
     if _open:
         yield

@@ -18,10 +18,8 @@ def as_json_text(document: Mapping[str, object]) -> str:
     Arrays become nested lists, numbers keep their full precision, and what JSON has no word for
     (NaN, infinity) becomes null.
 
-    Raises
-    ------
-    TypeError
-        A value has no JSON form.
+    Raises:
+        TypeError: A value has no JSON form.
     """
     lines = [f"  {json.dumps(str(key))}: {_dumps(value)}" for key, value in document.items()]
     return "{\n" + ",\n".join(lines) + "\n}"

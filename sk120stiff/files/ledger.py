@@ -29,18 +29,12 @@ _STREAMS = ("/dev/std", "/dev/fd/", "/proc/")  # names for whatever is open alre
 class Ledger:
     """Keys of the files of one run.
 
-    Attributes
-    ----------
-    read
-        Key → the path as it was read.
-    promised
-        Key → the output as it was declared, and the option that did it.
-    filled
-        Folders that are going to be the run's own, and their option.
-    written
-        Keys of what the run has written itself and may read again.
-    told
-        Links that were spoken of.
+    Attributes:
+        read: Key → the path as it was read.
+        promised: Key → the output as it was declared, and the option that did it.
+        filled: Folders that are going to be the run's own, and their option.
+        written: Keys of what the run has written itself and may read again.
+        told: Links that were spoken of.
     """
 
     read: dict[_Key, Path] = field(default_factory=dict)
@@ -66,10 +60,8 @@ def running() -> Iterator[None]:
 def note_read(path: Path_) -> None:
     """Say that this file is an input.
 
-    Raises
-    ------
-    InputError
-        It was declared as an output of this run.
+    Raises:
+        InputError: It was declared as an output of this run.
     """
     if not _current:
         return
@@ -89,17 +81,12 @@ def note_read(path: Path_) -> None:
 def will_write(path: Path_ | None, option: str = "--out") -> None:
     """Declare an output before the work that leads to it.
 
-    Parameters
-    ----------
-    path
-        The file; None, an option that was not given, declares nothing.
-    option
-        What the user named it by, for the message.
+    Args:
+        path: The file; None, an option that was not given, declares nothing.
+        option: What the user named it by, for the message.
 
-    Raises
-    ------
-    InputError
-        The file is an input, two options name it, or it cannot be written.
+    Raises:
+        InputError: The file is an input, two options name it, or it cannot be written.
     """
     if path is None:
         return
@@ -130,10 +117,8 @@ def will_write(path: Path_ | None, option: str = "--out") -> None:
 def will_fill(folder: Path_, option: str = "--out") -> None:
     """Declare a folder that is going to hold this run's output and nothing else.
 
-    Raises
-    ------
-    InputError
-        An input lies in it, or is it.
+    Raises:
+        InputError: An input lies in it, or is it.
     """
     if not _current:
         return
@@ -147,10 +132,8 @@ def will_fill(folder: Path_, option: str = "--out") -> None:
 def refuse_input(path: Path, option: str | None = None) -> None:
     """Refuse to write what this run has read.
 
-    Raises
-    ------
-    InputError
-        It has.
+    Raises:
+        InputError: It has.
     """
     if not _current:
         return
@@ -167,11 +150,9 @@ def note_written(path: Path) -> None:
 def destination(path: Path) -> Path:
     """The file that writing to `path` makes or replaces: a link is followed, and that is said.
 
-    Raises
-    ------
-    InputError
-        A folder, a link that leads nowhere, a write-protected file, or no file at all, such as a
-        device or a pipe.
+    Raises:
+        InputError: A folder, a link that leads nowhere, a write-protected file, or no file at all,
+            such as a device or a pipe.
     """
     if str(path).startswith(_STREAMS):
         raise _no_file(path)

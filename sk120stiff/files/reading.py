@@ -12,10 +12,8 @@ from sk120stiff.files.ledger import note_read
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
     """Content of a file.
 
-    Raises
-    ------
-    InputError
-        The file is missing, a folder or unreadable, or this run is going to write it.
+    Raises:
+        InputError: The file is missing, a folder or unreadable, or this run is going to write it.
     """
     source = Path(path)
     note_read(source)
@@ -33,10 +31,8 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 def read_text(path: str | os.PathLike[str]) -> str:
     """Text of a UTF-8 file (a leading byte-order mark is dropped).
 
-    Raises
-    ------
-    InputError
-        As `read_bytes`, or the file is not UTF-8 (line and byte are named).
+    Raises:
+        InputError: As `read_bytes`, or the file is not UTF-8 (line and byte are named).
     """
     data = read_bytes(path)
     try:

@@ -17,10 +17,9 @@ def write_atomically(path: str | os.PathLike[str], content: str | bytes) -> Path
     Parent folders are made. An interrupted write leaves the old file as it was. Within `together`
     the renaming waits for the other files. A link is followed.
 
-    Raises
-    ------
-    InputError
-        `path` is an input of this run, no file, or its folder cannot be made or written to.
+    Raises:
+        InputError: `path` is an input of this run, no file, or its folder cannot be made or written
+            to.
     """
     named = Path(path)
     target = destination(named)

@@ -28,10 +28,8 @@ class YamlText:
 def read_yaml(path: str | os.PathLike[str]) -> YamlText:
     """Values of a YAML file.
 
-    Raises
-    ------
-    InputError
-        As `read_text` and `parse_yaml`.
+    Raises:
+        InputError: As `read_text` and `parse_yaml`.
     """
     return parse_yaml(read_text(path), str(path))
 
@@ -39,11 +37,9 @@ def read_yaml(path: str | os.PathLike[str]) -> YamlText:
 def parse_yaml(text: str, where: str) -> YamlText:
     """Values of YAML text; `where` names it in messages.
 
-    Raises
-    ------
-    InputError
-        Not YAML, a value that its tag or its look does not allow, a value within itself, or more
-        or deeper values than a file of ours can have.
+    Raises:
+        InputError: Not YAML, a value that its tag or its look does not allow, a value within
+            itself, or more or deeper values than a file of ours can have.
     """
     try:
         loader = yaml.SafeLoader(text)

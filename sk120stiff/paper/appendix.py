@@ -60,12 +60,9 @@ PRINTED = {
 def printed_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
     """(..., 3, 3) derivatives of x, y, z by θ1', θ2', θ3' by eq. (17) as printed [m/rad].
 
-    Parameters
-    ----------
-    angles
-        (..., 6) the paper's angles θ1' to θ6' [rad].
-    lengths
-        Any of `LENGTHS` [m]; the others are zero.
+    Args:
+        angles: (..., 6) the paper's angles θ1' to θ6' [rad].
+        lengths: Any of `LENGTHS` [m]; the others are zero.
     """
     given = np.asarray(angles, dtype=float)
     named = {str(k + 1): given[..., k] for k in range(6)} | {"23": given[..., 1] - given[..., 2]}

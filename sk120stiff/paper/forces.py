@@ -26,16 +26,11 @@ QUANTILES = (0.0, 0.01, 0.05, 0.25, 0.5)
 class Surface:
     """One of Figs. 7 to 9 as maps over two joints.
 
-    Attributes
-    ----------
-    figure, element
-        ``"7"`` and ``"C11"``, and so on.
-    x, y
-        (nx,), (ny,) values of the two joints [rad].
-    joints, held
-        Their numbers, from 1; number and value of the third joint [rad].
-    parts
-        (3, ny, nx) contribution of a unit force along x, y, z [N·m/rad per N].
+    Attributes:
+        figure, element: ``"7"`` and ``"C11"``, and so on.
+        x, y: (nx,), (ny,) values of the two joints [rad].
+        joints, held: Their numbers, from 1; number and value of the third joint [rad].
+        parts: (3, ny, nx) contribution of a unit force along x, y, z [N·m/rad per N].
     """
 
     figure: str
@@ -89,27 +84,19 @@ def diagonal_parts(setting: Setting, *, count: int = 61) -> DiagonalParts:
 class Critical:
     """Forces at which K_θ − K_C loses definiteness, K_C taken at the unloaded pose as in the paper.
 
-    Attributes
-    ----------
-    smallest
-        The smallest critical force of all poses and directions [N].
-    everywhere
-        The largest, over the poses, of the smallest over the directions [N]: where it equals
-        `smallest`, every pose has its direction that is as bad as the worst.
-    column
-        Spring of joint 2 over the length of the upper arm: a column that is pressed along itself
-        [N].
-    pose, direction
-        (3,) joint readings [rad] and unit force where `smallest` was found.
-    quantiles, without
-        Quantile over poses and directions, spread evenly → critical force [N]; share of them at
-        which no force is critical.
-    by_diagonal
-        (3,) smallest force at which a diagonal element of K_C reaches that of K_θ: the criterion
-        of section VI [N].
-    share, deflection
-        Under the claimed force: largest share of the joint stiffness that K_C takes up, and largest
-        exact deflection among the sampled poses [m].
+    Attributes:
+        smallest: The smallest critical force of all poses and directions [N].
+        everywhere: The largest, over the poses, of the smallest over the directions [N]: where it
+            equals `smallest`, every pose has its direction that is as bad as the worst.
+        column: Spring of joint 2 over the length of the upper arm: a column that is pressed along
+            itself [N].
+        pose, direction: (3,) joint readings [rad] and unit force where `smallest` was found.
+        quantiles, without: Quantile over poses and directions, spread evenly → critical force [N];
+            share of them at which no force is critical.
+        by_diagonal: (3,) smallest force at which a diagonal element of K_C reaches that of K_θ: the
+            criterion of section VI [N].
+        share, deflection: Under the claimed force: largest share of the joint stiffness that K_C
+            takes up, and largest exact deflection among the sampled poses [m].
     """
 
     smallest: float

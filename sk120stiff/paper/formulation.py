@@ -34,33 +34,25 @@ SIZES = (1e2, 1e4, 1e6, 1e8)
 class Formulation:
     """Findings as numbers, all relative unless said otherwise.
 
-    Attributes
-    ----------
-    load
-        Force at which the next two were found [N].
-    enhanced_error, conventional_error
-        Compliance of the loaded arm by eq. (10) and by eq. (8), against the slope of the exact
-        deflection, the largest over poses.
-    unloaded_difference
-        Eq. (10) minus eq. (8) without a load.
-    force_asymmetry, moment_asymmetry
-        ‖K_C − K_Cᵀ‖ / ‖K_C‖ for forces, and for moments on all six joints.
-    third_derivatives
-        Largest relative violation of ∂K_C,ij/∂θ_k = ∂K_C,ik/∂θ_j for forces: the exact
-        differential that a potential asks for.
-    negative_cases, negative_failures
-        Grid poses and loads at which K_C is ND or NSD, and those of them at which K_θ − K_C is not
-        PD: corollary 1 says none.
-    congruent_cases, congruence_failures
-        Poses and loads at which K_X exists, and those at which its class is not that of
-        K_θ − K_C: Appendix II says none.
-    minors_agree
-        Do the three printed conditions of section V agree with positive definiteness everywhere?
-    enhanced_cycle, conventional_cycle
-        Work left over when the force goes round a closed circle of size `load` and the arm follows
-        by increments of eq. (10), or of eq. (8), over the energy stored: nature leaves nothing.
-    loop_error
-        Largest opening of the five-bar over the motion range [m].
+    Attributes:
+        load: Force at which the next two were found [N].
+        enhanced_error, conventional_error: Compliance of the loaded arm by eq. (10) and by eq. (8),
+            against the slope of the exact deflection, the largest over poses.
+        unloaded_difference: Eq. (10) minus eq. (8) without a load.
+        force_asymmetry, moment_asymmetry: ‖K_C − K_Cᵀ‖ / ‖K_C‖ for forces, and for moments on all
+            six joints.
+        third_derivatives: Largest relative violation of ∂K_C,ij/∂θ_k = ∂K_C,ik/∂θ_j for forces: the
+            exact differential that a potential asks for.
+        negative_cases, negative_failures: Grid poses and loads at which K_C is ND or NSD, and those
+            of them at which K_θ − K_C is not PD: corollary 1 says none.
+        congruent_cases, congruence_failures: Poses and loads at which K_X exists, and those at
+            which its class is not that of K_θ − K_C: Appendix II says none.
+        minors_agree: Do the three printed conditions of section V agree with positive definiteness
+            everywhere?
+        enhanced_cycle, conventional_cycle: Work left over when the force goes round a closed circle
+            of size `load` and the arm follows by increments of eq. (10), or of eq. (8), over the
+            energy stored: nature leaves nothing.
+        loop_error: Largest opening of the five-bar over the motion range [m].
     """
 
     load: float

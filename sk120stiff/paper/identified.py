@@ -41,20 +41,14 @@ class Attempt:
 class Identified:
     """What the three printed poses say of the springs.
 
-    Attributes
-    ----------
-    fit
-        What ``sk120stiff identify`` finds: each pose's rows share one zero reading, and the
-        covariance knows it.
-    equal_weights
-        The paper's criterion, eq. (12): plain least squares.
-    attempts
-        Both algorithms from `STARTS`.
-    by_pose
-        Pose → springs (3,) and their standard errors (3,), from that pose alone [N·m/rad].
-    F, probability
-        Test of common springs against springs of each pose's own: F ratio, and how probable a
-        larger one is if the springs are the same everywhere.
+    Attributes:
+        fit: What ``sk120stiff identify`` finds: each pose's rows share one zero reading, and the
+            covariance knows it.
+        equal_weights: The paper's criterion, eq. (12): plain least squares.
+        attempts: Both algorithms from `STARTS`.
+        by_pose: Pose → springs (3,) and their standard errors (3,), from that pose alone [N·m/rad].
+        F, probability: Test of common springs against springs of each pose's own: F ratio, and how
+            probable a larger one is if the springs are the same everywhere.
     """
 
     fit: Fit

@@ -21,18 +21,14 @@ from sk120stiff.stiffness import cartesian_compliance, deflection, principal_sti
 class Posture:
     """Findings about the printed configurations and loads.
 
-    Attributes
-    ----------
-    tool_error
-        Largest deviation of the tool from straight down over all printed configurations [rad].
-    force_share
-        (2,) smallest and largest printed force over the weight of its deadweight, k · 10 kg for
-        the k-th load of a pose.
-    softest
-        (5,) smallest principal stiffness over the motion range: quantiles 0, 0.25, 0.5, 0.75, 1
-        [N/m].
-    softest_of_figures
-        Figure → smallest principal stiffness at its configuration [N/m].
+    Attributes:
+        tool_error: Largest deviation of the tool from straight down over all printed configurations
+            [rad].
+        force_share: (2,) smallest and largest printed force over the weight of its deadweight, k ·
+            10 kg for the k-th load of a pose.
+        softest: (5,) smallest principal stiffness over the motion range: quantiles 0, 0.25, 0.5,
+            0.75, 1 [N/m].
+        softest_of_figures: Figure → smallest principal stiffness at its configuration [N/m].
     """
 
     tool_error: float

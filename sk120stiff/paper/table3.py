@@ -28,17 +28,12 @@ from sk120stiff.stiffness import (
 class Table3:
     """N loads of Table III, all works in J; `printed` has the unit of the file, "as printed".
 
-    Attributes
-    ----------
-    works
-        Eq. (14) and (15) for the displacements that the paper's springs predict.
-    any_displacement
-        The same for displacements drawn at random, 0.1 to 1 mm: the identity of the enhanced works
-        does not ask what was displaced.
-    work, energy
-        (N,) ∫ F · dX along the loading path, and energy in the springs at its end.
-    largest
-        (N,) the most that eq. (14) can give for a force of this size in any direction.
+    Attributes:
+        works: Eq. (14) and (15) for the displacements that the paper's springs predict.
+        any_displacement: The same for displacements drawn at random, 0.1 to 1 mm: the identity of
+            the enhanced works does not ask what was displaced.
+        work, energy: (N,) ∫ F · dX along the loading path, and energy in the springs at its end.
+        largest: (N,) the most that eq. (14) can give for a force of this size in any direction.
     """
 
     printed: PrintedLoads

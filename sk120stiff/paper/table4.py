@@ -18,16 +18,12 @@ from sk120stiff.stiffness import CLASSES, complementary_stiffness, definiteness
 class Table4:
     """Counts of configurations; columns of counts are PD, PSD, ND, NSD, ID, cases count from 1.
 
-    Attributes
-    ----------
-    signs
-        (8, 3) signs of the force components.
-    printed
-        (8, 5) the paper's counts.
-    classes
-        (8, G) class of K_C at every configuration of the grid, as an index into `CLASSES`.
-    determinant, difference_positive
-        (8,) configurations with det(K_C) > 0, and with K_θ − K_C positive definite.
+    Attributes:
+        signs: (8, 3) signs of the force components.
+        printed: (8, 5) the paper's counts.
+        classes: (8, G) class of K_C at every configuration of the grid, as an index into `CLASSES`.
+        determinant, difference_positive: (8,) configurations with det(K_C) > 0, and with K_θ − K_C
+            positive definite.
     """
 
     signs: Array

@@ -31,20 +31,13 @@ DISPLACEMENT = np.sqrt(2.0)  # a displacement is two readings
 class Design:
     """Readings chosen from a pool for the sake of some parameters.
 
-    Attributes
-    ----------
-    rows
-        (K,) chosen candidates.
-    parameters
-        Full names of the k parameters that count.
-    std
-        (k,) standard errors to expect of their internal values.
-    worth
-        Mean logarithm of the inverse of the standard errors, over their plausible ranges.
-    gains
-        The candidates' information, for `worth_of` other choices.
-    known
-        (P, P) information before.
+    Attributes:
+        rows: (K,) chosen candidates.
+        parameters: Full names of the k parameters that count.
+        std: (k,) standard errors to expect of their internal values.
+        worth: Mean logarithm of the inverse of the standard errors, over their plausible ranges.
+        gains: The candidates' information, for `worth_of` other choices.
+        known: (P, P) information before.
     """
 
     rows: tuple[int, ...]
@@ -76,25 +69,16 @@ def d_optimal(
 ) -> Design:
     """Choose readings that make parameters as well known as can be.
 
-    Parameters
-    ----------
-    model
-        Model with its values; its free parameters are estimated, the others are known.
-    pool
-        Candidate readings.
-    count
-        How many to choose; each candidate at most once.
-    sigma
-        Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
-    parameters
-        Full names of those that count, all free ones by default.
-    known
-        Readings that were taken already.
+    Args:
+        model: Model with its values; its free parameters are estimated, the others are known.
+        pool: Candidate readings.
+        count: How many to choose; each candidate at most once.
+        sigma: Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
+        parameters: Full names of those that count, all free ones by default.
+        known: Readings that were taken already.
 
-    Raises
-    ------
-    InputError
-        Nothing is free, a name is unknown or not free, or the pool is too small.
+    Raises:
+        InputError: Nothing is free, a name is unknown or not free, or the pool is too small.
     """
     free = model.free
     names = [model.names[k] for k in free]

@@ -24,12 +24,9 @@ from sk120stiff.plan.pool import Pool
 class Choice:
     """Readings chosen from a pool.
 
-    Attributes
-    ----------
-    rows
-        (K,) chosen candidates.
-    before, after
-        √λ without and with them, in units of the noise.
+    Attributes:
+        rows: (K,) chosen candidates.
+        before, after: √λ without and with them, in units of the noise.
     """
 
     rows: tuple[int, ...]
@@ -41,13 +38,10 @@ class Choice:
 class Rivalry:
     """Two effects and what each reading of a pool would say between them.
 
-    Attributes
-    ----------
-    gains
-        (2, M, k, k) information of every candidate, for either effect as the true one: base and
-        rival over their plausible ranges, last the signature.
-    known
-        (2, k, k) information before.
+    Attributes:
+        gains: (2, M, k, k) information of every candidate, for either effect as the true one: base
+            and rival over their plausible ranges, last the signature.
+        known: (2, k, k) information before.
     """
 
     gains: Array
@@ -87,20 +81,13 @@ def discriminating_readings(
 ) -> Choice:
     """Choose readings that tell `effect` from `rival`.
 
-    Parameters
-    ----------
-    model
-        Fitted model that holds `effect` with its size.
-    effect, rival
-        What is to be told apart.
-    pool
-        Candidate readings.
-    count
-        How many to choose.
-    sigma
-        Standard uncertainty of one displacement per axis [m].
-    known
-        (k, k) information that is already there; none by default.
+    Args:
+        model: Fitted model that holds `effect` with its size.
+        effect, rival: What is to be told apart.
+        pool: Candidate readings.
+        count: How many to choose.
+        sigma: Standard uncertainty of one displacement per axis [m].
+        known: (k, k) information that is already there; none by default.
     """
     columns = signature_columns(model, effect, rival, pool) / sigma  # (M, 3, k)
     gains = np.einsum("mik,mil->mkl", columns, columns)
@@ -124,18 +111,12 @@ def rivalry(
 ) -> Rivalry:
     """What a pool of readings would say between two effects, whichever of them is true.
 
-    Parameters
-    ----------
-    model
-        Base model; an effect that it holds keeps its values, another has its typical size.
-    effect, rival
-        What is to be told apart.
-    pool
-        Candidate readings.
-    sigma
-        Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
-    known
-        Readings that were taken already.
+    Args:
+        model: Base model; an effect that it holds keeps its values, another has its typical size.
+        effect, rival: What is to be told apart.
+        pool: Candidate readings.
+        sigma: Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
+        known: Readings that were taken already.
     """
     gains, start = [], []
     for true, other in ((effect, rival), (rival, effect)):

@@ -30,14 +30,10 @@ class Column:
 
     It has a round top and no lower end, so it holds a pedestal of any height too.
 
-    Attributes
-    ----------
-    shoulder
-        (3,) the second joint's place on the axis, base frame [m].
-    down
-        (3,) unit vector along the axis, away from the arm.
-    radius
-        [m]
+    Attributes:
+        shoulder: (3,) the second joint's place on the axis, base frame [m].
+        down: (3,) unit vector along the axis, away from the arm.
+        radius: [m]
     """
 
     shoulder: Array
@@ -99,20 +95,14 @@ def effort_limits(robot: Robot) -> Array:
 def holdable_share(robot: Robot, a: Array, wrench: Array, point: Array, efforts: Array) -> Array:
     """(N,) largest factor on the loads, at most one, that the motors hold beside the arm's weight.
 
-    Parameters
-    ----------
-    robot
-        The robot.
-    a, wrench
-        (N, n) poses and (N, 6) loads at `point` of the tool frame, base axes [N, N·m].
-    point
-        (3,) [m].
-    efforts
-        (n,) what the motors may be asked for [N·m or N].
+    Args:
+        robot: The robot.
+        a, wrench: (N, n) poses and (N, 6) loads at `point` of the tool frame, base axes [N, N·m].
+        point: (3,) [m].
+        efforts: (n,) what the motors may be asked for [N·m or N].
 
-    Returns
-    -------
-    (N,) zero where the weight alone is too much.
+    Returns:
+        (N,) zero where the weight alone is too much.
     """
     load = robot.screws(a, point=point).torques(wrench)
     weight = np.zeros_like(a)
@@ -130,14 +120,10 @@ def holdable_share(robot: Robot, a: Array, wrench: Array, point: Array, efforts:
 class Held:
     """Loads that the motors can hold.
 
-    Attributes
-    ----------
-    rows
-        Those of the candidates that remain.
-    wrench
-        (K, 6) their loads, scaled down where need be [N, N·m].
-    remarks
-        What was done and what nobody stated, in sentences.
+    Attributes:
+        rows: Those of the candidates that remain.
+        wrench: (K, 6) their loads, scaled down where need be [N, N·m].
+        remarks: What was done and what nobody stated, in sentences.
     """
 
     rows: Index
@@ -148,10 +134,8 @@ class Held:
 def held_loads_of(robot: Robot, a: Array, wrench: Array, point: Array) -> Held:
     """Scale loads (N, 6) at poses (N, n) to what the efforts of the URDF allow.
 
-    Raises
-    ------
-    Refusal
-        The motors cannot hold the arm's weight at any of the poses.
+    Raises:
+        Refusal: The motors cannot hold the arm's weight at any of the poses.
     """
     every = np.arange(len(a))
     efforts = effort_limits(robot)

@@ -36,39 +36,26 @@ def plan(
 
     D-optimal for the parameters that count, or T-optimal between two effects.
 
-    Parameters
-    ----------
-    model
-        Model with its values; its free parameters are to be known.
-    count
-        Number of readings, a pose and a load each.
-    between
-        Two effects that are to be told apart instead.
-    parameters
-        Full names of the parameters that count, all free ones by default.
-    force
-        Size of the loads [N], less where the motors cannot hold it.
-    point
-        (3,) measured and loaded point in the tool frame [m]; its origin by default.
-    sigma
-        Standard uncertainty of one reading per axis [m].
-    region
-        Where the arm may stand; anywhere by default.
-    seed
-        Of the poses that are chosen from.
+    Args:
+        model: Model with its values; its free parameters are to be known.
+        count: Number of readings, a pose and a load each.
+        between: Two effects that are to be told apart instead.
+        parameters: Full names of the parameters that count, all free ones by default.
+        force: Size of the loads [N], less where the motors cannot hold it.
+        point: (3,) measured and loaded point in the tool frame [m]; its origin by default.
+        sigma: Standard uncertainty of one reading per axis [m].
+        region: Where the arm may stand; anywhere by default.
+        seed: Of the poses that are chosen from.
 
-    Raises
-    ------
-    InputError
-        Nothing is free, a name is unknown, or no pose is left to choose from.
+    Raises:
+        InputError: Nothing is free, a name is unknown, or no pose is left to choose from.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-    >>> next_readings = sk.plan(model, 6, point=[-0.06, 0.04, 0.15])
-    >>> next_readings.n_readings, next_readings.displacement is None
-    (6, True)
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> next_readings = sk.plan(model, 6, point=[-0.06, 0.04, 0.15])
+        >>> next_readings.n_readings, next_readings.displacement is None
+        (6, True)
     """
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     pool = feasible_pool(

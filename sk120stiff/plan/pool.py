@@ -24,12 +24,9 @@ DRAWS = 200  # batches drawn before a region is given up
 class Pool:
     """M candidate readings.
 
-    Attributes
-    ----------
-    situation
-        Their poses and loads.
-    remarks
-        What was done so that they can be driven, and what nobody checked, in sentences.
+    Attributes:
+        situation: Their poses and loads.
+        remarks: What was done so that they can be driven, and what nobody checked, in sentences.
     """
 
     situation: Situation
@@ -45,14 +42,10 @@ class Pool:
 class Region:
     """Where the arm may stand, beside its joint limits; in the base frame [m].
 
-    Attributes
-    ----------
-    lowest
-        Height above which every joint and the measured point must stay.
-    low, high
-        (3,) corners of a box that the measured point must not leave.
-    column
-        What the arm stands on and must not run into.
+    Attributes:
+        lowest: Height above which every joint and the measured point must stay.
+        low, high: (3,) corners of a box that the measured point must not leave.
+        column: What the arm stands on and must not run into.
     """
 
     lowest: float = -np.inf
@@ -98,26 +91,17 @@ def random_pool(
 ) -> Pool:
     """Random poses within the joint limits, each under loads in random directions.
 
-    Parameters
-    ----------
-    robot
-        The robot.
-    poses, directions
-        Number of poses, and of load directions at each.
-    force
-        Size of the loads [N].
-    point, force_point
-        (3,) measured point and point of the force in the tool frame [m]; the force acts at the
-        measured point unless said otherwise.
-    seed
-        Of the draw.
-    region
-        Restricts the poses further.
+    Args:
+        robot: The robot.
+        poses, directions: Number of poses, and of load directions at each.
+        force: Size of the loads [N].
+        point, force_point: (3,) measured point and point of the force in the tool frame [m]; the
+            force acts at the measured point unless said otherwise.
+        seed: Of the draw.
+        region: Restricts the poses further.
 
-    Raises
-    ------
-    Refusal
-        Next to no pose lies in the region.
+    Raises:
+        Refusal: Next to no pose lies in the region.
     """
     rng = np.random.default_rng(seed)
     a = random_poses(robot, poses, rng)
@@ -146,10 +130,8 @@ def feasible_pool(
     Loads are scaled down to what the efforts of the URDF hold beside the arm's weight; poses whose
     weight alone is too much are left out. `Pool.remarks` says so, and what was not checked.
 
-    Raises
-    ------
-    Refusal
-        Next to no pose lies in the region, or the motors cannot hold the arm itself.
+    Raises:
+        Refusal: Next to no pose lies in the region, or the motors cannot hold the arm itself.
     """
     within = replace(region or Region(), column=base_column(robot))
     drawn = random_pool(
@@ -173,10 +155,8 @@ def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     Poses at which a closed loop cannot be closed are drawn again, and so are those at which a
     linkage is so folded that its rod holds next to nothing.
 
-    Raises
-    ------
-    Refusal
-        Next to no pose can be closed.
+    Raises:
+        Refusal: Next to no pose can be closed.
     """
     lower, upper = usable_range(robot)
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
@@ -207,10 +187,8 @@ def poses_in(
 ) -> Array:
     """(count, n) random coordinates in a region.
 
-    Raises
-    ------
-    Refusal
-        Next to no pose lies in it.
+    Raises:
+        Refusal: Next to no pose lies in it.
     """
     at = np.asarray(point, dtype=float)
     found: list[Array] = []

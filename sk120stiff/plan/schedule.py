@@ -19,23 +19,16 @@ Zero = Literal["shared", "separate"]
 class Schedule:
     """How each load of a plan becomes a series of readings.
 
-    Attributes
-    ----------
-    kind
-        ``"as-given"``: the load alone; ``"ascending"``: in equal steps up to it; ``"up-down"``: up
-        to it and back, the way back on the branch ``unload``.
-    levels
-        Number of steps up to the full load.
-    repeats
-        How often each reading is taken.
-    zero
-        ``"shared"``: one zero reading before the loads of a pose; ``"separate"``: one before each
-        reading.
+    Attributes:
+        kind: ``"as-given"``: the load alone; ``"ascending"``: in equal steps up to it;
+            ``"up-down"``: up to it and back, the way back on the branch ``unload``.
+        levels: Number of steps up to the full load.
+        repeats: How often each reading is taken.
+        zero: ``"shared"``: one zero reading before the loads of a pose; ``"separate"``: one before
+            each reading.
 
-    Raises
-    ------
-    InputError
-        A number below one, or an unknown word.
+    Raises:
+        InputError: A number below one, or an unknown word.
     """
 
     kind: Kind = "as-given"
@@ -73,10 +66,9 @@ def scheduled(plan: Measurements, schedule: Schedule) -> Measurements:
     Masked rows of the plan and rows without load (zero readings are added by themselves) are left
     out, displacements too if there are any.
 
-    Raises
-    ------
-    InputError
-        No row has a load, or the plan has branches of its own and the schedule makes others.
+    Raises:
+        InputError: No row has a load, or the plan has branches of its own and the schedule makes
+            others.
     """
     kept = plan.use & plan.wrench.any(axis=1)
     if not kept.any():

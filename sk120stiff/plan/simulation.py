@@ -21,16 +21,12 @@ OUTLIER = (5.0, 20.0)  # least and largest size of an outlier, over the noise of
 class Simulated:
     """Simulated readings and what lies under them.
 
-    Attributes
-    ----------
-    measurements
-        The readings, displacements with noise.
-    exact
-        (N, 3) displacements without noise [m].
-    zero_error
-        (N, 3) error of the zero reading that each row subtracts [m]; equal within a zero group.
-    outliers
-        (N,) readings that were made outliers.
+    Attributes:
+        measurements: The readings, displacements with noise.
+        exact: (N, 3) displacements without noise [m].
+        zero_error: (N, 3) error of the zero reading that each row subtracts [m]; equal within a
+            zero group.
+        outliers: (N,) readings that were made outliers.
     """
 
     measurements: Measurements
@@ -53,38 +49,28 @@ def simulate(
     A loaded reading and a zero reading are drawn each by itself, by the law of
     `measurements.noise`; a displacement is their difference.
 
-    Parameters
-    ----------
-    model
-        The truth, at exact equilibrium.
-    plan
-        Poses and loads; displacements in it are not looked at.
-    noise
-        What one reading is worth; None: readings without noise. Rows that state their own
-        uncertainty (sx, sy, sz) are drawn with that. Whether zero readings are shared says the
-        schedule.
-    schedule
-        Load steps, repeats and zero readings; by default every row as given, zeros shared.
-    outliers
-        Share of the loaded readings that are off by 5 to 20 times their noise in a random
-        direction.
-    seed
-        Of the draw.
+    Args:
+        model: The truth, at exact equilibrium.
+        plan: Poses and loads; displacements in it are not looked at.
+        noise: What one reading is worth; None: readings without noise. Rows that state their own
+            uncertainty (sx, sy, sz) are drawn with that. Whether zero readings are shared says the
+            schedule.
+        schedule: Load steps, repeats and zero readings; by default every row as given, zeros
+            shared.
+        outliers: Share of the loaded readings that are off by 5 to 20 times their noise in a random
+            direction.
+        seed: Of the draw.
 
-    Raises
-    ------
-    InputError
-        A plan without loads, or a share that is none.
-    Refusal
-        The springs cannot hold a load.
+    Raises:
+        InputError: A plan without loads, or a share that is none.
+        Refusal: The springs cannot hold a load.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-    >>> made = sk.simulate(model, sk.plan(model, 6, point=[-0.06, 0.04, 0.15]))
-    >>> made.measurements.displacement.shape
-    (6, 3)
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> made = sk.simulate(model, sk.plan(model, 6, point=[-0.06, 0.04, 0.15]))
+        >>> made.measurements.displacement.shape
+        (6, 3)
     """
     if not 0.0 <= outliers < 1.0:
         raise InputError(f"{outliers:g} is no share of outliers", remedy="Give 0 to 1, as 0.05.")
@@ -132,10 +118,8 @@ def as_positions(model: Model, simulated: Simulated) -> Measurements:
     `displacement` of what is returned holds positions [m], for `write_measurements` with
     ``as_positions=True``. The unloaded arm stands where the rigid robot says.
 
-    Raises
-    ------
-    InputError
-        The plan asks for displacements in the axes of the tool.
+    Raises:
+        InputError: The plan asks for displacements in the axes of the tool.
     """
     readings = simulated.measurements
     if readings.displacement_frame != "base" or readings.displacement is None:

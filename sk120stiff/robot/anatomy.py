@@ -21,22 +21,15 @@ SHORTEST_LINK = 1e-3  # m; what is shorter has no length to bend along
 class ArmJoint:
     """A joint of the chain from base to tool.
 
-    Attributes
-    ----------
-    name
-        URDF name.
-    link
-        The URDF link that it moves.
-    index
-        Position in the chain.
-    actuated
-        Position among the actuated joints, or None for a coupled one.
-    revolute
-        Turns rather than slides.
-    axis
-        (3,) its direction in its own frame.
-    along
-        (3,) from its origin to the next joint's origin (the tool's, for the last), own frame [m].
+    Attributes:
+        name: URDF name.
+        link: The URDF link that it moves.
+        index: Position in the chain.
+        actuated: Position among the actuated joints, or None for a coupled one.
+        revolute: Turns rather than slides.
+        axis: (3,) its direction in its own frame.
+        along: (3,) from its origin to the next joint's origin (the tool's, for the last), own frame
+            [m].
     """
 
     name: str
@@ -109,10 +102,8 @@ def sample_poses(robot: Robot, count: int, seed: int = 0) -> Array:
 
     That is the start of a robot with closed loops, else zero or the middle of limits without it.
 
-    Raises
-    ------
-    Refusal
-        The loops can hardly be closed anywhere near their start.
+    Raises:
+        Refusal: The loops can hardly be closed anywhere near their start.
     """
     known = _SAMPLES.setdefault(robot, {})
     if (count, seed) not in known:

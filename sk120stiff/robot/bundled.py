@@ -13,11 +13,10 @@ def bundled_robots() -> dict[str, Path]:
     An installed wheel carries the robots as `sk120stiff/_robots`; a checkout has them at its top
     as `robots`. A robot is a folder that holds a `robot.yaml`.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> list(sk.bundled_robots())
-    ['motoman_sk120']
+    Examples:
+        >>> import sk120stiff as sk
+        >>> list(sk.bundled_robots())
+        ['motoman_sk120']
     """
     inside = _PACKAGE / "_robots"
     home = inside if inside.is_dir() else _PACKAGE.parent / "robots"

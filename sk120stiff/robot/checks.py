@@ -28,29 +28,19 @@ _SINGULAR = 1e-6  # smallest singular value of J over the largest, lengths scale
 class CheckReport:
     """What `check` says about a robot.
 
-    Attributes
-    ----------
-    name
-        Name of the robot.
-    actuated
-        Joints that motors drive between base and tool; empty when nothing moves there.
-    coupled
-        Joints that follow another one, as rules ``follower = multiplier · driver + offset``, and
-        joints that a closed loop determines.
-    loops
-        Closed loops that `robot.yaml` declares.
-    frames
-        All frames (URDF links).
-    base_frame, tool_frame, chosen_because
-        Frames between which the arm is described, and why, in sentences.
-    choice
-        What would be taken if nobody named frames: other ends of the robot, fingers.
-    moving
-        All joints with a degree of freedom, coupled ones included.
-    total_mass_kg
-        Sum of all link masses, the root's included [kg].
-    warnings
-        Repairs made while reading, then whatever else is odd.
+    Attributes:
+        name: Name of the robot.
+        actuated: Joints that motors drive between base and tool; empty when nothing moves there.
+        coupled: Joints that follow another one, as rules ``follower = multiplier · driver +
+            offset``, and joints that a closed loop determines.
+        loops: Closed loops that `robot.yaml` declares.
+        frames: All frames (URDF links).
+        base_frame, tool_frame, chosen_because: Frames between which the arm is described, and why,
+            in sentences.
+        choice: What would be taken if nobody named frames: other ends of the robot, fingers.
+        moving: All joints with a degree of freedom, coupled ones included.
+        total_mass_kg: Sum of all link masses, the root's included [kg].
+        warnings: Repairs made while reading, then whatever else is odd.
     """
 
     name: str
@@ -72,17 +62,13 @@ def check_robot(
 ) -> CheckReport:
     """Load a robot and look at everything that could be wrong with it.
 
-    Parameters
-    ----------
-    source
-        Bundled name, ``.urdf``, ``.xacro``, folder, or URDF text.
-    base, tool
-        Frames between which the arm is described; defaults as in `load_robot`.
+    Args:
+        source: Bundled name, ``.urdf``, ``.xacro``, folder, or URDF text.
+        base, tool: Frames between which the arm is described; defaults as in `load_robot`.
 
-    Raises
-    ------
-    InputError
-        The robot is refused. A robot in which nothing moves is no refusal here but a warning.
+    Raises:
+        InputError: The robot is refused. A robot in which nothing moves is no refusal here but a
+            warning.
     """
     found = find_robot(source)
     document = read_urdf(found.urdf, xacro_arguments=found.xacro)

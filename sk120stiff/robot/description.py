@@ -87,10 +87,9 @@ def xacro_value(value: str | bool | int | float) -> str:
 def read_description(path: Path) -> RobotDescription:
     """Read and check a `robot.yaml`.
 
-    Raises
-    ------
-    InputError
-        Not YAML, an unknown key, or a value of the wrong kind; file, line or key are named.
+    Raises:
+        InputError: Not YAML, an unknown key, or a value of the wrong kind; file, line or key are
+            named.
     """
     content = read_yaml(path).content
     try:

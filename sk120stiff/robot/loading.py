@@ -59,17 +59,12 @@ class RobotSource:
 def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSource:
     """Tell a bundled name, a folder with `robot.yaml`, a file and URDF text apart.
 
-    Parameters
-    ----------
-    source
-        Bundled name, path or XML text; a name or a path may be followed by ``NAME:=VALUE``.
-    relative_to
-        Folder against which a relative path is tried first.
+    Args:
+        source: Bundled name, path or XML text; a name or a path may be followed by ``NAME:=VALUE``.
+        relative_to: Folder against which a relative path is tried first.
 
-    Raises
-    ------
-    InputError
-        Nothing of that name; the bundled robots are listed.
+    Raises:
+        InputError: Nothing of that name; the bundled robots are listed.
     """
     text, arguments = robot_name(os.fspath(source))
     if text.lstrip("\ufeff \t\r\n").startswith("<"):
@@ -116,35 +111,25 @@ def load_robot(
 ) -> Robot:
     """Load the rigid kinematics of any robot arm.
 
-    Parameters
-    ----------
-    source
-        Bundled name (``"motoman_sk120"``), ``.urdf`` or ``.xacro`` file, folder with
-        ``robot.yaml``, or URDF text.
-    base, tool
-        Frames (URDF links) between which the arm is described. Default: what ``robot.yaml`` says,
-        else the root and the end of the longest arm (`Robot.choice`).
-    actuated
-        Joints that motors drive, in the wanted order. Default: what ``robot.yaml`` says, else all
-        moving joints between base and tool that mimic no other.
-    lock
-        Values [rad or m] at which joints that are not actuated are held; zero else.
-    xacro
-        Values of the arguments of a xacro, on top of those of ``robot.yaml``.
-    relative_to
-        Folder against which a relative path is tried first.
+    Args:
+        source: Bundled name (``"motoman_sk120"``), ``.urdf`` or ``.xacro`` file, folder with
+            ``robot.yaml``, or URDF text.
+        base, tool: Frames (URDF links) between which the arm is described. Default: what
+            ``robot.yaml`` says, else the root and the end of the longest arm (`Robot.choice`).
+        actuated: Joints that motors drive, in the wanted order. Default: what ``robot.yaml`` says,
+            else all moving joints between base and tool that mimic no other.
+        lock: Values [rad or m] at which joints that are not actuated are held; zero else.
+        xacro: Values of the arguments of a xacro, on top of those of ``robot.yaml``.
+        relative_to: Folder against which a relative path is tried first.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read or describes no arm; the message names place and remedy.
+    Raises:
+        InputError: The file cannot be read or describes no arm; the message names place and remedy.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> robot = sk.load_robot("motoman_sk120")
-    >>> robot.n, robot.tool_frame
-    (6, 'tool0')
+    Examples:
+        >>> import sk120stiff as sk
+        >>> robot = sk.load_robot("motoman_sk120")
+        >>> robot.n, robot.tool_frame
+        (6, 'tool0')
     """
     name = robot_name(os.fspath(source)).with_arguments(xacro or {})
     named = str(name if relative_to is None else name.found_from(relative_to))

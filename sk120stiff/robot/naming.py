@@ -55,10 +55,8 @@ class RobotName(NamedTuple):
 def robot_name(text: str) -> RobotName:
     """Read the name of a robot.
 
-    Raises
-    ------
-    InputError
-        Something behind the first argument is none.
+    Raises:
+        InputError: Something behind the first argument is none.
     """
     first = None if text.lstrip("\ufeff \t\r\n").startswith("<") else _ARGUMENT.search(text)
     if first is None:
@@ -75,10 +73,8 @@ def robot_name(text: str) -> RobotName:
 def xacro_arguments(words: Iterable[str], *, where: str) -> dict[str, str]:
     """Values by name of words like ``name:=value``.
 
-    Raises
-    ------
-    InputError
-        A word is none of these.
+    Raises:
+        InputError: A word is none of these.
     """
     found: dict[str, str] = {}
     for word in words:

@@ -29,14 +29,11 @@ STANDARD_GRAVITY = 9.80665  # m/s²
 class Linkage:
     """The rod of a closed linkage between two actuated joints (see `robot.yaml`).
 
-    Attributes
-    ----------
-    rod
-        Link name of the rod.
-    drivers
-        The two actuated joints; the second one turns the crank and is held by the rod.
-    corners
-        Frames at the crank's pivot, at the joint of crank and rod, and at the rod's far end.
+    Attributes:
+        rod: Link name of the rod.
+        drivers: The two actuated joints; the second one turns the crank and is held by the rod.
+        corners: Frames at the crank's pivot, at the joint of crank and rod, and at the rod's far
+            end.
     """
 
     rod: str
@@ -51,24 +48,16 @@ class Robot:
     Everything that takes coordinates ``a`` takes one pose (n,) or any batch (..., n), in rad for
     joints that turn and m for joints that slide.
 
-    Attributes
-    ----------
-    name
-        Name of the robot.
-    actuated
-        The n joints that motors drive, in the order of ``a``.
-    base_frame, tool_frame
-        Frames between which the arm is described. All results are in axes of `base_frame`.
-    choice
-        The frames that are taken where nobody names any, with the alternatives.
-    lower, upper
-        (n,) joint limits; infinite where none are published.
-    followers
-        Mimic rule of every coupled joint.
-    foundation
-        (3,) point of the base frame about which the base rocks [m].
-    gravity
-        (3,) acceleration in axes of the URDF's root [m/s²].
+    Attributes:
+        name: Name of the robot.
+        actuated: The n joints that motors drive, in the order of ``a``.
+        base_frame, tool_frame: Frames between which the arm is described. All results are in axes
+            of `base_frame`.
+        choice: The frames that are taken where nobody names any, with the alternatives.
+        lower, upper: (n,) joint limits; infinite where none are published.
+        followers: Mimic rule of every coupled joint.
+        foundation: (3,) point of the base frame about which the base rocks [m].
+        gravity: (3,) acceleration in axes of the URDF's root [m/s²].
     """
 
     name: str
@@ -153,10 +142,9 @@ class Robot:
     ) -> Screws:
         """Unit twists of the joints at `point` (3,) [m, axes of `frame`] for coordinates `a`.
 
-        Raises
-        ------
-        InputError
-            `a` has another number of coordinates, is not finite, or `frame` does not exist.
+        Raises:
+            InputError: `a` has another number of coordinates, is not finite, or `frame` does not
+                exist.
         """
         coordinates = self.coordinates(a)
         at = None if point is None else np.asarray(point, dtype=float)
@@ -214,10 +202,8 @@ class Robot:
     def gravity_torque(self, a: ArrayLike) -> Array:
         """(..., n) torques by which the robot's own weight drives the actuated joints [N·m or N].
 
-        Warns
-        -----
-        ToolkitWarning
-            The URDF states no mass at all, so that every torque is zero.
+        Warns:
+            ToolkitWarning: The URDF states no mass at all, so that every torque is zero.
         """
         coordinates = self.coordinates(a)
         if self.total_mass == 0.0:
@@ -241,10 +227,8 @@ class Robot:
     def coordinates(self, a: ArrayLike) -> Array:
         """`a` as an array (..., n) of finite numbers.
 
-        Raises
-        ------
-        InputError
-            Another number of coordinates, or a value that is not finite.
+        Raises:
+            InputError: Another number of coordinates, or a value that is not finite.
         """
         values = np.asarray(a, dtype=float)
         if values.shape[-1:] != (self.n,):

@@ -32,21 +32,14 @@ Colour = tuple[float, float, float, float]
 class Visual:
     """One shape of a link.
 
-    Attributes
-    ----------
-    link, name
-        The link that carries it, and the shape's own name (may be empty).
-    T_link_visual
-        (4, 4) placement in the link frame [m].
-    kind
-        ``box``, ``cylinder``, ``sphere``, ``capsule`` or ``mesh``.
-    size
-        box: x, y, z; cylinder and capsule (along z, centred): radius, length; sphere: radius [m];
-        empty for a mesh.
-    vertices, faces
-        (V, 3) [m], scale applied, and (F, 3) indices; None but for a mesh.
-    rgba
-        Colour, each 0..1; None where the file gives none.
+    Attributes:
+        link, name: The link that carries it, and the shape's own name (may be empty).
+        T_link_visual: (4, 4) placement in the link frame [m].
+        kind: ``box``, ``cylinder``, ``sphere``, ``capsule`` or ``mesh``.
+        size: box: x, y, z; cylinder and capsule (along z, centred): radius, length; sphere: radius
+            [m]; empty for a mesh.
+        vertices, faces: (V, 3) [m], scale applied, and (F, 3) indices; None but for a mesh.
+        rgba: Colour, each 0..1; None where the file gives none.
     """
 
     link: str
@@ -83,10 +76,8 @@ class _Mesh:
 def visuals(robot: Robot | UrdfDocument) -> Appearance:
     """Shapes of a robot's links, in the order of the file; never raises for a bad mesh.
 
-    Parameters
-    ----------
-    robot
-        A loaded robot, or its document.
+    Args:
+        robot: A loaded robot, or its document.
     """
     document = robot.document if isinstance(robot, Robot) else robot
     shapes: list[Visual] = []

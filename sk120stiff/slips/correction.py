@@ -12,14 +12,10 @@ from sk120stiff.slips.sheet import Sheet
 class Correction:
     """A slip of the pen as a change of the sheet.
 
-    Attributes
-    ----------
-    said
-        What looks wrong, in words, without a full stop.
-    remedy
-        The edit that mends it, as a sentence.
-    mend
-        The sheet without the slip.
+    Attributes:
+        said: What looks wrong, in words, without a full stop.
+        remedy: The edit that mends it, as a sentence.
+        mend: The sheet without the slip.
     """
 
     said: str

@@ -28,14 +28,10 @@ OVERSTATED = 3.0  # times what is left, where a stated uncertainty exceeds the r
 class Doubts:
     """What looks wrong in readings.
 
-    Attributes
-    ----------
-    slip
-        What was written down wrongly beyond doubt, or None.
-    scale
-        Everything yields far too much or too little, or None.
-    limits
-        Readings beyond the joint limits, in a sentence, or None.
+    Attributes:
+        slip: What was written down wrongly beyond doubt, or None.
+        scale: Everything yields far too much or too little, or None.
+        limits: Readings beyond the joint limits, in a sentence, or None.
     """
 
     slip: Slip | None = None
@@ -52,10 +48,8 @@ class Doubts:
     def refuse_to_explain(self, where: str) -> None:
         """Stop before a cause is sought for what is no cause.
 
-        Raises
-        ------
-        Refusal
-            A slip of the pen, or a unit that can only be wrong.
+        Raises:
+            Refusal: A slip of the pen, or a unit that can only be wrong.
         """
         remedy = "No cause is sought before this is settled."
         if self.slip is not None:
@@ -67,12 +61,9 @@ class Doubts:
 def look(model: Model, measurements: Measurements) -> Doubts:
     """What looks wrong in readings that a model is held against.
 
-    Parameters
-    ----------
-    model
-        Its robot decides; its springs are only asked for the scale of everything.
-    measurements
-        Readings; masked ones are left out, and a plan has nothing wrong.
+    Args:
+        model: Its robot decides; its springs are only asked for the scale of everything.
+        measurements: Readings; masked ones are left out, and a plan has nothing wrong.
     """
     slip = find_slip(model.robot, measurements)
     scale = None if slip is not None else scale_doubt(model, measurements)
@@ -82,11 +73,9 @@ def look(model: Model, measurements: Measurements) -> Doubts:
 def refuse_unbelievable(doubts: Doubts, model: Model, measurements: Measurements) -> None:
     """Stop where fitting springs would only put a number on nonsense.
 
-    Raises
-    ------
-    Refusal
-        No passive arm explains half of the readings and their noise does not excuse it, or the
-        stated uncertainty is larger than the readings and than anything they show.
+    Raises:
+        Refusal: No passive arm explains half of the readings and their noise does not excuse it, or
+            the stated uncertainty is larger than the readings and than anything they show.
     """
     sheet = sheet_of(model.robot, measurements)
     if sheet is None or not sheet.exists() or not sheet.measured.any():

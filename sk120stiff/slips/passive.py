@@ -27,14 +27,10 @@ UNSEEN = 1e-9  # of the largest column: a compliance that the readings do not sh
 class Passive:
     """The best that non-negative compliances can do.
 
-    Attributes
-    ----------
-    share
-        Of ‖d‖² that they explain, from 0 to 1.
-    left
-        Mean square of what they leave, per axis [m²].
-    count
-        Numbers that were explained, three per reading.
+    Attributes:
+        share: Of ‖d‖² that they explain, from 0 to 1.
+        left: Mean square of what they leave, per axis [m²].
+        count: Numbers that were explained, three per reading.
     """
 
     share: float
@@ -73,14 +69,10 @@ def unit_displacements(at: Screws, force_point: Array, wrench: Array) -> Array:
     The compliances are those of the n coordinates, which come first, of two tilts of every bearing,
     and of the foundation (three rotations, three slides).
 
-    Parameters
-    ----------
-    at
-        N poses, seen from the measured point.
-    force_point
-        (3,) point of attack in the tool frame [m].
-    wrench
-        (N, 6) load in base axes [N, N·m].
+    Args:
+        at: N poses, seen from the measured point.
+        force_point: (3,) point of attack in the tool frame [m].
+        wrench: (N, 6) load in base axes [N, N·m].
     """
     attack = at if np.array_equal(at.point, force_point) else at.at(force_point)
     force, moment = wrench[:, None, :3], wrench[:, None, 3:]

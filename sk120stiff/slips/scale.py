@@ -71,12 +71,9 @@ def yields_times(model: Model, measurements: Measurements) -> float | None:
 class Scale:
     """Everything yields too much or too little.
 
-    Attributes
-    ----------
-    sentence
-        What was seen and what it may be.
-    certain
-        By so much that only a unit can be wrong.
+    Attributes:
+        sentence: What was seen and what it may be.
+        certain: By so much that only a unit can be wrong.
     """
 
     sentence: str

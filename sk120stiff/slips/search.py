@@ -39,14 +39,11 @@ MANY = 300  # readings that suffice to rank many corrections at once
 class Slip:
     """What was written down wrongly, and what mends it.
 
-    Attributes
-    ----------
-    corrections
-        One or more, to be made together.
-    before, after
-        Share of the readings' squares that a passive arm explains without and with them.
-    rival
-        Another correction that explains nearly as much, or None.
+    Attributes:
+        corrections: One or more, to be made together.
+        before, after: Share of the readings' squares that a passive arm explains without and with
+            them.
+        rival: Another correction that explains nearly as much, or None.
     """
 
     corrections: tuple[Correction, ...]
@@ -89,12 +86,9 @@ class Tried:
 def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
     """What looks written down wrongly in readings of a robot, or None.
 
-    Parameters
-    ----------
-    robot
-        The rigid robot. Springs are not asked for: they are refitted for every correction.
-    measurements
-        Readings; masked ones are left out.
+    Args:
+        robot: The rigid robot. Springs are not asked for: they are refitted for every correction.
+        measurements: Readings; masked ones are left out.
     """
     sheet = sheet_of(robot, measurements)
     if sheet is None or not sheet.exists() or not sheet.measured.any():

@@ -18,25 +18,16 @@ from sk120stiff.slips.passive import unit_displacements
 class Sheet:
     """N readings as the file states them.
 
-    Attributes
-    ----------
-    robot
-        The rigid robot.
-    joints
-        (N, n) actuated coordinates [rad or m].
-    wrench
-        (N, 6) in axes of `force_frame` [N, N·m].
-    displacement
-        (N, 3) in axes of `displacement_frame` [m].
-    force_frame, displacement_frame
-        ``"base"`` or ``"tool"``.
-    point, force_point
-        (3,) in the tool frame [m].
-    kept
-        (N,) rows that are in use.
-    stretch
-        Logarithm of the factor by which a correction changed the volume of (dx, dy, dz): noise that
-        was equal on all axes was changed by it too.
+    Attributes:
+        robot: The rigid robot.
+        joints: (N, n) actuated coordinates [rad or m].
+        wrench: (N, 6) in axes of `force_frame` [N, N·m].
+        displacement: (N, 3) in axes of `displacement_frame` [m].
+        force_frame, displacement_frame: ``"base"`` or ``"tool"``.
+        point, force_point: (3,) in the tool frame [m].
+        kept: (N,) rows that are in use.
+        stretch: Logarithm of the factor by which a correction changed the volume of (dx, dy, dz):
+            noise that was equal on all axes was changed by it too.
     """
 
     robot: Robot
@@ -122,10 +113,8 @@ class Sheet:
 def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
     """The readings on a robot; None for a plan.
 
-    Raises
-    ------
-    InputError
-        The file's joints are not the robot's actuated joints.
+    Raises:
+        InputError: The file's joints are not the robot's actuated joints.
     """
     kinds = ["length" if slides else "angle" for slides in robot.prismatic]
     measurements = measurements.with_joints(robot.actuated, kinds)

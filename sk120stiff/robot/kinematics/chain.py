@@ -20,22 +20,16 @@ from sk120stiff.arrays import Array, Index, Mask
 class VirtualJoint:
     """A joint that no motor drives, placed somewhere along a chain.
 
-    Attributes
-    ----------
-    name
-        Unique name, e.g. ``link_bending:link_2_l[3].y``.
-    body
-        Index of the chain joint that carries it (it sits on that joint's moving side); -1 for the
-        base.
-    placement
-        (4, 4) its frame in the frame of that joint [m].
-    axis
-        (3,) unit direction in its own frame.
-    revolute
-        Rotation about the axis if true, translation along it else.
-    followers
-        Joints of the robot that follow this displacement through a closed linkage, as (index in q,
-        multiplier): a parallelogram keeps the forearm's direction also when the upper arm bends.
+    Attributes:
+        name: Unique name, e.g. ``link_bending:link_2_l[3].y``.
+        body: Index of the chain joint that carries it (it sits on that joint's moving side); -1 for
+            the base.
+        placement: (4, 4) its frame in the frame of that joint [m].
+        axis: (3,) unit direction in its own frame.
+        revolute: Rotation about the axis if true, translation along it else.
+        followers: Joints of the robot that follow this displacement through a closed linkage, as
+            (index in q, multiplier): a parallelogram keeps the forearm's direction also when the
+            upper arm bends.
     """
 
     name: str
@@ -50,22 +44,17 @@ class VirtualJoint:
 class Chain:
     """Constants of a serial chain from a base frame to an end frame.
 
-    Attributes
-    ----------
-    names
-        Joint names, base to end.
-    placements
-        (m + 1, 4, 4) constant transform before each joint, and from the last joint to the end
-        frame [m].
-    axes
-        (m, 3) unit joint axes in the joint frames.
-    revolute
-        (m,) true for rotation, false for translation.
-    coordinates
-        (m,) index of each joint's value in the joint vector [q of all robot joints; virtual].
-    masses, centres
-        (m,) mass that each joint carries up to the next one [kg], and (m, 3) its centre in the
-        joint's moving frame [m]. Branches off the chain count at their rest position.
+    Attributes:
+        names: Joint names, base to end.
+        placements: (m + 1, 4, 4) constant transform before each joint, and from the last joint to
+            the end frame [m].
+        axes: (m, 3) unit joint axes in the joint frames.
+        revolute: (m,) true for rotation, false for translation.
+        coordinates: (m,) index of each joint's value in the joint vector [q of all robot joints;
+            virtual].
+        masses, centres: (m,) mass that each joint carries up to the next one [kg], and (m, 3) its
+            centre in the joint's moving frame [m]. Branches off the chain count at their rest
+            position.
     """
 
     names: tuple[str, ...]
@@ -98,12 +87,9 @@ class Chain:
     def with_virtual_joints(self, virtual: Sequence[VirtualJoint], first_index: int) -> Chain:
         """The same chain with `virtual` joints inserted, in the given order on each body.
 
-        Parameters
-        ----------
-        virtual
-            Joints to insert; several on one body act one after the other as listed.
-        first_index
-            Index of the first virtual joint's value in the joint vector.
+        Args:
+            virtual: Joints to insert; several on one body act one after the other as listed.
+            first_index: Index of the first virtual joint's value in the joint vector.
         """
         names: list[str] = []
         placements: list[Array] = []
@@ -150,15 +136,11 @@ class Chain:
     def sweep(self, q: Array) -> Sweep:
         """Forward kinematics that keeps every joint on the way.
 
-        Parameters
-        ----------
-        q
-            (..., m) joint values [rad or m].
+        Args:
+            q: (..., m) joint values [rad or m].
 
-        Returns
-        -------
-        Sweep
-            Joint axes, joint origins, centres of mass and the end frame, in base axes.
+        Returns:
+            Sweep: Joint axes, joint origins, centres of mass and the end frame, in base axes.
         """
         batch = q.shape[:-1]
         count = int(np.prod(batch, dtype=int))
@@ -200,14 +182,10 @@ class Chain:
 class Sweep(NamedTuple):
     """What forward kinematics meets on the way, in base axes [m].
 
-    Attributes
-    ----------
-    axes, origins
-        (..., m, 3) joint axes and joint origins.
-    rotation, position
-        (..., 3, 3) and (..., 3) of the end frame.
-    centres
-        (..., m, 3) centres of the carried masses, or None where nothing weighs.
+    Attributes:
+        axes, origins: (..., m, 3) joint axes and joint origins.
+        rotation, position: (..., 3, 3) and (..., 3) of the end frame.
+        centres: (..., m, 3) centres of the carried masses, or None where nothing weighs.
     """
 
     axes: Array

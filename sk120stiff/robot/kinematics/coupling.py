@@ -28,14 +28,10 @@ if TYPE_CHECKING:
 class Curvature:
     """Second derivative of joint values by coordinates, kept only where it is not zero.
 
-    Attributes
-    ----------
-    joints
-        (r,) positions of the joints that bend.
-    coordinates
-        (s,) the coordinates that bend them.
-    hessian
-        (..., r, s, s) d²q[joints]/da[coordinates]².
+    Attributes:
+        joints: (r,) positions of the joints that bend.
+        coordinates: (s,) the coordinates that bend them.
+        hessian: (..., r, s, s) d²q[joints]/da[coordinates]².
     """
 
     joints: Index
@@ -70,14 +66,10 @@ class Curvature:
 class JointMotion:
     """Values of all moving joints and their derivatives by the actuated coordinates.
 
-    Attributes
-    ----------
-    q
-        (..., m) joint values [rad or m].
-    first
-        (m, n) or (..., m, n): dq/da.
-    second
-        d²q/da², or None where it vanishes identically.
+    Attributes:
+        q: (..., m) joint values [rad or m].
+        first: (m, n) or (..., m, n): dq/da.
+        second: d²q/da², or None where it vanishes identically.
     """
 
     q: Array
@@ -112,12 +104,9 @@ class Coupling(Protocol):
 class LinearCoupling:
     """q = A a + b, exact for mimic joints and parallelograms.
 
-    Attributes
-    ----------
-    A
-        (m, n) multipliers.
-    b
-        (m,) offsets [rad or m].
+    Attributes:
+        A: (m, n) multipliers.
+        b: (m,) offsets [rad or m].
     """
 
     A: Array
@@ -170,21 +159,14 @@ def linear_coupling(
 ) -> LinearCoupling:
     """Compose mimic rules, in any order and through any chain of them, into q = A a + b.
 
-    Parameters
-    ----------
-    joints
-        All moving joints, in the order of q.
-    actuated
-        The joints whose values are the coordinates a, in their order.
-    followers
-        Mimic rule of each coupled joint.
-    rest
-        Value at which every remaining joint is locked; zero where it is not named.
+    Args:
+        joints: All moving joints, in the order of q.
+        actuated: The joints whose values are the coordinates a, in their order.
+        followers: Mimic rule of each coupled joint.
+        rest: Value at which every remaining joint is locked; zero where it is not named.
 
-    Raises
-    ------
-    InputError
-        A rule names an unknown joint, or the rules run in a circle.
+    Raises:
+        InputError: A rule names an unknown joint, or the rules run in a circle.
     """
     column = {name: k for k, name in enumerate(actuated)}
     known = set(joints)

@@ -17,22 +17,15 @@ from sk120stiff.robot.kinematics.coupling import Coupling, Curvature
 class Screws:
     """Joint axes of a chain at one pose or many, seen from a point of the end frame.
 
-    Attributes
-    ----------
-    axes, origins
-        (..., m, 3) unit joint axes and points on them, in base axes [m].
-    revolute
-        (m,) rotation or translation.
-    rotation, frame_position
-        (..., 3, 3) and (..., 3) of the end frame [m].
-    point
-        (3,) or (..., 3) the point, in the end frame [m].
-    first, second
-        (..., m, n) derivative of the joint values by the coordinates, and the second one, or None
-        where it vanishes.
-    carried
-        (..., m, 3) change of Σ mass · position with each joint [kg·m per rad], or None where
-        nothing weighs.
+    Attributes:
+        axes, origins: (..., m, 3) unit joint axes and points on them, in base axes [m].
+        revolute: (m,) rotation or translation.
+        rotation, frame_position: (..., 3, 3) and (..., 3) of the end frame [m].
+        point: (3,) or (..., 3) the point, in the end frame [m].
+        first, second: (..., m, n) derivative of the joint values by the coordinates, and the second
+            one, or None where it vanishes.
+        carried: (..., m, 3) change of Σ mass · position with each joint [kg·m per rad], or None
+            where nothing weighs.
     """
 
     axes: Array

@@ -71,10 +71,8 @@ class Tree:
     def joint_index(self, name: str) -> int:
         """Position of a joint in q.
 
-        Raises
-        ------
-        InputError
-            There is no such moving joint; the existing ones are listed.
+        Raises:
+            InputError: There is no such moving joint; the existing ones are listed.
         """
         if name not in self.joint_names:
             raise InputError(
@@ -86,10 +84,8 @@ class Tree:
     def body(self, frame: str) -> tuple[int, Array]:
         """Moving joint that carries a frame (-1: none), and the frame's (4, 4) placement on it [m].
 
-        Raises
-        ------
-        InputError
-            There is no such frame; the existing ones are listed.
+        Raises:
+            InputError: There is no such frame; the existing ones are listed.
         """
         if frame not in self.frame_names:
             raise InputError(
@@ -102,10 +98,8 @@ class Tree:
     def path(self, base: str, tool: str) -> tuple[int, ...]:
         """Moving joints met on the way from one frame to another.
 
-        Raises
-        ------
-        InputError
-            The way from `base` to `tool` does not run outwards only.
+        Raises:
+            InputError: The way from `base` to `tool` does not run outwards only.
         """
         start, _ = self.body(base)
         body, _ = self.body(tool)
@@ -173,12 +167,9 @@ class Tree:
     def gravity_torques(self, q: Array, gravity: Array) -> Array:
         """(m,) torques by which gravity drives the joints [N·m or N]: minus the holding torques.
 
-        Parameters
-        ----------
-        q
-            (m,) joint values.
-        gravity
-            (3,) acceleration in root axes [m/s²].
+        Args:
+            q: (m,) joint values.
+            gravity: (3,) acceleration in root axes [m/s²].
         """
         self._model.gravity.linear = np.asarray(gravity, dtype=float)
         held = pin.computeGeneralizedGravity(self._model, self._data, self._configuration(q))

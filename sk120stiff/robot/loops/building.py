@@ -30,32 +30,22 @@ def loop_coupling(
 ) -> LoopCoupling:
     """Coupling of all joints of a tree with closed loops to its actuated ones.
 
-    Parameters
-    ----------
-    tree
-        The robot, opened at the closures.
-    closures
-        What closes it. Where one names no dependent joints, those joints of its loop are dependent
-        that are neither driven, locked, nor coupled by a rule.
-    actuated
-        Joints that motors drive.
-    followers, rest
-        Mimic rules, and values of locked joints.
-    start
-        Values [rad or m] of joints near which the loops are closed, in the wanted assembly mode;
-        zero where not named.
+    Args:
+        tree: The robot, opened at the closures.
+        closures: What closes it. Where one names no dependent joints, those joints of its loop are
+            dependent that are neither driven, locked, nor coupled by a rule.
+        actuated: Joints that motors drive.
+        followers, rest: Mimic rules, and values of locked joints.
+        start: Values [rad or m] of joints near which the loops are closed, in the wanted assembly
+            mode; zero where not named.
 
-    Raises
-    ------
-    InputError
-        A closure names what does not exist, closes nothing, leaves joints undetermined or cannot be
-        closed at the start.
+    Raises:
+        InputError: A closure names what does not exist, closes nothing, leaves joints undetermined
+            or cannot be closed at the start.
 
-    Warns
-    -----
-    ToolkitWarning
-        No start is given, and the loops are far from closed with all joints at zero: the assembly
-        mode was a matter of chance.
+    Warns:
+        ToolkitWarning: No start is given, and the loops are far from closed with all joints at
+            zero: the assembly mode was a matter of chance.
     """
     constraints = tuple(_constraint(tree, closure) for closure in closures)
     dependent = _dependent(tree, constraints, actuated, followers, rest)
@@ -76,10 +66,8 @@ def loop_coupling(
 def closures_of(description: RobotDescription) -> tuple[Closure, ...]:
     """The closures that `robot.yaml` declares.
 
-    Raises
-    ------
-    InputError
-        Two of one name, or an axis without a direction.
+    Raises:
+        InputError: Two of one name, or an axis without a direction.
     """
     found: list[Closure] = []
     for rule in description.closures:
@@ -111,11 +99,9 @@ def loop_drivers(
 
     They are the joints on the way to the tool and those of the loops, without the dependent ones.
 
-    Raises
-    ------
-    InputError
-        A closure does not say which of its joints depend on it: no guess is made which joints of a
-        loop have a motor.
+    Raises:
+        InputError: A closure does not say which of its joints depend on it: no guess is made which
+            joints of a loop have a motor.
     """
     joints: list[str] = list(on_way)
     dependent: list[str] = []

@@ -21,20 +21,15 @@ NEWTON = 8
 class Closer:
     """All loops of a robot as one system C(q) = 0 with q = A [z; d] + b.
 
-    Attributes
-    ----------
-    linear
-        Coupling of all joints to the driven coordinates z (n) and the dependent joints d (r).
-    driven
-        Number n.
-    scale
-        (n + r,) one rad, or the loops' length for what slides; infinite for coordinates that no
-        loop feels.
-    constraints
-        What closes the loops.
-    rows
-        (e, r) combinations of the constraints' rows that determine d, the same at all poses; None
-        where no fixed choice does, and least squares takes them all.
+    Attributes:
+        linear: Coupling of all joints to the driven coordinates z (n) and the dependent joints d
+            (r).
+        driven: Number n.
+        scale: (n + r,) one rad, or the loops' length for what slides; infinite for coordinates that
+            no loop feels.
+        constraints: What closes the loops.
+        rows: (e, r) combinations of the constraints' rows that determine d, the same at all poses;
+            None where no fixed choice does, and least squares takes them all.
     """
 
     linear: LinearCoupling
@@ -113,12 +108,9 @@ class Closer:
         Steps are shortened until Newton corrects each of them by little and the determinant keeps
         its sign, so the assembly mode stays what it was.
 
-        Returns
-        -------
-        d, arrived
-            (N, r) dependent joints and (N,) where the walk came to its end.
-        last_z, last_d
-            Where it stood at last: before a dead point, if it did not arrive.
+        Returns:
+            d, arrived: (N, r) dependent joints and (N,) where the walk came to its end.
+            last_z, last_d: Where it stood at last: before a dead point, if it did not arrive.
         """
         z, d, target = z.copy(), d.copy(), np.asarray(target)
         count = len(z)

@@ -19,19 +19,13 @@ ELSEWHERE = -2  # the body of a virtual joint that is no part of a chain
 class Closure:
     """A closed loop that the tree of a URDF cannot hold, as `robot.yaml` states it.
 
-    Attributes
-    ----------
-    name
-        What messages call it.
-    frames
-        Two frames whose origins coincide.
-    kind
-        ``point`` (a ball joint, or any pin of a planar linkage), or ``axis`` (a revolute pin): then
-        the direction `axis`, the same in the axes of both frames, coincides too.
-    axis
-        (3,) unit direction.
-    dependent
-        Joints whose values the loop determines.
+    Attributes:
+        name: What messages call it.
+        frames: Two frames whose origins coincide.
+        kind: ``point`` (a ball joint, or any pin of a planar linkage), or ``axis`` (a revolute
+            pin): then the direction `axis`, the same in the axes of both frames, coincides too.
+        axis: (3,) unit direction.
+        dependent: Joints whose values the loop determines.
     """
 
     name: str
@@ -45,12 +39,9 @@ class Closure:
 class Gap:
     """A constraint at N poses.
 
-    Attributes
-    ----------
-    value
-        (N, e) what must vanish [m].
-    by_joint
-        (N, e, k) derivative by the k joints of the loop.
+    Attributes:
+        value: (N, e) what must vanish [m].
+        by_joint: (N, e, k) derivative by the k joints of the loop.
     """
 
     value: Array
@@ -71,12 +62,10 @@ class Constraint:
     Both sides are chains from the last body that they share to the two frames; joints of that body
     and below move both sides alike and do not matter.
 
-    Attributes
-    ----------
-    closure
-        What is closed.
-    sides
-        Chains to the first and to the second frame; their `coordinates` index the joint vector.
+    Attributes:
+        closure: What is closed.
+        sides: Chains to the first and to the second frame; their `coordinates` index the joint
+            vector.
     """
 
     closure: Closure

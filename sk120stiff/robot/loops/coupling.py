@@ -32,10 +32,8 @@ NEAR = 0.1  # rad, or parts of a loop's length: poses this close need no walk fr
 class OpenLoop(Refusal):
     """A loop cannot be closed at some poses.
 
-    Attributes
-    ----------
-    rows
-        (k,) which of the poses, counted over the flattened batch.
+    Attributes:
+        rows: (k,) which of the poses, counted over the flattened batch.
     """
 
     def __init__(self, what: str, *, where: str, remedy: str, rows: Index) -> None:
@@ -47,18 +45,12 @@ class OpenLoop(Refusal):
 class LoopCoupling:
     """Coupling of a robot with closed loops.
 
-    Attributes
-    ----------
-    closer
-        The loops as equations for the dependent joints.
-    names
-        Names of the n coordinates a, and of the r dependent joints.
-    turns
-        (n + r,) whether each of them is an angle.
-    start
-        (n + r,) values at which every loop is closed, in the wanted assembly mode.
-    elastic
-        Number of virtual joints among the n coordinates, which come last.
+    Attributes:
+        closer: The loops as equations for the dependent joints.
+        names: Names of the n coordinates a, and of the r dependent joints.
+        turns: (n + r,) whether each of them is an angle.
+        start: (n + r,) values at which every loop is closed, in the wanted assembly mode.
+        elastic: Number of virtual joints among the n coordinates, which come last.
     """
 
     closer: Closer
@@ -91,10 +83,9 @@ class LoopCoupling:
     def motion(self, a: Array) -> JointMotion:
         """Joint values and derivatives at `a` (..., n).
 
-        Raises
-        ------
-        OpenLoop
-            A loop cannot be closed at a pose, or stands at a dead point; loop and pose are named.
+        Raises:
+            OpenLoop: A loop cannot be closed at a pose, or stands at a dead point; loop and pose
+                are named.
         """
         batch = a.shape[:-1]
         z = a.reshape(-1, self.n)
@@ -140,12 +131,9 @@ class LoopCoupling:
         joints give way. On the body that carries a closing frame itself it is taken to lie beyond
         that frame.
 
-        Parameters
-        ----------
-        virtual
-            Virtual joints of the arm's chain.
-        bodies
-            Names of the chain's joints, which `VirtualJoint.body` counts.
+        Args:
+            virtual: Virtual joints of the arm's chain.
+            bodies: Names of the chain's joints, which `VirtualJoint.body` counts.
         """
         old, extra = self.closer, len(virtual)
         n, m = self.n, self.m

@@ -28,19 +28,13 @@ def with_arm_only(
 ) -> UrdfDocument:
     """The document itself, or, beyond `MOST_FREE` moving joints, one in which only the arm moves.
 
-    Parameters
-    ----------
-    base, tool
-        Frames between which the arm lies.
-    needed
-        Further joints that must stay free.
-    rest
-        Values at which joints are held [rad or m]; zero where not named.
+    Args:
+        base, tool: Frames between which the arm lies.
+        needed: Further joints that must stay free.
+        rest: Values at which joints are held [rad or m]; zero where not named.
 
-    Raises
-    ------
-    InputError
-        The arm alone has more than `MOST_MOVING` joints.
+    Raises:
+        InputError: The arm alone has more than `MOST_MOVING` joints.
     """
     moving = document.moving_joints
     if len(moving) <= MOST_FREE:

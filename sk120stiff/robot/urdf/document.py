@@ -26,14 +26,10 @@ HARMLESS = frozenset(
 class Finding:
     """Something suspicious or repaired that does not stop the work.
 
-    Attributes
-    ----------
-    code
-        Stable identifier, e.g. ``limit_missing``.
-    where
-        Line, joint, link or frame it was found at.
-    message
-        What is odd, and what was done about it.
+    Attributes:
+        code: Stable identifier, e.g. ``limit_missing``.
+        where: Line, joint, link or frame it was found at.
+        message: What is odd, and what was done about it.
     """
 
     code: str
@@ -56,21 +52,14 @@ class Mimic(NamedTuple):
 class JointSpec:
     """One joint, after repairs.
 
-    Attributes
-    ----------
-    type
-        ``revolute``, ``continuous``, ``prismatic`` or ``fixed``. A joint that had to be locked is
-        ``fixed`` here; `source_type` keeps what the file says.
-    origin
-        (4, 4) T_parent_joint at joint value zero [m].
-    axis
-        (3,) unit axis in the joint frame.
-    lower, upper
-        Limits [rad or m], None where the file states none that can be used.
-    effort, velocity
-        Largest effort [N·m or N] and speed [rad/s or m/s], None where not stated.
-    line
-        Line of the element in the text that was parsed.
+    Attributes:
+        type: ``revolute``, ``continuous``, ``prismatic`` or ``fixed``. A joint that had to be
+            locked is ``fixed`` here; `source_type` keeps what the file says.
+        origin: (4, 4) T_parent_joint at joint value zero [m].
+        axis: (3,) unit axis in the joint frame.
+        lower, upper: Limits [rad or m], None where the file states none that can be used.
+        effort, velocity: Largest effort [N·m or N] and speed [rad/s or m/s], None where not stated.
+        line: Line of the element in the text that was parsed.
     """
 
     name: str
@@ -120,15 +109,11 @@ class LinkSpec:
 class GeometrySpec:
     """A shape as the file describes it.
 
-    Attributes
-    ----------
-    kind
-        ``box``, ``cylinder``, ``sphere``, ``capsule`` or ``mesh``.
-    size
-        box: x, y, z; cylinder and capsule: radius, length; sphere: radius; mesh: scale x, y, z.
-        Metres, but for the scale.
-    filename
-        As written in the file; meshes only.
+    Attributes:
+        kind: ``box``, ``cylinder``, ``sphere``, ``capsule`` or ``mesh``.
+        size: box: x, y, z; cylinder and capsule: radius, length; sphere: radius; mesh: scale x, y,
+            z. Metres, but for the scale.
+        filename: As written in the file; meshes only.
     """
 
     kind: str
@@ -152,28 +137,18 @@ class VisualSpec:
 class UrdfDocument:
     """A robot description that is known to be one tree of links, joined by joints.
 
-    Attributes
-    ----------
-    name
-        Name of the robot.
-    xml
-        Clean kinematic URDF: one element per line, no visuals, no collisions, numbers that
-        round-trip. Pinocchio reads this and never the user's file.
-    path
-        The file that was read, None for text.
-    package_folders
-        Folders in which ``package://`` addresses are looked up, first match wins.
-    joints, links, visuals
-        In the order of the file; undeclared links last.
-    root
-        The only link without a parent.
-    locked
-        Why each joint was locked that the file describes as moving.
-    orphans
-        Mimic rules that name a joint which does not exist, by the joint that has the rule. It moves
-        and follows nothing; beside the arm it is held still, on the arm it is refused.
-    warnings
-        Repairs and oddities, in the order of the file.
+    Attributes:
+        name: Name of the robot.
+        xml: Clean kinematic URDF: one element per line, no visuals, no collisions, numbers that
+            round-trip. Pinocchio reads this and never the user's file.
+        path: The file that was read, None for text.
+        package_folders: Folders in which ``package://`` addresses are looked up, first match wins.
+        joints, links, visuals: In the order of the file; undeclared links last.
+        root: The only link without a parent.
+        locked: Why each joint was locked that the file describes as moving.
+        orphans: Mimic rules that name a joint which does not exist, by the joint that has the rule.
+            It moves and follows nothing; beside the arm it is held still, on the arm it is refused.
+        warnings: Repairs and oddities, in the order of the file.
     """
 
     name: str

@@ -26,12 +26,9 @@ _ZERO_WIDTH = dict.fromkeys(map(ord, "\u200b\u200c\u200d\ufeff"), None)
 class Fields:
     """Reads attributes of the children of one link or joint and notes every repair.
 
-    Parameters
-    ----------
-    notes
-        Where repairs and refusals go.
-    kind, name
-        The element for messages, e.g. ``joint``, ``elbow``.
+    Args:
+        notes: Where repairs and refusals go.
+        kind, name: The element for messages, e.g. ``joint``, ``elbow``.
     """
 
     def __init__(self, notes: Notebook, kind: str, name: str) -> None:
@@ -48,10 +45,8 @@ class Fields:
     def number(self, element: Element, attribute: str) -> float | None:
         """A finite number, or None where the attribute is absent or empty.
 
-        Raises
-        ------
-        InputError
-            Something else stands there.
+        Raises:
+            InputError: Something else stands there.
         """
         text = element.get(attribute)
         if text is None:
@@ -79,10 +74,8 @@ class Fields:
     def vector(self, element: Element, attribute: str, size: int = 3) -> Array | None:
         """(size,) finite numbers, or None where the attribute is absent or empty.
 
-        Raises
-        ------
-        InputError
-            Another count of numbers, or something that is no number.
+        Raises:
+            InputError: Another count of numbers, or something that is no number.
         """
         text = element.get(attribute)
         if text is None:

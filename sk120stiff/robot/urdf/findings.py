@@ -13,10 +13,8 @@ from sk120stiff.robot.urdf.document import Finding
 class Notebook:
     """Collects findings and raises refusals that carry the file and the line.
 
-    Parameters
-    ----------
-    source
-        What the user gave, as it shall stand in messages.
+    Args:
+        source: What the user gave, as it shall stand in messages.
     """
 
     def __init__(self, source: str) -> None:
@@ -30,10 +28,8 @@ class Notebook:
     def refuse(self, what: str, *, where: str = "", remedy: str) -> NoReturn:
         """Stop reading.
 
-        Raises
-        ------
-        InputError
-            Always.
+        Raises:
+            InputError: Always.
         """
         place = f"{self.source}, {where}" if where else self.source
         raise InputError(what, where=place, remedy=remedy)

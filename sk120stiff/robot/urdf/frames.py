@@ -44,21 +44,14 @@ _MOST_NAMED = 6
 class FrameChoice:
     """Base and tool frame of a robot whose user named none, and what else there was.
 
-    Attributes
-    ----------
-    base, tool
-        The frames taken.
-    why_base, why_tool
-        The reasons, in a few words.
-    motors
-        Joints before the tool frame that follow no other.
-    others
-        The best frame at the end of every other arm, leg or head, and the motors before it; the
-        longest first.
-    beside
-        Other frames on the same body as the tool frame, without helpers.
-    fingers
-        Moving joints that belong to hands; they are held still.
+    Attributes:
+        base, tool: The frames taken.
+        why_base, why_tool: The reasons, in a few words.
+        motors: Joints before the tool frame that follow no other.
+        others: The best frame at the end of every other arm, leg or head, and the motors before it;
+            the longest first.
+        beside: Other frames on the same body as the tool frame, without helpers.
+        fingers: Moving joints that belong to hands; they are held still.
     """
 
     base: str
@@ -132,12 +125,9 @@ def default_frames(document: UrdfDocument, arm: Collection[str] = ()) -> FrameCh
     ...), else the one farthest out that is no helper: no sensor, no shape for collision checks.
     Between arms of equal length the better name decides, then the order of the file.
 
-    Parameters
-    ----------
-    document
-        The robot.
-    arm
-        Joints that are known to belong to the arm, such as those of its closed linkages.
+    Args:
+        document: The robot.
+        arm: Joints that are known to belong to the arm, such as those of its closed linkages.
     """
     children = children_of(document)
     fingers = finger_joints(document, arm)

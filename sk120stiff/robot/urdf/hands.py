@@ -40,12 +40,9 @@ def finger_joints(document: UrdfDocument, arm: Collection[str] = ()) -> tuple[st
 
     Empty for a robot that is a hand and nothing else: then its fingers are the arm.
 
-    Parameters
-    ----------
-    document
-        The robot.
-    arm
-        Joints that are known to belong to the arm, such as those of its closed linkages.
+    Args:
+        document: The robot.
+        arm: Joints that are known to belong to the arm, such as those of its closed linkages.
     """
     children = children_of(document)
     named = {joint.name for joint in document.moving_joints if _is_named_finger(joint)}

@@ -20,10 +20,8 @@ _TURN = 2.0 * np.pi
 def read_joint(element: Element, notes: Notebook) -> tuple[JointSpec, str | None]:
     """One joint after repairs, and why it was locked (None: it was not).
 
-    Raises
-    ------
-    InputError
-        No name, no or unknown type, no parent or child, or something that is no number.
+    Raises:
+        InputError: No name, no or unknown type, no parent or child, or something that is no number.
     """
     name = read_name(element, notes)
     fields = Fields(notes, "joint", name)
@@ -177,10 +175,8 @@ def _mimic(element: Element, fields: Fields) -> Mimic | None:
 def same_names(elements: list[tuple[str, int]], kind: str, notes: Notebook) -> None:
     """Refuse two elements of one kind with the same name.
 
-    Raises
-    ------
-    InputError
-        Names both lines.
+    Raises:
+        InputError: Names both lines.
     """
     lines: dict[str, int] = {}
     for name, line in elements:

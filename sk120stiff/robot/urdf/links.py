@@ -18,10 +18,8 @@ _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 def read_name(element: Element, notes: Notebook) -> str:
     """Name of a link or joint, blanks around it removed.
 
-    Raises
-    ------
-    InputError
-        It has none.
+    Raises:
+        InputError: It has none.
     """
     raw = element.get("name")
     name = (raw or "").strip()
@@ -46,10 +44,8 @@ def read_name(element: Element, notes: Notebook) -> str:
 def read_link(element: Element, notes: Notebook) -> LinkSpec:
     """One link with its inertial.
 
-    Raises
-    ------
-    InputError
-        No name, or something in the inertial is no number.
+    Raises:
+        InputError: No name, or something in the inertial is no number.
     """
     name = read_name(element, notes)
     return LinkSpec(name, _inertial(element, Fields(notes, "link", name)), element.sourceline)

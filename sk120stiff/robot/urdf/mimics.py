@@ -44,10 +44,8 @@ def refuse_orphans(document: UrdfDocument, base: str, tool: str, settled: Collec
 
     `settled` are joints of which the user said what they do.
 
-    Raises
-    ------
-    InputError
-        There is one between base and tool.
+    Raises:
+        InputError: There is one between base and tool.
     """
     for joint in document.way(base, tool):
         rule = document.orphans.get(joint.name)
@@ -76,10 +74,8 @@ def checked_mimics(
     A joint that follows one which does not move cannot move either: it becomes fixed at its offset.
     `locked` is extended by it. Chains of rules may come in any order.
 
-    Raises
-    ------
-    InputError
-        Rules run in a circle; the circle is listed.
+    Raises:
+        InputError: Rules run in a circle; the circle is listed.
     """
     by_name = {joint.name: joint for joint in joints}
     followers: dict[str, list[str]] = {}

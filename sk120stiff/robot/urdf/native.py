@@ -40,10 +40,8 @@ def captured_stderr() -> Iterator[CapturedText]:
     Parsers written in C++ report there and leave Python with one empty `ValueError`. Only one
     block at a time redirects; others wait. A process without descriptor 2 is left alone.
 
-    Yields
-    ------
-    CapturedText
-        Its `text` may be read inside the block and after it.
+    Yields:
+        CapturedText: Its `text` may be read inside the block and after it.
     """
     captured = CapturedText()
     with _ONE_AT_A_TIME, tempfile.TemporaryFile() as stream:

@@ -46,24 +46,18 @@ def read_urdf(
 ) -> UrdfDocument:
     """Read a robot description in any form, repair what can be repaired, and say so.
 
-    Parameters
-    ----------
-    source
-        ``.urdf`` or ``.xacro`` file, folder that holds exactly one, or XML as text or bytes.
-    package_folders
-        Folders that hold packages, tried before the parent folders and ROS_PACKAGE_PATH.
-    xacro_arguments
-        Values of ``<xacro:arg>``; one that the xacro does not know is refused.
+    Args:
+        source: ``.urdf`` or ``.xacro`` file, folder that holds exactly one, or XML as text or
+            bytes.
+        package_folders: Folders that hold packages, tried before the parent folders and
+            ROS_PACKAGE_PATH.
+        xacro_arguments: Values of ``<xacro:arg>``; one that the xacro does not know is refused.
 
-    Returns
-    -------
-    UrdfDocument
-        One tree of links, with a finding for every repair.
+    Returns:
+        UrdfDocument: One tree of links, with a finding for every repair.
 
-    Raises
-    ------
-    InputError
-        The description cannot be used; the message names the line and the remedy.
+    Raises:
+        InputError: The description cannot be used; the message names the line and the remedy.
     """
     raw = read_source(source)
     notes = Notebook(raw.label)

@@ -33,16 +33,13 @@ class RawSource:
 def read_source(source: str | os.PathLike[str] | bytes) -> RawSource:
     """Bytes of a URDF or xacro.
 
-    Parameters
-    ----------
-    source
-        Path of a file or of a folder that holds exactly one description, or XML as text or bytes.
+    Args:
+        source: Path of a file or of a folder that holds exactly one description, or XML as text or
+            bytes.
 
-    Raises
-    ------
-    InputError
-        Nothing there, several candidates in a folder, not a regular file, not readable, a mesh, or
-        more than `MAX_BYTES`.
+    Raises:
+        InputError: Nothing there, several candidates in a folder, not a regular file, not readable,
+            a mesh, or more than `MAX_BYTES`.
     """
     if isinstance(source, bytes):
         return _text(source)

@@ -43,10 +43,8 @@ def find_root(
 ) -> str:
     """The one link from which every other is reached.
 
-    Raises
-    ------
-    InputError
-        No link, several roots, a loop, or a tree deeper than `MAX_DEPTH`.
+    Raises:
+        InputError: No link, several roots, a loop, or a tree deeper than `MAX_DEPTH`.
     """
     if not links:
         notes.refuse(

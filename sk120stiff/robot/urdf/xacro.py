@@ -55,10 +55,8 @@ def is_xacro(raw: RawSource, text: str) -> bool:
 def refuse_text(text: str, notes: Notebook) -> None:
     """Refuse xacro that was given as text: only a file is expanded, and knows its neighbours.
 
-    Raises
-    ------
-    InputError
-        There are xacro elements.
+    Raises:
+        InputError: There are xacro elements.
     """
     if _ELEMENT.search(without_comments(text)):
         notes.refuse(
@@ -86,14 +84,11 @@ def expand(
 ) -> str:
     """Plain URDF text of a xacro file.
 
-    Raises
-    ------
-    MissingPart
-        xacro is not installed.
-    InputError
-        An argument has no value or does not exist, the expansion fails, takes longer than
-        `TIME_LIMIT`, or grows beyond `MEMORY_LIMIT` or `MAX_BYTES`; the message carries what xacro
-        said.
+    Raises:
+        MissingPart: xacro is not installed.
+        InputError: An argument has no value or does not exist, the expansion fails, takes longer
+            than `TIME_LIMIT`, or grows beyond `MEMORY_LIMIT` or `MAX_BYTES`; the message carries
+            what xacro said.
     """
     if importlib.util.find_spec("xacro") is None:
         raise MissingPart("xacro", "xacro", needed_for=f"reading the xacro in {raw.label}")
@@ -223,10 +218,8 @@ def _refuse_unknown(known: Sequence[str], given: Mapping[str, str], notes: Noteb
 def refuse_empty(raw: RawSource, text: str, notes: Notebook) -> None:
     """Refuse a xacro without links, and name the files beside it that make a robot of it.
 
-    Raises
-    ------
-    InputError
-        Always.
+    Raises:
+        InputError: Always.
     """
     path = raw.path or Path()
     macros = _MACRO.findall(without_comments(text))

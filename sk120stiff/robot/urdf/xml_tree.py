@@ -38,11 +38,9 @@ _OTHER_ROOTS = {
 def parse_robot(text: str, notes: Notebook) -> Element:
     """The `<robot>` element of a URDF.
 
-    Raises
-    ------
-    InputError
-        Not XML, not a URDF, entity definitions, or beyond the bounds of this module; line and
-        column are named.
+    Raises:
+        InputError: Not XML, not a URDF, entity definitions, or beyond the bounds of this module;
+            line and column are named.
     """
     text = without_prologue(text, notes)
     if not text.strip():
