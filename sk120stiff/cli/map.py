@@ -27,6 +27,7 @@ from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_fill, will_write
 from sk120stiff.model import Model
+from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     ElasticArm,
@@ -45,7 +46,6 @@ from sk120stiff.workspace import (
     write_map,
 )
 from sk120stiff.workspace.grid import CARTESIAN
-from sk120stiff.workspace.inverse import rotation_of
 
 
 def command(
@@ -299,7 +299,7 @@ def _points(
     direction = None if axis is None else direction_of(axis, "--tool-axis")
     rotation = None
     if orientation is not None:
-        rotation = rotation_of(*_three(orientation, "angle", "--orientation"))
+        rotation = rotation_from_rpy(_three(orientation, "angle", "--orientation"))
     return PositionGrid(grid, rest, direction, rotation)
 
 

@@ -19,7 +19,7 @@ from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
-from sk120stiff.robot.kinematics.chain import skew
+from sk120stiff.robot.rotations import crossed
 
 AXES = "xyz"
 
@@ -153,7 +153,7 @@ class ForceRotation(ForceSensorEffect):
         """φ × acts on force and moment."""
         out = np.zeros((3, 6, 6))
         for k in range(3):
-            out[k, :3, :3] = out[k, 3:, 3:] = skew(np.eye(3)[k])
+            out[k, :3, :3] = out[k, 3:, 3:] = crossed(np.eye(3)[k])
         return out
 
 

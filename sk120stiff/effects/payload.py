@@ -13,7 +13,7 @@ from sk120stiff.effects.base import LoadError
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.kinematics.rotation import crossed
+from sk120stiff.robot.rotations import crossed
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from sk120stiff.effects.base import SPRINGS, Alias, Options, ReadingError, scale
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.kinematics.chain import skew
+from sk120stiff.robot.rotations import crossed
 
 AXES = "xyz"
 
@@ -57,7 +57,7 @@ class ReadingRotation(TrackerEffect):
     @cached_property
     def generators(self) -> Array:
         """ω ×."""
-        return np.array([skew(axis) for axis in np.eye(3)])
+        return crossed(np.eye(3))
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from sk120stiff.effects.base import Viewpoint
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
-from sk120stiff.robot.kinematics.rotation import left_jacobian, rotation_of
+from sk120stiff.robot.rotations import left_jacobian, rotation_of
 
 
 @dataclass(frozen=True)

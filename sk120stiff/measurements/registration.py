@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.robot.rotations import crossed
 
 # A marker that sits off the assumed point turns and stretches the cloud a little; beyond these
 # bounds a turned tracker or a wrong unit is likelier.
@@ -92,7 +93,7 @@ def register(
         arm = stated + rotation @ marker
         left = measured - arm @ turn.T - shift
         columns = np.concatenate(
-            [_crossed(arm @ turn.T), np.tile(np.eye(3), (count, 1, 1)), turn @ rotation], axis=2
+            [-crossed(arm @ turn.T), np.tile(np.eye(3), (count, 1, 1)), turn @ rotation], axis=2
         )
         step = np.linalg.lstsq(columns.reshape(-1, 9), left.ravel(), rcond=1e-9)[0]
         marker = marker + step[6:]
@@ -124,13 +125,6 @@ def _kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
     u, _, vt = np.linalg.svd((measured - goal).T @ (reached - middle))
     turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt)) or 1.0]) @ vt
     return turn, goal - turn @ middle
-
-
-def _crossed(x: Array) -> Array:
-    """(P, 3, 3) derivative of ω × x by ω."""
-    zero = np.zeros(len(x))
-    rows = [[zero, x[:, 2], -x[:, 1]], [-x[:, 2], zero, x[:, 0]], [x[:, 1], -x[:, 0], zero]]
-    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def registration_doubts(measured: Array, reached: Array) -> list[str]:

@@ -12,8 +12,9 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
+from sk120stiff.robot.rotations import joint_motion
 from sk120stiff.show.elastic import Elastic
-from sk120stiff.show.links import LinkTree, joint_motion
+from sk120stiff.show.links import LinkTree
 from sk120stiff.stiffness import (
     Definiteness,
     complementary_stiffness,

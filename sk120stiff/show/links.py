@@ -8,7 +8,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.robot import Robot
-from sk120stiff.robot.kinematics.chain import skew
+from sk120stiff.robot.rotations import joint_motion
 
 FIXED, REVOLUTE, PRISMATIC = 0, 1, 2
 _KINDS = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
@@ -69,17 +69,6 @@ class LinkTree:
             if parent >= 0:
                 found[k] = index.get(self.joints[k], int(found[parent]))
         return found
-
-
-def joint_motion(axis: Array, revolute: bool, value: float) -> Array:
-    """(4, 4) motion of a joint by `value` [rad or m] about or along `axis` (3,)."""
-    T = np.eye(4)
-    if revolute:
-        cross = skew(axis)
-        T[:3, :3] += np.sin(value) * cross + (1.0 - np.cos(value)) * (cross @ cross)
-    else:
-        T[:3, 3] = value * axis
-    return T
 
 
 def link_tree(robot: Robot) -> LinkTree:

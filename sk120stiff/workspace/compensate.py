@@ -18,8 +18,8 @@ from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot
+from sk120stiff.robot.rotations import rotation_vector
 from sk120stiff.workspace.arm import seen_from
-from sk120stiff.workspace.inverse import rotation_vector
 
 STEPS = 40
 REST = 1e-10  # rad or m: after a correction smaller than this nothing is left to correct

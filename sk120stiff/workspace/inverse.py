@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.robot.rotations import rotation_vector
 from sk120stiff.workspace.arm import ElasticArm, Kinematics
 
 POSITION_TOLERANCE = 1e-9  # m
@@ -69,44 +70,6 @@ class Task:
             unit = np.where(sine > 1e-12, across / np.maximum(sine, 1e-12), helper)
             return np.concatenate([away, angle * unit], axis=-1)
         return away
-
-
-def rotation_vector(rotation: Array) -> Array:
-    """(..., 3) axis times angle of rotations (..., 3, 3) [rad], angle at most π."""
-    skew = np.stack(
-        [
-            rotation[..., 2, 1] - rotation[..., 1, 2],
-            rotation[..., 0, 2] - rotation[..., 2, 0],
-            rotation[..., 1, 0] - rotation[..., 0, 1],
-        ],
-        axis=-1,
-    )
-    sine = 0.5 * np.linalg.norm(skew, axis=-1)
-    cosine = 0.5 * (np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
-    angle = np.arctan2(sine, cosine)
-    # Near half a turn the skew part vanishes; R + I = 2 u uᵀ there, and its longest column is u.
-    symmetric = rotation + np.swapaxes(rotation, -1, -2) + 2.0 * np.eye(3)
-    longest = np.argmax(np.linalg.norm(symmetric, axis=-2), axis=-1)
-    column = np.take_along_axis(symmetric, longest[..., None, None], axis=-1)[..., 0]
-    column = column / np.maximum(np.linalg.norm(column, axis=-1, keepdims=True), 1e-300)
-    column = np.where((column * skew).sum(-1, keepdims=True) < 0.0, -column, column)
-    usual = skew / np.maximum(2.0 * sine, 1e-300)[..., None]
-    near_half = (sine < 1e-6) & (cosine < 0.0)
-    unit = np.where(near_half[..., None], column, usual)
-    return np.where((angle < 1e-12)[..., None], 0.5 * skew, angle[..., None] * unit)
-
-
-def rotation_of(roll: float, pitch: float, yaw: float) -> Array:
-    """(3, 3) rotation Rz(yaw) Ry(pitch) Rx(roll), as a URDF writes it [rad]."""
-    cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
-    cy, sy = np.cos(yaw), np.sin(yaw)
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
 
 
 def starting_poses(arm: ElasticArm, count: int, rest: Array) -> Array:

@@ -24,9 +24,10 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.files import guarded_cell, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
+from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.units import from_si
 from sk120stiff.workspace.arm import ElasticArm
-from sk120stiff.workspace.inverse import Task, rotation_of, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 
 FORCES, MOMENTS = ("fx", "fy", "fz"), ("mx", "my", "mz")
 POSITIONS, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
@@ -104,7 +105,7 @@ def read_path(path: str | os.PathLike[str], robot: Robot) -> LoadedPath:
         return LoadedPath(wrench, joints, None, None, table)
     rotation = None
     if has & set(ANGLES):
-        rotation = np.array([rotation_of(*row) for row in _columns(table, ANGLES, "angle")])
+        rotation = np.array([rotation_from_rpy(row) for row in _columns(table, ANGLES, "angle")])
     return LoadedPath(wrench, None, _columns(table, POSITIONS, "length"), rotation, table)
 
 

@@ -16,9 +16,10 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal
+from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.stiffness import StiffnessBatch
 from sk120stiff.workspace.arm import ElasticArm
-from sk120stiff.workspace.inverse import Task, rotation_of, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 
 FIRST_STEP, LAST_STEP = 0.5, 1e-6  # rad: radius of the random steps
 GROW, SHRINK = 1.6, 0.6
@@ -311,7 +312,7 @@ class Judge:
 
     def _moves(self, placement: Array) -> tuple[Array, Array]:
         """(k, 3, 3) rotations and (k, 3) shifts of the part."""
-        turns = np.stack([rotation_of(*row) for row in placement[:, 3:]])
+        turns = np.stack([rotation_from_rpy(row) for row in placement[:, 3:]])
         return turns, placement[:, :3]
 
     def _task(self, point: int, turn: Array, shift: Array) -> Task:

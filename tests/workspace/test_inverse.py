@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from sk120stiff.robot.rotations import rotation_from_rpy, rotation_vector
 from sk120stiff.workspace import Task, solve_inverse, starting_poses
-from sk120stiff.workspace.inverse import rotation_of, rotation_vector
 from tests.oracles.numpy_kinematics import rotation
 from tests.workspace.arms import sk120, skew_arm
 
@@ -24,7 +24,7 @@ def _exponential(vector: np.ndarray) -> np.ndarray:
 
 def test_roll_pitch_yaw_are_a_urdfs() -> None:
     by_axes = rotation([0, 0, 1], 0.5) @ rotation([0, 1, 0], -0.4) @ rotation([1, 0, 0], 0.3)
-    np.testing.assert_allclose(rotation_of(0.3, -0.4, 0.5), by_axes, atol=1e-15)
+    np.testing.assert_allclose(rotation_from_rpy(np.array([0.3, -0.4, 0.5])), by_axes, atol=1e-15)
 
 
 @pytest.mark.parametrize("arm", [sk120, skew_arm])

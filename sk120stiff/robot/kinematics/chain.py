@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.robot.rotations import crossed
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +157,7 @@ class Chain:
             rotation = _times(rotation, self.placements[k, :3, :3])
             axes[:, k] = rotation @ self.axes[k]
             if self.revolute[k]:
-                cross = skew(self.axes[k])
+                cross = crossed(self.axes[k])
                 swept = _times(rotation, cross)
                 rotation = (
                     rotation
@@ -193,12 +194,6 @@ class Sweep(NamedTuple):
     rotation: Array
     position: Array
     centres: Array | None
-
-
-def skew(vector: Array) -> Array:
-    """(3, 3) matrix whose product with x is vector × x."""
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _times(many: Array, one: Array) -> Array:

@@ -13,7 +13,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.robot.urdf.clean import clean_xml
 from sk120stiff.robot.urdf.document import Finding, JointSpec, UrdfDocument
 from sk120stiff.robot.urdf.findings import Notebook
-from sk120stiff.robot.urdf.mimics import drivers_first, motion
+from sk120stiff.robot.urdf.mimics import drivers_first
 
 MOST_FREE = 150  # above it, joints beside the arm are held still
 MOST_MOVING = 250  # above it, the robot is refused; about 1 GB
@@ -61,7 +61,7 @@ def with_arm_only(
     changed = []
     for joint in document.joints:
         if joint.name in held:
-            origin = joint.origin @ motion(joint, values[joint.name])
+            origin = joint.standing(values[joint.name])
             joint = replace(joint, type="fixed", origin=origin, mimic=None)
             locked[joint.name] = "it lies beside the arm"
         changed.append(joint)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sk120stiff.arrays import Array
+from sk120stiff.robot.rotations import joint_motion
 
 MOVING = frozenset({"revolute", "continuous", "prismatic"})
 
@@ -80,6 +81,10 @@ class JointSpec:
     def moves(self) -> bool:
         """Has the joint a degree of freedom left?"""
         return self.type in MOVING
+
+    def standing(self, value: float) -> Array:
+        """(4, 4) its child's placement in its parent when it stands at `value` [rad or m]."""
+        return self.origin @ joint_motion(self.axis, self.type != "prismatic", value)
 
 
 @dataclass(frozen=True, eq=False)

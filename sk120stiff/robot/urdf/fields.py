@@ -10,6 +10,7 @@ from lxml.etree import _Element as Element
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
+from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.robot.urdf.findings import Notebook, at, shown
 
 _NUMBER = re.compile(r"[+-]?(?:\d{1,400}\.?\d{0,400}|\.\d{1,400})(?:[eE][+-]?\d{1,6})?\Z", re.ASCII)
@@ -154,30 +155,9 @@ class Fields:
         rpy = self.vector(origin, "rpy")
         quaternion = self.vector(origin, "quat_xyzw", 4)
         if quaternion is not None and np.linalg.norm(quaternion) > 1e-9:
-            T[:3, :3] = _from_quaternion(quaternion)
+            from scipy.spatial.transform import Rotation  # slow to import, and hardly ever needed
+
+            T[:3, :3] = Rotation.from_quat(quaternion).as_matrix()
         elif rpy is not None:
             T[:3, :3] = rotation_from_rpy(rpy)
         return T
-
-
-def rotation_from_rpy(rpy: Array) -> Array:
-    """(3, 3) rotation for fixed-axis roll, pitch, yaw [rad]: R_z(yaw) R_y(pitch) R_x(roll)."""
-    (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
-
-
-def _from_quaternion(xyzw: Array) -> Array:
-    x, y, z, w = xyzw / np.linalg.norm(xyzw)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )

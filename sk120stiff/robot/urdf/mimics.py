@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-import numpy as np
-
-from sk120stiff.arrays import Array
 from sk120stiff.robot.urdf.document import JointSpec, Mimic, UrdfDocument
 from sk120stiff.robot.urdf.findings import Notebook, at, close_name, shown
 
@@ -89,7 +86,7 @@ def checked_mimics(
         driver = joint.mimic.joint
         why = f"it mimics {shown(driver)}, which does not move"
         value = joint.mimic.offset  # a joint that does not move stands at zero
-        origin = joint.origin @ motion(joint, value)
+        origin = joint.standing(value)
         by_name[name] = replace(joint, type="fixed", origin=origin, mimic=None)
         for follower in followers.get(name, ()):  # they see its value through their own rule
             rule = by_name[follower].mimic
@@ -128,15 +125,3 @@ def drivers_first(
             name = rule.joint if rule is not None else None
         done.update(dict.fromkeys(reversed(way)))
     return list(done)
-
-
-def motion(joint: JointSpec, value: float) -> Array:
-    """(4, 4) displacement of a joint from its zero, by `value` [rad or m]."""
-    T = np.eye(4)
-    if joint.type == "prismatic":
-        T[:3, 3] = value * joint.axis
-        return T
-    x, y, z = joint.axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    T[:3, :3] += np.sin(value) * cross + (1.0 - np.cos(value)) * cross @ cross
-    return T
