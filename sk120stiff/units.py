@@ -142,19 +142,38 @@ def is_unit(unit: str) -> bool:
     return _quantity(unit) is not None
 
 
-def parse_values(text: str, kind: str, *, where: str | None = None) -> Array:
+def parse_values(
+    text: str, kind: str, *, where: str | None = None, like: str | None = None
+) -> Array:
     """SI numbers (k,) from text like ``"10,20,-30 deg"``.
 
     A unit holds for the numbers before it that have none. Numbers are separated by commas,
-    semicolons or blanks.
+    semicolons or blanks. `like` is an example with as many numbers as there must be.
 
     Raises:
-        InputError: No number, a word that is no number, a missing, unknown or unfit unit.
+        InputError: No number, a word that is no number, a missing, unknown or unfit unit, or
+            another count than that of `like`.
     """
     numbers, units, spare = _numbers_with_units(text, where, f"10,20,-30 {_usual(kind)[0]}")
     if spare:
         raise InputError(f"the unit {spare[0]!r} follows no number", where=where)
+    if like is not None and len(numbers) != (count := len(_numbers_with_units(like, where, "")[0])):
+        raise InputError(
+            f"{text!r} holds {len(numbers)} numbers, not {count}",
+            where=where,
+            remedy=f"Write it like {like!r}.",
+        )
     return np.array([to_si(x, u, kind, where=where) for x, u in zip(numbers, units, strict=True)])
+
+
+def parse_size(text: str, kind: str, *, where: str, like: str) -> float:
+    """One positive SI number from text like ``"10 um"``; errors as those of `parse_values`."""
+    (value,) = parse_values(text, kind, where=where, like=like)
+    if value <= 0.0:
+        raise InputError(
+            f"{text!r} is not positive", where=where, remedy=f"Write it like {like!r}."
+        )
+    return float(value)
 
 
 def parse_pose(

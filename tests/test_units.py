@@ -14,6 +14,7 @@ from sk120stiff.units import (
     is_kind,
     is_unit,
     parse_pose,
+    parse_size,
     parse_values,
     parse_wrench,
     split_header,
@@ -248,3 +249,14 @@ def test_wrenches_that_cannot_be_read(text: str, part: str) -> None:
         parse_wrench(text, where="--wrench")
     assert part in str(caught.value)
     assert "--wrench" in str(caught.value)
+
+
+def test_an_example_says_how_many_numbers_there_must_be() -> None:
+    assert parse_values("1,2,3 mm", "length", like="0,0,150 mm").shape == (3,)
+    with pytest.raises(InputError, match="2 numbers, not 3") as refusal:
+        parse_values("1,2 mm", "length", where="--point", like="0,0,150 mm")
+    assert refusal.value.where == "--point" and "0,0,150 mm" in (refusal.value.remedy or "")
+    assert parse_size("10 um", "length", where="--noise", like="10 um") == pytest.approx(1e-5)
+    for bad in ("0 um", "-1 um", "1,2 um"):
+        with pytest.raises(InputError):
+            parse_size(bad, "length", where="--noise", like="10 um")

@@ -218,10 +218,7 @@ def _floor(robot: Robot, text: str | None, path: LoadedPath) -> float:
     if text is None:
         heights = None if path.position is None else path.position[:, 2]
         return lowest_floor(robot, path.joints, heights)
-    values = parse_values(text, "length", where="--floor")
-    if len(values) != 1:
-        raise InputError(f"{text!r} is not one height", where="--floor", remedy="Write '-0.3 m'.")
-    return float(values[0])
+    return float(parse_values(text, "length", where="--floor", like="-0.3 m")[0])
 
 
 def _warn_of_branch(branch: Branch, path: LoadedPath) -> None:

@@ -16,7 +16,7 @@ from sk120stiff.arrays import Array, Index
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
-from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.measurements import Measurements, read_figaroh, write_measurements
 from sk120stiff.measurements.registration import Registration, register, registration_doubts
 from sk120stiff.robot.anatomy import arm_length
@@ -137,7 +137,9 @@ def command(
         wrench=None if wrench is None else wrench_of(wrench),
         joints=None if joints is None else [name.strip() for name in joints.split(",")],
         marker=marker,
-        point=None if point is None else _point(point),
+        point=None
+        if point is None
+        else parse_values(point, "length", where="--point", like="0,0,150 mm"),
     )
     readings = replace(
         found.measurements,
@@ -233,12 +235,3 @@ def _lasting(source: str) -> str:
     name = robot_name(source)
     path = Path(name.place)
     return str(RobotName(str(path.resolve()), name.arguments)) if path.exists() else source
-
-
-def _point(text: str) -> Array:
-    values = parse_values(text, "length", where="--point")
-    if len(values) != 3:
-        raise InputError(
-            f"{text!r} is no point", where="--point", remedy="Write three lengths: '0,0,150 mm'."
-        )
-    return values

@@ -299,7 +299,8 @@ def _points(
     direction = None if axis is None else direction_of(axis, "--tool-axis")
     rotation = None
     if orientation is not None:
-        rotation = rotation_from_rpy(_three(orientation, "angle", "--orientation"))
+        angles = parse_values(orientation, "angle", where="--orientation", like="180,0,0 deg")
+        rotation = rotation_from_rpy(angles)
     return PositionGrid(grid, rest, direction, rotation)
 
 
@@ -314,13 +315,6 @@ def _warn_beyond_limits(grid: Grid, limits: dict[str, tuple[float, float, str]])
                 ToolkitWarning,
                 stacklevel=2,
             )
-
-
-def _three(text: str, kind: str, where: str) -> Array:
-    values = parse_values(text, kind, where=where)
-    if values.shape != (3,):
-        raise InputError(f"{len(values)} numbers given, three are needed", where=where)
-    return values
 
 
 def _parts(

@@ -154,8 +154,7 @@ def pose_of(robot: Robot, text: str | None, option: str = "--pose") -> Array:
     """Actuated coordinates (n,) [rad or m] from an option; the rest pose without it."""
     if text is None:
         return robot.rest
-    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    a = parse_pose(text, robot.actuated, kinds, where=option)
+    a = parse_pose(text, robot.actuated, robot.kinds, where=option)
     slack = 1e-9  # a limit itself, written in degrees, is within the limits
     for k in np.flatnonzero((a < robot.lower - slack) | (a > robot.upper + slack)):
         low, here, high = robot.lower[k], a[k], robot.upper[k]
@@ -198,8 +197,7 @@ def open_data(path: Path, base: str | None = None, tool: str | None = None) -> O
         place = f"{path.with_suffix('.yaml')}: {error.where}" if error.where else None
         where = place or str(path.with_suffix(".yaml"))
         raise InputError(error.what, where=where, remedy=error.remedy) from error
-    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    return Opened(data.with_joints(robot.actuated, kinds), robot)
+    return Opened(data.with_joints(robot.actuated, robot.kinds), robot)
 
 
 def start_model(robot: Robot, path: Path | None) -> Model:

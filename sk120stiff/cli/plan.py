@@ -16,7 +16,6 @@ from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.plan_wishes import named_parameters, two_effects
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import situation_of
-from sk120stiff.errors import InputError
 from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
@@ -32,7 +31,7 @@ from sk120stiff.plan import (
     well_spread,
 )
 from sk120stiff.robot import Robot
-from sk120stiff.units import parse_values
+from sk120stiff.units import parse_size, parse_values
 
 DRAWS = 50  # random and well-spread choices that a plan is held against
 
@@ -126,7 +125,7 @@ def command(
         start.robot,
         poses=candidates,
         directions=directions,
-        force=_one(force, "force", "--force"),
+        force=parse_size(force, "force", where="--force", like="400 N"),
         point=at,
         force_point=force_at,
         seed=seed,
@@ -275,11 +274,7 @@ def _opened(model: Path, data: Path | None) -> tuple[Measurements | None, Model]
 
 def _points(known: Measurements | None, text: str | None) -> tuple[Array, Array]:
     if text is not None:
-        values = parse_values(text, "length", where="--point")
-        if len(values) != 3:
-            raise InputError(
-                f"{text!r} is no point", where="--point", remedy="Write '0,50,120 mm'."
-            )
+        values = parse_values(text, "length", where="--point", like="0,50,120 mm")
         return values, values
     if known is not None:
         return known.point, known.force_point
@@ -288,17 +283,10 @@ def _points(known: Measurements | None, text: str | None) -> tuple[Array, Array]
 
 def _sigma(known: Measurements | None, text: str | None) -> float:
     if text is not None:
-        return _one(text, "length", "--noise")
+        return parse_size(text, "length", where="--noise", like="10 um")
     if known is not None and known.noise.sigma is not None:
         return known.noise.sigma
     return 1e-5
-
-
-def _one(text: str, kind: str, where: str) -> float:
-    values = parse_values(text, kind, where=where)
-    if len(values) != 1 or values[0] <= 0.0:
-        raise InputError(f"{text!r} is not one positive number", where=where)
-    return float(values[0])
 
 
 def _region(
@@ -307,18 +295,11 @@ def _region(
     """Where the arm may stand; without a floor that is told, as low as it stood already."""
     least, low, high = -np.inf, None, None
     if lowest is not None:
-        values = parse_values(lowest, "length", where="--floor")
-        if len(values) != 1:
-            raise InputError(f"{lowest!r} is not one height", where="--floor")
-        least = float(values[0])
+        least = float(parse_values(lowest, "length", where="--floor", like="-0.3 m")[0])
     elif known is not None:
         least = float(lowest_points(robot, known.joints, point).min())
     if box is not None:
-        corners = parse_values(box, "length", where="--box")
-        if len(corners) != 6:
-            raise InputError(
-                f"{box!r} is no box", where="--box", remedy="Write '0.8,-1,0, 2.2,1,1.5 m'."
-            )
+        corners = parse_values(box, "length", where="--box", like="0.8,-1,0, 2.2,1,1.5 m")
         low, high = corners[:3], corners[3:]
     return Region(least, low, high)
 

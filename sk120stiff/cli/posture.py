@@ -151,7 +151,7 @@ def command(
     )
     margin = 0.0
     if limit_margin is not None:
-        (margin,) = parse_values(limit_margin, "angle", where="--limit-margin")
+        (margin,) = parse_values(limit_margin, "angle", where="--limit-margin", like="5 deg")
     arm = elastic_arm(believed, frame=at)
     freedom = None if place is None else _placement(place, given.position)
     with progress_bar("Searching") as report:

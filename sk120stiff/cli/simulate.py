@@ -16,7 +16,7 @@ from sk120stiff.cli.options import ModelArgument, SeedOption
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import NoiseModel, write_measurements
 from sk120stiff.plan import Schedule, as_positions, simulate
-from sk120stiff.units import parse_values
+from sk120stiff.units import parse_size
 
 
 class Zero(StrEnum):
@@ -129,9 +129,5 @@ def _noise(text: str | None, growth: float, zero: Zero) -> NoiseModel | None:
                 remedy="Give --noise too, e.g. --noise '10 um'.",
             )
         return None
-    values = parse_values(text, "length", where="--noise")
-    if len(values) != 1 or values[0] <= 0.0:
-        raise InputError(
-            f"{text!r} is not one positive length", where="--noise", remedy="Write '10 um'."
-        )
-    return NoiseModel(float(values[0]), growth, zero.value)
+    sigma = parse_size(text, "length", where="--noise", like="10 um")
+    return NoiseModel(sigma, growth, zero.value)

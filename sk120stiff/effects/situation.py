@@ -161,8 +161,7 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
     InputError
         The file's joints are not the robot's actuated joints.
     """
-    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    measurements = measurements.with_joints(robot.actuated, kinds)
+    measurements = measurements.with_joints(robot.actuated, robot.kinds)
     a = measurements.joints
     rotation = robot.screws(a).rotation
     wrench = measurements.wrench

@@ -90,7 +90,7 @@ def to_be_taken(
     return Measurements(
         pose=tuple(f"p{order[pose] + 1}" for pose in index.tolist()),
         joint_names=robot.actuated,
-        joint_kinds=tuple("length" if slides else "angle" for slides in robot.prismatic),
+        joint_kinds=robot.kinds,
         joints=situation.a,
         wrench=situation.wrench,
         displacement=None,

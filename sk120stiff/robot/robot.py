@@ -125,6 +125,11 @@ class Robot:
         """For each actuated joint: does it slide (metres) rather than turn (radians)?"""
         return tuple(not self.tree.revolute[self.tree.joint_index(j)] for j in self.actuated)
 
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """``length`` or ``angle`` for each actuated joint, as `units` calls them."""
+        return tuple("length" if slides else "angle" for slides in self.prismatic)
+
     @cached_property
     def _mechanisms(self) -> dict[str, Mechanism]:
         return {}

@@ -12,8 +12,7 @@ FAR = 0.05  # share of a joint's range, beyond which a pose is no matter of cali
 
 def limits_doubt(robot: Robot, measurements: Measurements) -> str | None:
     """A sentence where readings were taken far beyond the robot's joint limits; or None."""
-    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    joints = measurements.with_joints(robot.actuated, kinds).joints[measurements.use]
+    joints = measurements.with_joints(robot.actuated, robot.kinds).joints[measurements.use]
     slack = FAR * np.where(np.isfinite(robot.upper - robot.lower), robot.upper - robot.lower, 0.0)
     out = (joints < robot.lower - slack - 1e-9) | (joints > robot.upper + slack + 1e-9)
     if not out.any():

@@ -116,8 +116,7 @@ def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
     Raises:
         InputError: The file's joints are not the robot's actuated joints.
     """
-    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    measurements = measurements.with_joints(robot.actuated, kinds)
+    measurements = measurements.with_joints(robot.actuated, robot.kinds)
     if measurements.displacement is None:
         return None
     return Sheet(

@@ -98,9 +98,11 @@ def read_path(path: str | os.PathLike[str], robot: Robot) -> LoadedPath:
         moments = _columns(table, MOMENTS, "moment")
     wrench = np.column_stack([_columns(table, FORCES, "force"), moments])
     if by_joint:
-        kinds = ["length" if slides else "angle" for slides in robot.prismatic]
         joints = np.column_stack(
-            [_column(table, name, kind) for name, kind in zip(robot.actuated, kinds, strict=True)]
+            [
+                _column(table, name, kind)
+                for name, kind in zip(robot.actuated, robot.kinds, strict=True)
+            ]
         )
         return LoadedPath(wrench, joints, None, None, table)
     rotation = None
@@ -236,8 +238,7 @@ def write_joints(
     """
     table = path.table
     columns: dict[str, list[str]] = {}
-    kinds = ["length" if slides else "angle" for slides in robot.prismatic]
-    for k, (name, kind) in enumerate(zip(robot.actuated, kinds, strict=True)):
+    for k, (name, kind) in enumerate(zip(robot.actuated, robot.kinds, strict=True)):
         unit = table.column_units.get(name) or ("deg" if kind == "angle" else "mm")
         values = np.asarray(from_si(joints[:, k], unit, kind))
         columns[f"{name}[{unit}]"] = [f"{value:.10g}" for value in values]

@@ -71,7 +71,7 @@ def test_bad_options(run, tmp_path: Path) -> None:
         ((*TOLD[:4], "--out", out), "--angle rad or deg"),
         ((*TOLD, "--out", out), "--wrench"),
         ((*TOLD, "--out", source), "overwrite"),
-        ((*TOLD, "--point", "1,2 mm", "--out", out), "no point"),
+        ((*TOLD, "--point", "1,2 mm", "--out", out), "not 3"),
         ((*TOLD, "--marker", "2", "--out", out), "no marker 2"),
         ((*TOLD[2:], "--robot", "nobody", "--out", out), "nobody"),
     ):
