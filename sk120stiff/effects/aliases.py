@@ -42,20 +42,13 @@ class AliasClasses:
     Names are ``effect:where`` and ``effect:where.parameter``; a part of a parameter is written
     ``effect:where.parameter[part]``.
 
-    Attributes
-    ----------
-    twins
-        Groups of parameters whose signatures are one but for a factor.
-    absorbed
-        Parameters (or parts) that joint springs imitate, and the springs that do it.
-    invisible
-        Parameters that no reading shows.
-    same
-        Groups of effects that do the same beside the springs.
-    within
-        (narrow, wide): all that the narrow effect does, the wide one can do.
-    overlaps
-        Effects that share some of what they can do.
+    Attributes:
+        twins: Groups of parameters whose signatures are one but for a factor.
+        absorbed: Parameters (or parts) that joint springs imitate, and the springs that do it.
+        invisible: Parameters that no reading shows.
+        same: Groups of effects that do the same beside the springs.
+        within: (narrow, wide): all that the narrow effect does, the wide one can do.
+        overlaps: Effects that share some of what they can do.
     """
 
     twins: tuple[tuple[str, ...], ...]
@@ -94,21 +87,15 @@ def alias_classes(
 ) -> AliasClasses:
     """Effects that cannot be told apart by any readings of a kind.
 
-    Parameters
-    ----------
-    robot
-        The robot.
-    effects
-        Candidates; all of the catalogue by default, offsets of single zero readings left out.
-    catalogue
-        The effects that there are.
-    base
-        Joints whose springs are in the base model; all actuated joints by default.
-    situation
-        Readings to judge by. Default: `generic_readings`, pure forces at the measured point. Give
-        the readings of an experiment to learn what these can tell at all.
-    tolerance
-        Share of a signature that may differ.
+    Args:
+        robot: The robot.
+        effects: Candidates; all of the catalogue by default, offsets of single zero readings left
+            out.
+        catalogue: The effects that there are.
+        base: Joints whose springs are in the base model; all actuated joints by default.
+        situation: Readings to judge by. Default: `generic_readings`, pure forces at the measured
+            point. Give the readings of an experiment to learn what these can tell at all.
+        tolerance: Share of a signature that may differ.
     """
     readings = generic_readings(robot) if situation is None else situation
     held = tuple(robot.actuated if base is None else base)
@@ -148,18 +135,12 @@ def generic_readings(
 ) -> Situation:
     """Readings at random poses with random loads at a point off every axis.
 
-    Parameters
-    ----------
-    robot
-        The robot.
-    count
-        Number of readings; by default enough for all parameters of the catalogue.
-    moments
-        The load has a moment, and the force acts elsewhere than at the measured point.
-    unloading
-        Half of the readings are taken while the load falls.
-    seed
-        Of the random numbers.
+    Args:
+        robot: The robot.
+        count: Number of readings; by default enough for all parameters of the catalogue.
+        moments: The load has a moment, and the force acts elsewhere than at the measured point.
+        unloading: Half of the readings are taken while the load falls.
+        seed: Of the random numbers.
     """
     number = 80 + 10 * robot.n if count is None else count
     rng = np.random.default_rng(seed)

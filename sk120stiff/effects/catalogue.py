@@ -86,23 +86,18 @@ class Catalogue:
     ``CATALOGUE + Mine`` and ``CATALOGUE + (Mine, Other)`` add effects; iteration gives the effects,
     ``catalogue["base_rocking"]`` one of them, ``"base_rocking" in catalogue`` whether it is there.
 
-    Parameters
-    ----------
-    effects
-        Classes of effects.
+    Args:
+        effects: Classes of effects.
 
-    Raises
-    ------
-    InputError
-        Something in it is no effect, or two effects have one name.
+    Raises:
+        InputError: Something in it is no effect, or two effects have one name.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> "base_rocking" in sk.CATALOGUE
-    True
-    >>> sk.Catalogue([sk.CATALOGUE["joint_tilt"], sk.CATALOGUE["lost_motion"]])
-    Catalogue(joint_tilt, lost_motion)
+    Examples:
+        >>> import sk120stiff as sk
+        >>> "base_rocking" in sk.CATALOGUE
+        True
+        >>> sk.Catalogue([sk.CATALOGUE["joint_tilt"], sk.CATALOGUE["lost_motion"]])
+        Catalogue(joint_tilt, lost_motion)
     """
 
     def __init__(self, effects: Iterable[type[Effect]] = ()) -> None:
@@ -181,10 +176,9 @@ def with_installed(
 ) -> tuple[type[Effect], ...]:
     """Effects with those that entry points bring; one that cannot be had is a warning.
 
-    Warns
-    -----
-    ToolkitWarning
-        An entry point cannot be loaded, brings no effect, or one whose name is taken.
+    Warns:
+        ToolkitWarning: An entry point cannot be loaded, brings no effect, or one whose name is
+            taken.
     """
     found = tuple(own)
     for point in entry_points(group=GROUP) if points is None else points:
@@ -252,38 +246,25 @@ def effect(
 ) -> Effect:
     """One effect at one place of a robot.
 
-    Parameters
-    ----------
-    robot
-        The robot that it acts on.
-    name
-        Public identifier, e.g. ``"base_rocking"``.
-    where
-        Joint, link or instrument; may be left out where there is only one.
-    poses
-        Poses of the experiment, for `zero_offset`.
-    timed
-        The experiment has times, for `reading_drift`.
-    breaks
-        Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
-    series
-        Series of the experiment, for `marker_shift`.
-    thermal
-        The experiment has temperatures, for `thermal_growth`.
-    catalogue
-        The effects that there are.
+    Args:
+        robot: The robot that it acts on.
+        name: Public identifier, e.g. ``"base_rocking"``.
+        where: Joint, link or instrument; may be left out where there is only one.
+        poses: Poses of the experiment, for `zero_offset`.
+        timed: The experiment has times, for `reading_drift`.
+        breaks: Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
+        series: Series of the experiment, for `marker_shift`.
+        thermal: The experiment has temperatures, for `thermal_growth`.
+        catalogue: The effects that there are.
 
-    Raises
-    ------
-    InputError
-        No such effect, or it cannot act there; what exists is listed.
+    Raises:
+        InputError: No such effect, or it cannot act there; what exists is listed.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> robot = sk.load_robot("motoman_sk120")
-    >>> sk.effect(robot, "base_rocking").id
-    'base_rocking:base_link'
+    Examples:
+        >>> import sk120stiff as sk
+        >>> robot = sk.load_robot("motoman_sk120")
+        >>> sk.effect(robot, "base_rocking").id
+        'base_rocking:base_link'
     """
     return catalogue.effect(
         robot, name, where, Options(tuple(poses), timed, tuple(breaks), tuple(series), thermal)

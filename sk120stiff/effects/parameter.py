@@ -16,24 +16,15 @@ class ParameterSpec:
     The law works with an internal value that is zero when the effect is absent (a compliance). What
     people write and read may be its reciprocal (a stiffness): `public` and `internal` convert.
 
-    Attributes
-    ----------
-    name
-        Short name, unique within the effect.
-    unit
-        SI unit of the public value, e.g. ``N*m/rad``.
-    internal_unit
-        SI unit of the internal value.
-    reciprocal
-        The public value is one over the internal one.
-    lower, upper
-        Physical bounds of the internal value.
-    plausible
-        Internal magnitude above which the value is no explanation, however well it fits.
-    typical
-        Internal magnitude worth telling from zero; scales numerics and detectable sizes.
-    meaning
-        What the public value says, in words: along which axis, and what its sign means.
+    Attributes:
+        name: Short name, unique within the effect.
+        unit: SI unit of the public value, e.g. ``N*m/rad``.
+        internal_unit: SI unit of the internal value.
+        reciprocal: The public value is one over the internal one.
+        lower, upper: Physical bounds of the internal value.
+        plausible: Internal magnitude above which the value is no explanation, however well it fits.
+        typical: Internal magnitude worth telling from zero; scales numerics and detectable sizes.
+        meaning: What the public value says, in words: along which axis, and what its sign means.
     """
 
     name: str
@@ -86,19 +77,13 @@ def compliance(
 ) -> ParameterSpec:
     """A compliance that people give as a stiffness.
 
-    Parameters
-    ----------
-    softest, typical
-        Stiffness [unit] below which the value is implausible, and one that is often met, on an arm
-        of `REFERENCE_LENGTH`.
-    scale
-        Length of the arm over `REFERENCE_LENGTH`.
-    meaning
-        What the stiffness resists.
-    unit
-        ``N*m/rad``, ``N/m`` or ``N*m**2`` (beams).
-    signed
-        May be negative (a cross term).
+    Args:
+        softest, typical: Stiffness [unit] below which the value is implausible, and one that is
+            often met, on an arm of `REFERENCE_LENGTH`.
+        scale: Length of the arm over `REFERENCE_LENGTH`.
+        meaning: What the stiffness resists.
+        unit: ``N*m/rad``, ``N/m`` or ``N*m**2`` (beams).
+        signed: May be negative (a cross term).
     """
     inverse, power = _STIFFNESS[unit]
     return ParameterSpec(

@@ -39,14 +39,10 @@ from sk120stiff.stiffness import complementary_stiffness
 class FirstOrder:
     """Signatures of effects in a set of readings, around joint springs.
 
-    Parameters
-    ----------
-    situation
-        N readings.
-    effects
-        Effects whose signatures will be asked for.
-    springs
-        Compliance of each actuated joint that yields [rad/(N·m) or m/N].
+    Args:
+        situation: N readings.
+        effects: Effects whose signatures will be asked for.
+        springs: Compliance of each actuated joint that yields [rad/(N·m) or m/N].
     """
 
     def __init__(

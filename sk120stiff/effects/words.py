@@ -22,20 +22,13 @@ class ParameterWords:
 class EffectWords:
     """One effect of the catalogue.
 
-    Attributes
-    ----------
-    name
-        Public identifier.
-    where
-        What it acts at, in words.
-    sentence
-        What happens.
-    equation
-        The law, in the symbols that `axes` and `parameters` explain.
-    axes
-        The frame of its parameters.
-    parameters
-        What is to be known about it.
+    Attributes:
+        name: Public identifier.
+        where: What it acts at, in words.
+        sentence: What happens.
+        equation: The law, in the symbols that `axes` and `parameters` explain.
+        axes: The frame of its parameters.
+        parameters: What is to be known about it.
     """
 
     name: str
@@ -65,10 +58,8 @@ def catalogue_words(
 ) -> tuple[EffectWords, ...]:
     """Every effect of the catalogue in words, or the one of that name.
 
-    Raises
-    ------
-    InputError
-        There is no such effect.
+    Raises:
+        InputError: There is no such effect.
     """
     if name is None:
         return tuple(words_of(kind.sample()) for kind in catalogue)

@@ -12,20 +12,16 @@ from sk120stiff.effects import Effect
 class Confirmation:
     """How an effect fares on poses that did not speak for it.
 
-    Attributes
-    ----------
-    folds_improved, folds
-        In how many of the folds the held-out misfit falls when the effect is added.
-    gain, gain_error
-        Fall of the held-out misfit per reading axis [noise variances], with its standard error over
-        poses.
-    frequency
-        Share of resamplings of the poses in which the same name (or an alternative of it) wins.
-    rival_frequency
-        Share in which the most frequent of the other names wins.
-    foretells
-        The effect says something of poses that were not measured. Draws, one for every pose, do
-        not; no fold can gain by them, and their name rests on the resampling alone.
+    Attributes:
+        folds_improved, folds: In how many of the folds the held-out misfit falls when the effect is
+            added.
+        gain, gain_error: Fall of the held-out misfit per reading axis [noise variances], with its
+            standard error over poses.
+        frequency: Share of resamplings of the poses in which the same name (or an alternative of
+            it) wins.
+        rival_frequency: Share in which the most frequent of the other names wins.
+        foretells: The effect says something of poses that were not measured. Draws, one for every
+            pose, do not; no fold can gain by them, and their name rests on the resampling alone.
     """
 
     folds_improved: int
@@ -59,19 +55,14 @@ class Confirmation:
 class Evidence:
     """Why an effect was named.
 
-    Attributes
-    ----------
-    score_gain
-        By how much the extended BIC gets worse without the effect.
-    misfit_gain
-        By how much the misfit (χ²) grows without it.
-    runner_up, runner_up_gap
-        The best effect that is no alternative (``name:where``), and by how much it loses.
-    confirmation
-        Cross-validation and resampling of the poses.
-    odds
-        Probability of each candidate (``name:where``) in this effect's place beside the other
-        effects, as far as the catalogue goes; what is missing to one is that of none.
+    Attributes:
+        score_gain: By how much the extended BIC gets worse without the effect.
+        misfit_gain: By how much the misfit (χ²) grows without it.
+        runner_up, runner_up_gap: The best effect that is no alternative (``name:where``), and by
+            how much it loses.
+        confirmation: Cross-validation and resampling of the poses.
+        odds: Probability of each candidate (``name:where``) in this effect's place beside the other
+            effects, as far as the catalogue goes; what is missing to one is that of none.
     """
 
     score_gain: float
@@ -86,16 +77,11 @@ class Evidence:
 class Finding:
     """One named effect.
 
-    Attributes
-    ----------
-    effect
-        The effect.
-    alternatives
-        Other effects (``name:where``) that these readings cannot tell from it.
-    exact
-        Those of the alternatives that no readings of this kind could tell from it.
-    evidence
-        Why it was named.
+    Attributes:
+        effect: The effect.
+        alternatives: Other effects (``name:where``) that these readings cannot tell from it.
+        exact: Those of the alternatives that no readings of this kind could tell from it.
+        evidence: Why it was named.
     """
 
     effect: Effect
@@ -120,14 +106,10 @@ class Finding:
 class Step:
     """The gap with one more effect in the model, rms per axis [m].
 
-    Attributes
-    ----------
-    label
-        Names of the base model's effects, then ``+ name:where``.
-    fit_rms
-        On the readings that were fitted.
-    heldout_rms
-        On poses left out of the fit (cross-validation), or on the hold-out file.
+    Attributes:
+        label: Names of the base model's effects, then ``+ name:where``.
+        fit_rms: On the readings that were fitted.
+        heldout_rms: On poses left out of the fit (cross-validation), or on the hold-out file.
     """
 
     label: str
@@ -139,13 +121,10 @@ class Step:
 class Contender:
     """What comes nearest to an explanation where none is confirmed.
 
-    Attributes
-    ----------
-    id
-        ``name:where``.
-    heldout_gain
-        By how much the held-out gap falls with it in the model, rms per axis [m]; NaN if poses that
-        are left do not hold it.
+    Attributes:
+        id: ``name:where``.
+        heldout_gain: By how much the held-out gap falls with it in the model, rms per axis [m]; NaN
+            if poses that are left do not hold it.
     """
 
     id: str

@@ -28,36 +28,29 @@ def fit(
 ) -> Fit:
     """Estimate a model's free parameters from readings, at exact equilibrium.
 
-    Parameters
-    ----------
-    model
-        Starting values, and which parameters are free (`Parameter.free`).
-    measurements
-        Readings with displacements; masked rows are left out.
-    noise
-        Covariance of the readings. Default: what the data say of themselves (`candidates`). A zero
-        that nobody described is decided by the likelihood of the fits, and in doubt shared; a σ
-        that neither the data nor repeats tell is estimated with the fit.
-    method
-        ``"trf"`` (trust region, bounds) or ``"lm"`` (Levenberg–Marquardt); both reach the same.
-    robust
-        Trust readings less that lie far from all others (Huber's loss on whole readings).
+    Args:
+        model: Starting values, and which parameters are free (`Parameter.free`).
+        measurements: Readings with displacements; masked rows are left out.
+        noise: Covariance of the readings. Default: what the data say of themselves (`candidates`).
+            A zero that nobody described is decided by the likelihood of the fits, and in doubt
+            shared; a σ that neither the data nor repeats tell is estimated with the fit.
+        method: ``"trf"`` (trust region, bounds) or ``"lm"`` (Levenberg–Marquardt); both reach the
+            same.
+        robust: Trust readings less that lie far from all others (Huber's loss on whole readings).
 
-    Raises
-    ------
-    InputError
-        No displacements, no loads, nothing free, or too few readings for the parameters.
-    Refusal
-        The fit did not converge, no equilibrium exists, or the readings show none of the
-        parameters.
+    Raises:
+        InputError: No displacements, no loads, nothing free, or too few readings for the
+            parameters.
+        Refusal: The fit did not converge, no equilibrium exists, or the readings show none of the
+            parameters.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> readings = sk.read(sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv")
-    >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
-    >>> print(f"{1e6 * found.rms:.1f} µm rms")
-    17.2 µm rms
+    Examples:
+        >>> import sk120stiff as sk
+        >>> folder = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(folder / "table2_measured.csv")
+        >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+        >>> print(f"{1e6 * found.rms:.1f} µm rms")
+        17.2 µm rms
     """
     refuse_unusable(model, measurements)
     used = measurements.masked()
@@ -73,10 +66,8 @@ def fit(
 def likelier(support: Sequence[float]) -> int:
     """Which of one or two noise models to take, the simpler one first: in doubt that.
 
-    Parameters
-    ----------
-    support
-        Twice the log-likelihood of the readings under each, or a score's negative.
+    Args:
+        support: Twice the log-likelihood of the readings under each, or a score's negative.
     """
     return int(len(support) > 1 and support[1] > support[0] + IN_DOUBT)
 

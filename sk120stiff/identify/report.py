@@ -19,13 +19,10 @@ MOST_LINES = 12
 def fit_report(fit: Fit, *, profile: Sequence[tuple[float, float]] | None = None) -> str:
     """Estimates with errors and intervals, statistics, noise, correlations, and what is unknown.
 
-    Parameters
-    ----------
-    fit
-        A converged fit.
-    profile
-        Profile-likelihood intervals to print in the place of the linear ones, from
-        `profile_intervals`.
+    Args:
+        fit: A converged fit.
+        profile: Profile-likelihood intervals to print in the place of the linear ones, from
+            `profile_intervals`.
     """
     parts = [
         _section("Parameters", _parameters(fit, profile)),

@@ -32,10 +32,8 @@ def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
     Where σ is not known it is taken from the median of the readings' lengths, which outliers do
     not move.
 
-    Raises
-    ------
-    Refusal
-        As `solve`, or the weights do not settle.
+    Raises:
+        Refusal: As `solve`, or the weights do not settle.
     """
     weights = np.ones(problem.measurements.n_readings)
     found = solve(problem.with_weights(weights), method=method)

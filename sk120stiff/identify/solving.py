@@ -24,10 +24,8 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
     depend on the starting values. From there one of the two algorithms goes on at exact
     equilibrium. Only what the readings do not show at all stays at its start.
 
-    Raises
-    ------
-    Refusal
-        The fit did not converge, or no equilibrium exists.
+    Raises:
+        Refusal: The fit did not converge, or no equilibrium exists.
     """
     residual_0, jacobian_0 = problem.first_order
 

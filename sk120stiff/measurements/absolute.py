@@ -36,27 +36,17 @@ SAME_POSE = 1e-3  # rad or m: encoder values of one pose that differ by less are
 class Absolute:
     """What N rows say of where markers stand.
 
-    Attributes
-    ----------
-    channels
-        The readings themselves.
-    frame
-        ``"base"``, or ``"unknown"``: the instrument's own axes, registered by the fit.
-    point
-        (N, 3) marker of each row in the tool frame as stated [m].
-    fit_point
-        The marker's place is known only roughly.
-    markers
-        N names of markers.
-    payload, payload_point, fit_payload
-        (N,) mass [kg] on the tool, (3,) where it hangs in the tool frame [m], and whether mass and
-        centre are in doubt.
-    temperature
-        (N,) [degC], or None.
-    series
-        N labels of what may have changed in between, or None.
-    gravity
-        (3,) acceleration in base axes [m/s²] where the file says it.
+    Attributes:
+        channels: The readings themselves.
+        frame: ``"base"``, or ``"unknown"``: the instrument's own axes, registered by the fit.
+        point: (N, 3) marker of each row in the tool frame as stated [m].
+        fit_point: The marker's place is known only roughly.
+        markers: N names of markers.
+        payload, payload_point, fit_payload: (N,) mass [kg] on the tool, (3,) where it hangs in the
+            tool frame [m], and whether mass and centre are in doubt.
+        temperature: (N,) [degC], or None.
+        series: N labels of what may have changed in between, or None.
+        gravity: (3,) acceleration in base axes [m/s²] where the file says it.
     """
 
     channels: Channels
@@ -116,10 +106,8 @@ def is_absolute(file: SettingsFile, roles: Roles, loaded: bool, blank: bool) -> 
 def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
     """Channels and what stands beside them.
 
-    Raises
-    ------
-    InputError
-        A group of columns in part, an unknown marker, a direction that is none.
+    Raises:
+        InputError: A group of columns in part, an unknown marker, a direction that is none.
     """
     settings, count = file.settings, len(table.lines)
     channels = _channels(table, roles, file)

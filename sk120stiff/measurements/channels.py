@@ -27,20 +27,15 @@ UNITS = {"position": "m", "rotation": "rad", "distance": "m", "shift": "m"}
 class Channels:
     """What N rows hold; NaN where a cell is blank, None where no row has such a reading.
 
-    Attributes
-    ----------
-    position
-        (N, 3) where the marker stands, axes of the instrument [m].
-    rotation
-        (N, 3, 3) axes of the tool in those of the instrument.
-    distance, anchor
-        (N,) distance of the marker from a fixed point (N, 3), axes of the instrument [m].
-    shift, along
-        (N,) displacement by the load along a direction (N, 3), axes of the displacements [m].
-    sigma
-        Standard uncertainty of each kind of channel as stated [m or rad].
-    sigma_of_rows
-        (N, 3) standard uncertainty of each position [m], or None.
+    Attributes:
+        position: (N, 3) where the marker stands, axes of the instrument [m].
+        rotation: (N, 3, 3) axes of the tool in those of the instrument.
+        distance, anchor: (N,) distance of the marker from a fixed point (N, 3), axes of the
+            instrument [m].
+        shift, along: (N,) displacement by the load along a direction (N, 3), axes of the
+            displacements [m].
+        sigma: Standard uncertainty of each kind of channel as stated [m or rad].
+        sigma_of_rows: (N, 3) standard uncertainty of each position [m], or None.
     """
 
     position: Array | None = None
@@ -120,14 +115,11 @@ class Channels:
     ) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction.
 
-        Parameters
-        ----------
-        position, rotation, columns
-            (N, 3), (N, 3, 3) predicted poses and (N, 6, P) their derivative, axes of the
-            instrument.
-        moved, moving
-            (N, 3) predicted displacement by the load and (N, 3, P) its derivative, axes of the
-            displacements; looked at only where there are shifts.
+        Args:
+            position, rotation, columns: (N, 3), (N, 3, 3) predicted poses and (N, 6, P) their
+                derivative, axes of the instrument.
+            moved, moving: (N, 3) predicted displacement by the load and (N, 3, P) its derivative,
+                axes of the displacements; looked at only where there are shifts.
         """
         found: list[tuple[Array, Array]] = []
         if self.position is not None:

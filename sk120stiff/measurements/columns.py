@@ -43,19 +43,13 @@ _OTHER_DRESS = re.compile(r"(?P<name>[A-Za-z]+)\s*(?P<mark>[ (/_])(?P<unit>[^)]*
 class Roles:
     """What the columns of a file are.
 
-    Parameters
-    ----------
-    joints
-        Name of each joint column → ``"angle"`` or ``"length"``, in the file's order.
-    has
-        The known words that are there.
-    extra
-        Further columns, kept as notes.
-    measured
-        `DISPLACEMENTS`, `POSITIONS`, or nothing for a plan.
-    absolute
-        There are readings or conditions that no displacement has: orientations, distances, single
-        directions, payloads, several markers.
+    Args:
+        joints: Name of each joint column → ``"angle"`` or ``"length"``, in the file's order.
+        has: The known words that are there.
+        extra: Further columns, kept as notes.
+        measured: `DISPLACEMENTS`, `POSITIONS`, or nothing for a plan.
+        absolute: There are readings or conditions that no displacement has: orientations,
+            distances, single directions, payloads, several markers.
     """
 
     joints: dict[str, str]
@@ -71,11 +65,9 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
     A column that is no known word is a joint if its unit is one of angle or length, else a note.
     Names in `actuated` are joints even where they are a known word (a gantry's ``x``).
 
-    Raises
-    ------
-    InputError
-        A column is missing or misspelt, has a unit where none belongs, or both displacements and
-        positions are given.
+    Raises:
+        InputError: A column is missing or misspelt, has a unit where none belongs, or both
+            displacements and positions are given.
     """
     joints: dict[str, str] = {}
     has: set[str] = set()

@@ -35,12 +35,10 @@ PER_ROW = (
 class NoiseStatement:
     """What the data say of their own noise; None stands for "not said".
 
-    Parameters
-    ----------
-    sigma
-        Standard uncertainty of one reading per axis, m.
-    growth
-        Part that grows with the displacement: standard uncertainty per metre of displacement.
+    Args:
+        sigma: Standard uncertainty of one reading per axis, m.
+        growth: Part that grows with the displacement: standard uncertainty per metre of
+            displacement.
     """
 
     sigma: float | None = None
@@ -57,54 +55,36 @@ class NoiseStatement:
 class Measurements(Tabular):
     """N readings of one robot; arrays are read-only, SI throughout.
 
-    Parameters
-    ----------
-    pose
-        N labels; rows of one label have the same joint values.
-    joint_names, joint_kinds
-        The n joint columns and whether each is an ``"angle"`` or a ``"length"``.
-    joints
-        (N, n) coordinates, rad or m.
-    wrench
-        (N, 6) force and moment as reported, N and N·m, in axes of `force_frame`.
-    displacement
-        (N, 3) loaded minus unloaded, m, in axes of `displacement_frame`; None in a plan.
-    point, force_point
-        (3,) measured point and point of attack in the tool frame, m; the force acts at the
-        measured point unless said otherwise.
-    noise
-        What the data say of the uncertainty of one reading.
-    zero
-        ``"shared"``: rows of equal `zero_group` subtract the same zero reading;
-        ``"separate"``: each row its own; ``"unknown"``: nobody said (then `zero_group` is what
-        sharing within a pose would mean).
-    sigma
-        (N, 3) standard uncertainty of the loaded reading of each row, m, or None.
-    order, time, branch, repeat
-        When and how each row was read, or None. `branch` holds load, unload or "".
-    use
-        (N,) False masks a row. Nothing is deleted.
-    zero_group, zero_count, zero_order, zero_time
-        (N,) which zero reading a row subtracts, of how many readings it is the mean, and their
-        mean order and time (NaN where not known).
-    zero_joints
-        (N, n) mean joint values of that zero reading where encoders read a little otherwise than
-        under load, rad or m; None: the same.
-    line
-        (N,) line in the file, 0 where there is none.
-    absolute
-        Readings of where markers stand, in the place of displacements, or None.
-    extra
-        Further columns as text, under their header as written.
-    notes
-        What reading the file decided, in sentences.
-    data_hash
-        SHA-256 of the bytes of both files.
+    Args:
+        pose: N labels; rows of one label have the same joint values.
+        joint_names, joint_kinds: The n joint columns and whether each is an ``"angle"`` or a
+            ``"length"``.
+        joints: (N, n) coordinates, rad or m.
+        wrench: (N, 6) force and moment as reported, N and N·m, in axes of `force_frame`.
+        displacement: (N, 3) loaded minus unloaded, m, in axes of `displacement_frame`; None in a
+            plan.
+        point, force_point: (3,) measured point and point of attack in the tool frame, m; the force
+            acts at the measured point unless said otherwise.
+        noise: What the data say of the uncertainty of one reading.
+        zero: ``"shared"``: rows of equal `zero_group` subtract the same zero reading;
+            ``"separate"``: each row its own; ``"unknown"``: nobody said (then `zero_group` is what
+            sharing within a pose would mean).
+        sigma: (N, 3) standard uncertainty of the loaded reading of each row, m, or None.
+        order, time, branch, repeat: When and how each row was read, or None. `branch` holds load,
+            unload or "".
+        use: (N,) False masks a row. Nothing is deleted.
+        zero_group, zero_count, zero_order, zero_time: (N,) which zero reading a row subtracts, of
+            how many readings it is the mean, and their mean order and time (NaN where not known).
+        zero_joints: (N, n) mean joint values of that zero reading where encoders read a little
+            otherwise than under load, rad or m; None: the same.
+        line: (N,) line in the file, 0 where there is none.
+        absolute: Readings of where markers stand, in the place of displacements, or None.
+        extra: Further columns as text, under their header as written.
+        notes: What reading the file decided, in sentences.
+        data_hash: SHA-256 of the bytes of both files.
 
-    Raises
-    ------
-    InputError
-        A shape, a sign, a label or a number that does not fit.
+    Raises:
+        InputError: A shape, a sign, a label or a number that does not fit.
     """
 
     pose: tuple[str, ...]
@@ -217,10 +197,8 @@ class Measurements(Tabular):
     def rows_of(self, pose: str) -> Integers:
         """Indices of the rows with this label.
 
-        Raises
-        ------
-        InputError
-            No row has the label; the message lists those that exist.
+        Raises:
+            InputError: No row has the label; the message lists those that exist.
         """
         if pose not in self._rows_of_each:
             close = get_close_matches(pose, self.poses, n=1)
@@ -259,17 +237,13 @@ class Measurements(Tabular):
     def with_joints(self, names: Sequence[str], kinds: Sequence[str] | None = None) -> Measurements:
         """The same readings with the joint columns in the order of a robot's actuated joints.
 
-        Parameters
-        ----------
-        names
-            The robot's actuated joints.
-        kinds
-            ``"angle"`` or ``"length"`` for each; None takes the file's word.
+        Args:
+            names: The robot's actuated joints.
+            kinds: ``"angle"`` or ``"length"`` for each; None takes the file's word.
 
-        Raises
-        ------
-        InputError
-            A column is no actuated joint, a joint has no column, or its unit is of another kind.
+        Raises:
+            InputError: A column is no actuated joint, a joint has no column, or its unit is of
+                another kind.
         """
         listed = f"The actuated joints are {', '.join(names)}."
         for name in self.joint_names:

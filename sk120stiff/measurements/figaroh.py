@@ -30,12 +30,9 @@ _OPTIONS = {
 class Told:
     """Units that the file itself does not give; None stands for "nobody said".
 
-    Parameters
-    ----------
-    length, angle
-        Of marker coordinates and sliding joints, and of turning joints.
-    load
-        Of ``fx fy fz`` or of ``payload`` (there also kg).
+    Args:
+        length, angle: Of marker coordinates and sliding joints, and of turning joints.
+        load: Of ``fx fy fz`` or of ``payload`` (there also kg).
     """
 
     length: str | None = None
@@ -46,10 +43,8 @@ class Told:
 def unit_of(table: Table, name: str, kind: str, told: str | None) -> str:
     """The unit of a column: that of its header, or the one that was told.
 
-    Raises
-    ------
-    InputError
-        Neither is there, or they differ.
+    Raises:
+        InputError: Neither is there, or they differ.
     """
     written = table.column_units[name]
     option, offered = _OPTIONS[kind]
@@ -76,10 +71,8 @@ def quantity(table: Table, name: str, kind: str, unit: str) -> Array:
 def marker_columns(table: Table, marker: int | None) -> tuple[int, tuple[str, ...]]:
     """The number of the marker and its three columns.
 
-    Raises
-    ------
-    InputError
-        No marker, an incomplete one, or several and nobody chose.
+    Raises:
+        InputError: No marker, an incomplete one, or several and nobody chose.
     """
     found = sorted({int(m[1]) for name in table.headers if (m := _MARKER.fullmatch(name))})
     header = f"{table.path}, line {table.header_line}"
@@ -118,10 +111,9 @@ def joint_columns(
 ) -> tuple[str, ...]:
     """The column of each actuated joint: its own name, or q1 .. qn, or as told in `joints`.
 
-    Raises
-    ------
-    InputError
-        A joint has no column, or `joints` names another number of columns or unknown ones.
+    Raises:
+        InputError: A joint has no column, or `joints` names another number of columns or unknown
+            ones.
     """
     header = f"{table.path}, line {table.header_line}"
     listed = f"The actuated joints are {', '.join(actuated)}."
@@ -163,19 +155,13 @@ _NOT_A_VALUE = re.compile(
 def refuse_other_joints(table: Table, left: Sequence[str], actuated: Sequence[str]) -> None:
     """Refuse a file with columns that look like joints which the robot does not have.
 
-    Parameters
-    ----------
-    table
-        The file.
-    left
-        Names of the columns that nobody took.
-    actuated
-        The robot's joints.
+    Args:
+        table: The file.
+        left: Names of the columns that nobody took.
+        actuated: The robot's joints.
 
-    Raises
-    ------
-    InputError
-        Such a column is there.
+    Raises:
+        InputError: Such a column is there.
     """
     others = [
         name for name in left if _JOINT_LIKE.fullmatch(name) and not _NOT_A_VALUE.search(name)
@@ -198,10 +184,9 @@ def loads(
     Forces ``fx fy fz`` (``mx my mz``), or ``payload`` that hangs down, or ``load`` that counts how
     many times the given `wrench` (6,) acts. Without any of them there is no load.
 
-    Raises
-    ------
-    InputError
-        Two of the three, an incomplete one, a unit that nobody said, or a `wrench` for nothing.
+    Raises:
+        InputError: Two of the three, an incomplete one, a unit that nobody said, or a `wrench` for
+            nothing.
     """
     header = f"{table.path}, line {table.header_line}"
     there = [

@@ -24,13 +24,12 @@ class Tabular:
     def to_frame(self, *, angle: str = "deg", length: str = "mm") -> pd.DataFrame:
         """One row per reading, with the headers and units of the CSV file.
 
-        Examples
-        --------
-        >>> import sk120stiff as sk
-        >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
-        >>> frame = sk.read(data).to_frame()
-        >>> list(frame.columns[:3]), len(frame)
-        (['pose', 'joint_1_s[deg]', 'joint_2_l[deg]'], 15)
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+            >>> frame = sk.read(data).to_frame()
+            >>> list(frame.columns[:3]), len(frame)
+            (['pose', 'joint_1_s[deg]', 'joint_2_l[deg]'], 15)
         """
         import pandas as pd
 
@@ -57,29 +56,23 @@ class Tabular:
     ) -> Measurements:
         """Readings from a table with the headers of the CSV file, units in them.
 
-        Parameters
-        ----------
-        frame
-            One row per reading; an empty cell is NaN or None.
-        actuated
-            The robot's actuated joints, in whose order the joint columns are then put.
-        settings
-            The keys of the YAML file, such as ``robot="motoman_sk120"`` and
-            ``point={"xyz": [0, 0, 120], "unit": "mm"}``; each has the default that it has there.
+        Args:
+            frame: One row per reading; an empty cell is NaN or None.
+            actuated: The robot's actuated joints, in whose order the joint columns are then put.
+            settings: The keys of the YAML file, such as ``robot="motoman_sk120"`` and
+                ``point={"xyz": [0, 0, 120], "unit": "mm"}``; each has the default that it has
+                there.
 
-        Raises
-        ------
-        InputError
-            As `read_measurements`; a line is the row of the table plus two, as it would be in a
-            file.
+        Raises:
+            InputError: As `read_measurements`; a line is the row of the table plus two, as it would
+                be in a file.
 
-        Examples
-        --------
-        >>> import sk120stiff as sk
-        >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
-        >>> frame = sk.read(data).to_frame()
-        >>> sk.Measurements.from_frame(frame[frame["pose"] == "1"], robot="motoman_sk120").poses
-        ('1',)
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+            >>> frame = sk.read(data).to_frame()
+            >>> sk.Measurements.from_frame(frame[frame["pose"] == "1"], robot="motoman_sk120").poses
+            ('1',)
         """
         from sk120stiff.measurements import reading
         from sk120stiff.measurements.settings import settings_of

@@ -30,19 +30,15 @@ from sk120stiff.measurements.table import Table, read_table
 class Imported:
     """What a calibration file holds.
 
-    Parameters
-    ----------
-    measurements
-        `displacement` holds positions [m], `wrench` the load less the lightest one of the pose, so
-        that the lightest rows are the zero readings: write it with ``as_positions=True``.
-    assumed
-        What the file does not say and was taken to be so, in sentences.
-    differences
-        Rows with a load other than the lightest of their pose, masked rows not counted.
-    useful_poses
-        Poses that have such a row and a zero reading for it.
-    identifiable
-        What can be identified from the file, in sentences.
+    Args:
+        measurements: `displacement` holds positions [m], `wrench` the load less the lightest one of
+            the pose, so that the lightest rows are the zero readings: write it with
+            ``as_positions=True``.
+        assumed: What the file does not say and was taken to be so, in sentences.
+        differences: Rows with a load other than the lightest of their pose, masked rows not
+            counted.
+        useful_poses: Poses that have such a row and a zero reading for it.
+        identifiable: What can be identified from the file, in sentences.
     """
 
     measurements: Measurements
@@ -70,27 +66,19 @@ def read_figaroh(
     Rows with the same joint values are one pose. At each pose the rows with the lightest load are
     the zero readings of the others; loads become differences to it.
 
-    Parameters
-    ----------
-    path
-        The CSV file. Headers may carry a unit in brackets.
-    actuated, prismatic
-        The robot's actuated joints, and those of them that slide.
-    length, angle, load
-        Units where headers carry none; load also ``"kg"`` for a column ``payload``.
-    wrench
-        (6,) what the column ``load`` counts, N and N·m, base axes.
-    joints
-        Columns of the actuated joints in their order, where they have other names.
-    marker
-        Which marker, where there are several.
-    point
-        (3,) where the marker sits in the tool frame, m; its origin by default.
+    Args:
+        path: The CSV file. Headers may carry a unit in brackets.
+        actuated, prismatic: The robot's actuated joints, and those of them that slide.
+        length, angle, load: Units where headers carry none; load also ``"kg"`` for a column
+            ``payload``.
+        wrench: (6,) what the column ``load`` counts, N and N·m, base axes.
+        joints: Columns of the actuated joints in their order, where they have other names.
+        marker: Which marker, where there are several.
+        point: (3,) where the marker sits in the tool frame, m; its origin by default.
 
-    Raises
-    ------
-    InputError
-        A missing or ambiguous column, a unit that nobody said, or a cell that is no number.
+    Raises:
+        InputError: A missing or ambiguous column, a unit that nobody said, or a cell that is no
+            number.
     """
     table = read_table(Path(path))
     number, marked = marker_columns(table, marker)

@@ -24,11 +24,9 @@ def join_measurements(parts: Sequence[Measurements]) -> Measurements:
     zero readings. Notes, path, source and settings are the first part's; an extra column stays
     if every part has it.
 
-    Raises
-    ------
-    InputError
-        No part, or parts that differ in robot, frames, points, noise, or in which columns they
-        have; or a pose label that stands for differing joint values.
+    Raises:
+        InputError: No part, or parts that differ in robot, frames, points, noise, or in which
+            columns they have; or a pose label that stands for differing joint values.
     """
     if not parts:
         raise InputError("there are no measurements to join")

@@ -47,10 +47,8 @@ class Linear:
 def parse_linear(text: str, where: str) -> Linear:
     """``-(J2 + J3)``, ``J4/101``, ``0.5*J1 + 90 deg``.
 
-    Raises
-    ------
-    InputError
-        Something else, with the place in the text.
+    Raises:
+        InputError: Something else, with the place in the text.
     """
     return _Parser(text, where).whole()
 
@@ -151,10 +149,9 @@ def mapped_joints(
 
     Columns that no expression uses stay joints of their own name.
 
-    Raises
-    ------
-    InputError
-        An expression that is none, or one of a column that does not exist or is of another kind.
+    Raises:
+        InputError: An expression that is none, or one of a column that does not exist or is of
+            another kind.
     """
     values = {name: table.quantity(name, kind) for name, kind in kinds.items()}
     found: dict[str, str] = {}

@@ -28,17 +28,13 @@ from sk120stiff.measurements.whitening import Whitener
 class ModelForm:
     """Sizes of the model-form error.
 
-    Attributes
-    ----------
-    proportional
-        Standard deviation τ₁ of the compliance error, relative to the pose's own compliance.
-    constant
-        Standard deviation τ₀ of what a pose has of its own, per axis [m].
+    Attributes:
+        proportional: Standard deviation τ₁ of the compliance error, relative to the pose's own
+            compliance.
+        constant: Standard deviation τ₀ of what a pose has of its own, per axis [m].
 
-    Raises
-    ------
-    InputError
-        A size that is negative or not finite.
+    Raises:
+        InputError: A size that is negative or not finite.
     """
 
     proportional: float = 0.0
@@ -70,16 +66,12 @@ EXACT = ModelForm()
 def form_columns(measurements: Measurements) -> tuple[Array, Array]:
     """Columns of the two random effects at every pose, for sizes of one.
 
-    Returns
-    -------
-    tuple
-        Proportional (N, 3, 3k) [m], k the kinds of load that occur, and constant (N, 3, 3) [1].
-        Every pose has columns of its own: these, in its rows alone.
+    Returns:
+        tuple: Proportional (N, 3, 3k) [m], k the kinds of load that occur, and constant (N, 3, 3)
+            [1]. Every pose has columns of its own: these, in its rows alone.
 
-    Raises
-    ------
-    InputError
-        There are no displacements.
+    Raises:
+        InputError: There are no displacements.
     """
     if measurements.displacement is None:
         raise InputError("model-form error needs displacements, and a plan has none")
@@ -106,14 +98,10 @@ def _rms_of_pose(vectors: Array, pose: Index) -> Array:
 class FormWhitener:
     """V^(-1/2) for V = V_noise + Z Zᵀ: the noise's whitener, then a shrinkage along few directions.
 
-    Parameters
-    ----------
-    noise
-        Whitener of the noise alone.
-    form
-        Sizes of the model-form error.
-    measurements
-        The readings, with displacements.
+    Args:
+        noise: Whitener of the noise alone.
+        form: Sizes of the model-form error.
+        measurements: The readings, with displacements.
     """
 
     def __init__(self, noise: Whitener, form: ModelForm, measurements: Measurements) -> None:

@@ -35,25 +35,18 @@ FINEST = 1e-9  # m; what is smaller is that of copied rows or computed data, of 
 class NoiseModel:
     """What one reading is worth.
 
-    Parameters
-    ----------
-    sigma
-        Standard uncertainty of one reading per axis, m.
-    growth
-        Standard uncertainty per metre of displacement, added in squares to the loaded reading.
-    zero
-        ``"shared"``: rows of equal `Measurements.zero_group` share the error of their zero
-        reading; ``"separate"``: each row has a zero reading of its own.
-    freedom
-        Degrees of freedom behind sigma: infinite where it was stated, those of the repeats that
-        tell it, 0 where it is only a scale to start from and the fit has to tell.
-    form
-        Model-form error beside the noise of the instrument.
+    Args:
+        sigma: Standard uncertainty of one reading per axis, m.
+        growth: Standard uncertainty per metre of displacement, added in squares to the loaded
+            reading.
+        zero: ``"shared"``: rows of equal `Measurements.zero_group` share the error of their zero
+            reading; ``"separate"``: each row has a zero reading of its own.
+        freedom: Degrees of freedom behind sigma: infinite where it was stated, those of the repeats
+            that tell it, 0 where it is only a scale to start from and the fit has to tell.
+        form: Model-form error beside the noise of the instrument.
 
-    Raises
-    ------
-    InputError
-        A sigma that is not positive, a growth below zero or from 1 up, an unknown zero.
+    Raises:
+        InputError: A sigma that is not positive, a growth below zero or from 1 up, an unknown zero.
     """
 
     sigma: float
@@ -99,18 +92,13 @@ class NoiseModel:
     ) -> tuple[Array, Array]:
         """Variance of the loaded reading (N, 3) and of its zero reading (N, 3), m².
 
-        Parameters
-        ----------
-        measurements
-            The N readings.
-        sizes
-            Size of each displacement, m, that the growth applies to: (N,), or (N, 3) per axis.
-            None takes the length of the measured displacement.
+        Args:
+            measurements: The N readings.
+            sizes: Size of each displacement, m, that the growth applies to: (N,), or (N, 3) per
+                axis. None takes the length of the measured displacement.
 
-        Raises
-        ------
-        InputError
-            A growth without sizes in a plan, or sizes of another shape.
+        Raises:
+            InputError: A growth without sizes in a plan, or sizes of another shape.
         """
         count = measurements.n_readings
         own = np.full((count, 3), self.sigma**2)

@@ -39,21 +39,15 @@ def refuse_differing_joints(
 ) -> None:
     """Compare every row with the first row of its pose.
 
-    Parameters
-    ----------
-    pose, pose_index
-        N labels, and (N,) their numbers in the order of the first row.
-    joints, names, kinds
-        (N, n) values in SI, and each column's name and kind (angle or length).
-    lines, file
-        (N,) line numbers (0: none) and the file, for the message.
-    allowed
-        Difference that is none [rad or m].
+    Args:
+        pose, pose_index: N labels, and (N,) their numbers in the order of the first row.
+        joints, names, kinds: (N, n) values in SI, and each column's name and kind (angle or
+            length).
+        lines, file: (N,) line numbers (0: none) and the file, for the message.
+        allowed: Difference that is none [rad or m].
 
-    Raises
-    ------
-    InputError
-        Two rows of a pose differ in a joint.
+    Raises:
+        InputError: Two rows of a pose differ in a joint.
     """
     _, first = np.unique(pose_index, return_index=True)
     differs = np.abs(joints - joints[first][pose_index]) > allowed

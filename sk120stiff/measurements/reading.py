@@ -46,33 +46,26 @@ def read_measurements(
 ) -> Measurements:
     """Read measurements, or a plan if no displacement is given.
 
-    Parameters
-    ----------
-    path
-        The CSV file: one row per reading, units in the headers. Settings come from the YAML file
-        of the same stem; without it every key has its default (`settings.Settings`).
-    actuated
-        The robot's actuated joints. The joint columns are then checked against them and put in
-        their order (`Measurements.with_joints` does the same later).
-    prismatic
-        Those of them that slide and take a length; None takes the file's word.
+    Args:
+        path: The CSV file: one row per reading, units in the headers. Settings come from the YAML
+            file of the same stem; without it every key has its default (`settings.Settings`).
+        actuated: The robot's actuated joints. The joint columns are then checked against them and
+            put in their order (`Measurements.with_joints` does the same later).
+        prismatic: Those of them that slide and take a length; None takes the file's word.
 
-    Raises
-    ------
-    InputError
-        Anything that is missing, misspelt, unclear or impossible, with file, line and column.
+    Raises:
+        InputError: Anything that is missing, misspelt, unclear or impossible, with file, line and
+            column.
 
-    Warns
-    -----
-    ToolkitWarning
-        A number so large that its unit is in doubt.
+    Warns:
+        ToolkitWarning: A number so large that its unit is in doubt.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> readings = sk.read(sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv")
-    >>> readings.n_readings, readings.poses
-    (15, ('1', '2', '3'))
+    Examples:
+        >>> import sk120stiff as sk
+        >>> folder = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(folder / "table2_measured.csv")
+        >>> readings.n_readings, readings.poses
+        (15, ('1', '2', '3'))
     """
     from sk120stiff.measurements.settings import find_settings, read_settings
 

@@ -24,22 +24,15 @@ _STEPS = 100  # of Gauss and Newton
 class Registration:
     """How far measured positions are off a robot's, moved and turned as a whole to fit best.
 
-    Attributes
-    ----------
-    rms, largest
-        Distance that remains, root mean square per pose and at the worst pose [m].
-    worst
-        Which pose that is.
-    poses
-        Number of poses.
-    marker
-        (3,) the marker in the tool frame, fitted from `MARKER_POSES` poses on [m].
-    marker_fitted
-        Was it?
-    turn, shift
-        (3, 3) and (3,) base axes as the instrument sees them, x = turn · X + shift [m].
-    distance
-        (P,) what remains at each pose [m].
+    Attributes:
+        rms, largest: Distance that remains, root mean square per pose and at the worst pose [m].
+        worst: Which pose that is.
+        poses: Number of poses.
+        marker: (3,) the marker in the tool frame, fitted from `MARKER_POSES` poses on [m].
+        marker_fitted: Was it?
+        turn, shift: (3, 3) and (3,) base axes as the instrument sees them, x = turn · X + shift
+            [m].
+        distance: (P,) what remains at each pose [m].
     """
 
     rms: float
@@ -66,21 +59,15 @@ def register(
     The turn is that of least squares (Kabsch, Acta Cryst. A32, 1976, p. 922) to begin with; then
     all nine unknowns are fitted together by Gauss and Newton.
 
-    Parameters
-    ----------
-    measured
-        (P, 3) marker position at each pose [m], in any axes.
-    flange, rotation
-        (P, 3) and (P, 3, 3) of the tool frame by the rigid robot, base axes [m].
-    point
-        (3,) where the marker is said to be in the tool frame [m]; the start of the fit. Also
-        (P, 3), where it differs from pose to pose: then what is fitted is a common shift of it.
-    fit_marker
-        False leaves the marker where it is said to be.
+    Args:
+        measured: (P, 3) marker position at each pose [m], in any axes.
+        flange, rotation: (P, 3) and (P, 3, 3) of the tool frame by the rigid robot, base axes [m].
+        point: (3,) where the marker is said to be in the tool frame [m]; the start of the fit. Also
+            (P, 3), where it differs from pose to pose: then what is fitted is a common shift of it.
+        fit_marker: False leaves the marker where it is said to be.
 
-    Returns
-    -------
-    None with fewer than three poses: two positions fit any robot nearly.
+    Returns:
+        None with fewer than three poses: two positions fit any robot nearly.
     """
     count = len(measured)
     if count < 3:
@@ -130,17 +117,13 @@ def _kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
 def registration_doubts(measured: Array, reached: Array) -> list[str]:
     """What speaks against positions in metres and base axes, in sentences; empty if nothing.
 
-    Parameters
-    ----------
-    measured
-        (P, 3) marker position at each pose [m].
-    reached
-        (P, 3) the same point by the rigid robot [m], base axes.
+    Args:
+        measured: (P, 3) marker position at each pose [m].
+        reached: (P, 3) the same point by the rigid robot [m], base axes.
 
-    Notes
-    -----
-    The rotation between the two clouds is that of least squares (Kabsch, Acta Cryst. A32, 1976,
-    p. 922); shifts do not matter, since displacements are differences.
+    Notes:
+        The rotation between the two clouds is that of least squares (Kabsch, Acta Cryst. A32, 1976,
+        p. 922); shifts do not matter, since displacements are differences.
     """
     clouds = [points - points.mean(axis=0) for points in (reached, measured)]
     spread = [float(np.linalg.norm(cloud)) for cloud in clouds]

@@ -28,15 +28,11 @@ _REACH = (-7.0, 7.0)  # natural logarithm of growth·|d|/σ at the usual displac
 class Repeated:
     """Noise as repeats show it.
 
-    Attributes
-    ----------
-    sigma
-        Standard uncertainty of one reading per axis [m].
-    growth
-        Standard uncertainty per metre of displacement, in squares beside it; 0 unless the repeats
-        ask for it strongly.
-    freedom
-        Degrees of freedom behind them.
+    Attributes:
+        sigma: Standard uncertainty of one reading per axis [m].
+        growth: Standard uncertainty per metre of displacement, in squares beside it; 0 unless the
+            repeats ask for it strongly.
+        freedom: Degrees of freedom behind them.
     """
 
     sigma: float
@@ -51,16 +47,12 @@ def pure_error(measurements: Measurements, zero: Zero | None = None) -> tuple[fl
     readings (generalised least squares), so that rows with a common zero reading and rows with zero
     readings of their own give the same σ.
 
-    Parameters
-    ----------
-    measurements
-        Readings with displacements.
-    zero
-        How zero readings are shared; None takes the data's word, and "unknown" as shared.
+    Args:
+        measurements: Readings with displacements.
+        zero: How zero readings are shared; None takes the data's word, and "unknown" as shared.
 
-    Returns
-    -------
-    (sigma, dof), or None where nothing was repeated.
+    Returns:
+        (sigma, dof), or None where nothing was repeated.
     """
     found = repeated(measurements, zero, grows=False)
     return None if found is None else (found.sigma, found.freedom)
@@ -71,12 +63,9 @@ def repeated(
 ) -> Repeated | None:
     """Noise from repeats; None where nothing was repeated.
 
-    Parameters
-    ----------
-    measurements, zero
-        As for `pure_error`.
-    grows
-        Look for a part that grows with the displacement too.
+    Args:
+        measurements, zero: As for `pure_error`.
+        grows: Look for a part that grows with the displacement too.
     """
     usable = measurements.masked()
     if usable.displacement is None:

@@ -22,22 +22,14 @@ _FLAGS = {"1": True, "0": False, "true": True, "false": False, "1.0": True, "0.0
 class Rows:
     """All N rows of a file in SI, before any zero reading is subtracted.
 
-    Parameters
-    ----------
-    pose
-        N labels; `pose_index` (N,) numbers them in the order of their first row.
-    joints
-        (N, n) rad or m.
-    wrench
-        (N, 6) N and N·m; `loaded` (N,) is True where any component is not zero.
-    measured
-        (N, 3) displacements or positions, m; None in a plan.
-    sigma
-        (N, 3) m, or None.
-    order, time, branch, repeat
-        (N,) or None.
-    use
-        (N,) False where masked.
+    Args:
+        pose: N labels; `pose_index` (N,) numbers them in the order of their first row.
+        joints: (N, n) rad or m.
+        wrench: (N, 6) N and N·m; `loaded` (N,) is True where any component is not zero.
+        measured: (N, 3) displacements or positions, m; None in a plan.
+        sigma: (N, 3) m, or None.
+        order, time, branch, repeat: (N,) or None.
+        use: (N,) False where masked.
     """
 
     pose: tuple[str, ...]
@@ -59,10 +51,8 @@ def read_rows(
 ) -> tuple[Rows, dict[str, str]]:
     """Turn cells into numbers; joints as `mapping` makes them of columns, and their kinds.
 
-    Raises
-    ------
-    InputError
-        A cell that its column cannot hold, with line and column.
+    Raises:
+        InputError: A cell that its column cannot hold, with line and column.
     """
     count = len(table.lines)
     kinds, joints = mapped_joints(table, roles.joints, mapping, place)

@@ -145,10 +145,8 @@ class SettingsFile:
 def find_settings(readings: Path) -> Path | None:
     """The YAML file of the same stem as the CSV file, if there is one.
 
-    Raises
-    ------
-    InputError
-        Both ``.yaml`` and ``.yml`` exist.
+    Raises:
+        InputError: Both ``.yaml`` and ``.yml`` exist.
     """
     found = [p for p in (readings.with_suffix(s) for s in (".yaml", ".yml")) if p.exists()]
     if len(found) > 1:
@@ -163,10 +161,9 @@ def find_settings(readings: Path) -> Path | None:
 def read_settings(path: Path | None) -> SettingsFile:
     """Read and check the file; None gives the defaults.
 
-    Raises
-    ------
-    InputError
-        Text that is not YAML, an unknown, repeated or missing key, or a value that does not fit.
+    Raises:
+        InputError: Text that is not YAML, an unknown, repeated or missing key, or a value that does
+            not fit.
     """
     if path is None:
         return SettingsFile(Settings(), None, {})
@@ -189,10 +186,8 @@ def settings_of(
 ) -> SettingsFile:
     """Settings from their keys; `lines` tells where each stands in the file.
 
-    Raises
-    ------
-    InputError
-        An unknown or missing key, or a value that does not fit.
+    Raises:
+        InputError: An unknown or missing key, or a value that does not fit.
     """
     known = dict(lines or {})
     keys: dict[object, object] = dict(content.items())

@@ -39,10 +39,9 @@ class Displacements:
 def displacements(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacements:
     """Read them off, or subtract the zero readings where positions are given.
 
-    Raises
-    ------
-    InputError
-        A pose without a zero reading, no loaded row, or a zero column that does not fit.
+    Raises:
+        InputError: A pose without a zero reading, no loaded row, or a zero column that does not
+            fit.
     """
     if roles.measured == POSITIONS:
         return _from_positions(table, roles, rows, zero)

@@ -22,20 +22,13 @@ _COMMAS = "Separate the cells by commas and write decimals with a point: 1.5, no
 class Table:
     """The cells of a CSV file, column by column.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    headers
-        Name of each column, without its unit, and the header as written.
-    column_units
-        Name of each column and its unit, None where the header has none.
-    cells
-        Name of each column and its N texts, without blanks around them.
-    lines
-        N line numbers, counted from 1.
-    header_line
-        The line of the headers.
+    Args:
+        path: The file, for messages.
+        headers: Name of each column, without its unit, and the header as written.
+        column_units: Name of each column and its unit, None where the header has none.
+        cells: Name of each column and its N texts, without blanks around them.
+        lines: N line numbers, counted from 1.
+        header_line: The line of the headers.
     """
 
     path: Path
@@ -53,10 +46,8 @@ class Table:
     def numbers(self, name: str, *, allow_blank: bool = False) -> Array:
         """The column (N,) as finite numbers, as written; an allowed empty cell becomes NaN.
 
-        Raises
-        ------
-        InputError
-            A cell that is empty, no number, or not finite.
+        Raises:
+            InputError: A cell that is empty, no number, or not finite.
         """
         cells = self.cells[name]
         try:
@@ -77,10 +68,9 @@ class Table:
     def quantity(self, name: str, kind: str, *, allow_blank: bool = False) -> Array:
         """The column (N,) in SI; `numbers` with the unit of the header.
 
-        Raises
-        ------
-        InputError
-            As `numbers`, or the header has no unit, an unknown one, or one of another kind.
+        Raises:
+            InputError: As `numbers`, or the header has no unit, an unknown one, or one of another
+                kind.
         """
         unit = self.column_units[name]
         if unit is None:
@@ -101,11 +91,9 @@ def read_table(path: Path) -> Table:
 
     A byte-order mark, CRLF line ends, empty lines and lines that start with ``#`` are fine.
 
-    Raises
-    ------
-    InputError
-        Missing, unreadable, not UTF-8, empty, without rows, another separator, a repeated or
-        nameless column, or a row with more or fewer cells than there are headers.
+    Raises:
+        InputError: Missing, unreadable, not UTF-8, empty, without rows, another separator, a
+            repeated or nameless column, or a row with more or fewer cells than there are headers.
     """
     header: list[str] | None = None
     header_line = 0

@@ -19,14 +19,10 @@ from sk120stiff.errors import InputError
 class Whitener:
     """L⁻¹ of the covariance V = L Lᵀ of N displacement readings.
 
-    Parameters
-    ----------
-    own
-        (N, 3) variance of each row's own error, m², positive.
-    shared
-        (N, 3) variance of the error that rows of a group share, m², equal within a group.
-    group
-        (N,) number of the group of each row.
+    Args:
+        own: (N, 3) variance of each row's own error, m², positive.
+        shared: (N, 3) variance of the error that rows of a group share, m², equal within a group.
+        group: (N,) number of the group of each row.
     """
 
     def __init__(self, own: Array, shared: Array, group: Integers) -> None:

@@ -43,27 +43,19 @@ def write_measurements(
     positions are written as displacements, with what they subtracted in the columns
     ``zero_group``, ``zero_count``, ``zero_order`` and ``zero_time[s]`` where that is not plain.
 
-    Parameters
-    ----------
-    measurements
-        What to write; masked rows too, with ``use`` 0.
-    path
-        The CSV file. The YAML file stands beside it.
-    angle, length
-        Units of the columns.
-    as_positions
-        `displacement` holds positions, rows without load among them: write the columns x, y, z.
+    Args:
+        measurements: What to write; masked rows too, with ``use`` 0.
+        path: The CSV file. The YAML file stands beside it.
+        angle, length: Units of the columns.
+        as_positions: `displacement` holds positions, rows without load among them: write the
+            columns x, y, z.
 
-    Returns
-    -------
-    Path
-        The CSV file.
+    Returns:
+        Path: The CSV file.
 
-    Raises
-    ------
-    InputError
-        The folder cannot be written to, the path does not end in ``.csv``, or a ``.yml`` file of
-        the same stem is in the way.
+    Raises:
+        InputError: The folder cannot be written to, the path does not end in ``.csv``, or a
+            ``.yml`` file of the same stem is in the way.
     """
     target = Path(path)
     check_name(target)
@@ -89,10 +81,8 @@ def _guarded(header: str, cells: Iterable[str]) -> Iterable[str]:
 def check_name(target: Path) -> None:
     """Refuse a name that readings cannot be written to.
 
-    Raises
-    ------
-    InputError
-        It does not end in ``.csv``, or a ``.yml`` file of the same stem is in the way.
+    Raises:
+        InputError: It does not end in ``.csv``, or a ``.yml`` file of the same stem is in the way.
     """
     if target.suffix.lower() != ".csv":
         raise InputError(

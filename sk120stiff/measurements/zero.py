@@ -14,14 +14,10 @@ from sk120stiff.measurements.poses import rows_by_label
 class ZeroReadings:
     """The zero readings of a file of positions.
 
-    Parameters
-    ----------
-    group
-        (N,) number of the zero reading of each row, loaded or not.
-    counted
-        (N,) the rows without load that a zero reading is the mean of.
-    count
-        (N,) how many rows are counted in the row's group; 0 where there is no zero reading.
+    Args:
+        group: (N,) number of the zero reading of each row, loaded or not.
+        counted: (N,) the rows without load that a zero reading is the mean of.
+        count: (N,) how many rows are counted in the row's group; 0 where there is no zero reading.
     """
 
     group: Integers

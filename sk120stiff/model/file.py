@@ -130,38 +130,28 @@ def read_model(
 ) -> Model:
     """Read a model file, and its robot unless one is given.
 
-    Parameters
-    ----------
-    path
-        The file.
-    robot
-        The robot to use the model with.
-    base, tool
-        Frames in the place of those that the file names, where no robot is given.
-    catalogue
-        The effects that there are, ``CATALOGUE + Mine`` with your own.
+    Args:
+        path: The file.
+        robot: The robot to use the model with.
+        base, tool: Frames in the place of those that the file names, where no robot is given.
+        catalogue: The effects that there are, ``CATALOGUE + Mine`` with your own.
 
-    Raises
-    ------
-    InputError
-        Not a model, or an effect, place, parameter or unit that does not exist; file and key are
-        named.
+    Raises:
+        InputError: Not a model, or an effect, place, parameter or unit that does not exist; file
+            and key are named.
 
-    Warns
-    -----
-    ToolkitWarning
-        The robot given is not the one that the model is of.
+    Warns:
+        ToolkitWarning: The robot given is not the one that the model is of.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     again = sk.read_model(sk.write_model(model, Path(folder) / "model.yaml"))
-    >>> again.names == model.names
-    True
+    Examples:
+        >>> import sk120stiff as sk
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     again = sk.read_model(sk.write_model(model, Path(folder) / "model.yaml"))
+        >>> again.names == model.names
+        True
     """
     source = Path(path)
     text, folder = read_text(source), source.parent
@@ -250,11 +240,10 @@ def base_model(robot: Robot) -> Model:
 
     The latter say so in their `origin`; see `typical_model`.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> sk.base_model(sk.load_robot("motoman_sk120")).names[0]
-    'joint_springs:joint_1_s.stiffness'
+    Examples:
+        >>> import sk120stiff as sk
+        >>> sk.base_model(sk.load_robot("motoman_sk120")).names[0]
+        'joint_springs:joint_1_s.stiffness'
     """
     known = find_robot(robot.source).model_file
     return typical_model(robot) if known is None else read_model(known, robot)

@@ -20,15 +20,11 @@ def translated(kind: type[Effect], parameters: dict[str, Value], place: str) -> 
     what the instrument adds, reported minus true. A name has one sign for ever, so that no file is
     ever read the wrong way round.
 
-    Raises
-    ------
-    InputError
-        A parameter stands there under both names.
+    Raises:
+        InputError: A parameter stands there under both names.
 
-    Warns
-    -----
-    ToolkitWarning
-        Something was translated.
+    Warns:
+        ToolkitWarning: Something was translated.
     """
     former = kind.former
     found: dict[str, Value] = {}

@@ -18,10 +18,8 @@ FAR = 0.05  # of the arm's length: a gear that yields by more than some mrad is 
 def warn_of_far_bend(model: Model, displacement: Array) -> None:
     """Tell that displacements (..., 3) [m] are larger than any arm's.
 
-    Warns
-    -----
-    ToolkitWarning
-        One of them is.
+    Warns:
+        ToolkitWarning: One of them is.
     """
     size = np.linalg.norm(displacement, axis=-1)
     largest = float(np.max(size, initial=0.0, where=np.isfinite(size)))
@@ -38,12 +36,9 @@ def warn_of_far_bend(model: Model, displacement: Array) -> None:
 def held_loads(model: Model, situation: Situation) -> Mask:
     """(N,) readings for which a static equilibrium exists, found by halving.
 
-    Parameters
-    ----------
-    model
-        Robot and effects.
-    situation
-        The N readings.
+    Args:
+        model: Robot and effects.
+        situation: The N readings.
     """
     held = np.zeros(situation.count, dtype=bool)
     parts = [np.arange(situation.count)]

@@ -15,14 +15,10 @@ from sk120stiff.effects.base import Misreading
 class Misread:
     """Values after a series of misreadings, and their derivatives.
 
-    Attributes
-    ----------
-    value
-        (N, d) what comes out.
-    matrix
-        (d, d) derivative of the output by the input.
-    columns
-        For each effect its part of the vector of values, and (N, d, p) derivatives.
+    Attributes:
+        value: (N, d) what comes out.
+        matrix: (d, d) derivative of the output by the input.
+        columns: For each effect its part of the vector of values, and (N, d, p) derivatives.
     """
 
     value: Array

@@ -23,20 +23,13 @@ ON_BOUND = "identified: on its bound"
 class Parameter:
     """One parameter of a model.
 
-    Attributes
-    ----------
-    effect
-        The effect that it belongs to.
-    spec
-        Its name, unit, bounds.
-    internal
-        Internal value (a compliance where people say stiffness), SI.
-    internal_std
-        Standard error of the internal value, None where it was not estimated.
-    free
-        Estimated by identification unless it is told otherwise.
-    origin
-        Where the value came from, in words.
+    Attributes:
+        effect: The effect that it belongs to.
+        spec: Its name, unit, bounds.
+        internal: Internal value (a compliance where people say stiffness), SI.
+        internal_std: Standard error of the internal value, None where it was not estimated.
+        free: Estimated by identification unless it is told otherwise.
+        origin: Where the value came from, in words.
     """
 
     effect: Effect

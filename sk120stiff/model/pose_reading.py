@@ -25,13 +25,10 @@ BUDGET = 2_000_000  # numbers in one (block, n, n) array
 class PoseReading:
     """Poses as read.
 
-    Attributes
-    ----------
-    position, rotation
-        (N, 3) marker [m] and (N, 3, 3) tool axes, axes of the instrument.
-    columns
-        (N, 6, P) derivative of position and orientation by the internal parameter values, in axes
-        of the instrument; no parameters where nobody asked.
+    Attributes:
+        position, rotation: (N, 3) marker [m] and (N, 3, 3) tool axes, axes of the instrument.
+        columns: (N, 6, P) derivative of position and orientation by the internal parameter values,
+            in axes of the instrument; no parameters where nobody asked.
     """
 
     position: Array
@@ -44,10 +41,8 @@ def read_poses(
 ) -> PoseReading:
     """Predicted positions and orientations of N readings, in blocks.
 
-    Raises
-    ------
-    Refusal
-        The springs cannot hold the arm's weight or a load.
+    Raises:
+        Refusal: The springs cannot hold the arm's weight or a load.
     """
     given = model.values if values is None else values
     parts = [

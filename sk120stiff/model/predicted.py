@@ -17,17 +17,14 @@ from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
 class Predicted:
     """Predicted readings of N poses and loads.
 
-    Attributes
-    ----------
-    displacement
-        (N, 3) in the axes of the measurements [m].
-    std_parameters
-        (N, 3) standard uncertainty from that of the parameters [m]; infinite where a value counts
-        that the readings of the fit do not show. None: the model stores no uncertainty.
-    std_remainder
-        (N, 3) standard size of what the model leaves unexplained [m]; None where that is not known.
-    blame
-        For every reading the names of the parameters that make its uncertainty infinite.
+    Attributes:
+        displacement: (N, 3) in the axes of the measurements [m].
+        std_parameters: (N, 3) standard uncertainty from that of the parameters [m]; infinite where
+            a value counts that the readings of the fit do not show. None: the model stores no
+            uncertainty.
+        std_remainder: (N, 3) standard size of what the model leaves unexplained [m]; None where
+            that is not known.
+        blame: For every reading the names of the parameters that make its uncertainty infinite.
     """
 
     displacement: Array
@@ -71,29 +68,23 @@ class Predicted:
 def predict(model: Model, measurements: Measurements) -> Predicted:
     """What a model says of every row of measurements, or of a plan; ± where that is known.
 
-    Parameters
-    ----------
-    model
-        Robot, effects, and their uncertainty if it is known.
-    measurements
-        Rows with poses and loads; masked ones are predicted too, displacements are not looked at.
+    Args:
+        model: Robot, effects, and their uncertainty if it is known.
+        measurements: Rows with poses and loads; masked ones are predicted too, displacements are
+            not looked at.
 
-    Raises
-    ------
-    InputError
-        The joints are not the robot's.
-    Refusal
-        The springs cannot hold a load.
+    Raises:
+        InputError: The joints are not the robot's.
+        Refusal: The springs cannot hold a load.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
-    >>> readings = sk.read(data)
-    >>> said = sk.predict(sk.base_model(sk.load_robot("motoman_sk120")), readings)
-    >>> gap = readings.displacement - said.displacement  # (N, 3) [m]
-    >>> print(f"{1e6 * (gap**2).mean() ** 0.5:.1f} µm rms")
-    26.4 µm rms
+    Examples:
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+        >>> readings = sk.read(data)
+        >>> said = sk.predict(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+        >>> gap = readings.displacement - said.displacement  # (N, 3) [m]
+        >>> print(f"{1e6 * (gap**2).mean() ** 0.5:.1f} µm rms")
+        26.4 µm rms
     """
     return predict_with_uncertainty(model, situation_of(model.robot, measurements))
 
@@ -104,17 +95,12 @@ def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
     To first order in the parameters, by the exact derivative at equilibrium: deflections are linear
     in compliances but for what the load's own stiffness K_C adds.
 
-    Parameters
-    ----------
-    model
-        Robot, effects, and their uncertainty if it is known.
-    situation
-        The N readings.
+    Args:
+        model: Robot, effects, and their uncertainty if it is known.
+        situation: The N readings.
 
-    Raises
-    ------
-    Refusal
-        The springs cannot hold a load.
+    Raises:
+        Refusal: The springs cannot hold a load.
     """
     known = model.uncertainty
     if known is None:

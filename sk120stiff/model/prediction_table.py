@@ -26,10 +26,8 @@ UNHELD = "no static equilibrium: the springs cannot hold this load"
 def predict_what_holds(model: Model, situation: Situation) -> Predicted:
     """Predictions ± uncertainty; NaN, with a warning, where no equilibrium exists.
 
-    Raises
-    ------
-    Refusal
-        None of the loads can be held.
+    Raises:
+        Refusal: None of the loads can be held.
     """
     try:
         return predict_with_uncertainty(model, situation)

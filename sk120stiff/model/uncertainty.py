@@ -31,25 +31,17 @@ ROUNDED = 1e-8  # least eigenvalue of a correlation matrix that rounding may hav
 class Remainder:
     """What a model leaves unexplained at poses that it was not fitted to, beyond the noise.
 
-    Attributes
-    ----------
-    rms
-        (3,) per axis of the base, over readings like those of the fit [m].
-    upper
-        (3,) the same with one standard error of its square, as it came out from pose to pose: what
-        predictions use, because a few poses hardly show how large it may be at others [m].
-    freedom
-        (3,) degrees of freedom of the readings that it rests on.
-    load
-        Rms size of the loads at which it was found, see `load_size` [N].
-    length
-        Lever at which a moment counts as a force [m].
-    grows
-        It goes with the load; else it is as large at all loads.
-    probability
-        Of as large a misfit if the noise were all.
-    significant
-        The misfit is more than the noise makes; else the remainder counts as nothing.
+    Attributes:
+        rms: (3,) per axis of the base, over readings like those of the fit [m].
+        upper: (3,) the same with one standard error of its square, as it came out from pose to
+            pose: what predictions use, because a few poses hardly show how large it may be at
+            others [m].
+        freedom: (3,) degrees of freedom of the readings that it rests on.
+        load: Rms size of the loads at which it was found, see `load_size` [N].
+        length: Lever at which a moment counts as a force [m].
+        grows: It goes with the load; else it is as large at all loads.
+        probability: Of as large a misfit if the noise were all.
+        significant: The misfit is more than the noise makes; else the remainder counts as nothing.
     """
 
     rms: Array
@@ -89,24 +81,15 @@ def load_size(wrench: Array, length: float) -> Array:
 class Uncertainty:
     """What is known of P estimated parameters; the others of a model count as exact.
 
-    Attributes
-    ----------
-    names
-        Full names of the parameters.
-    values
-        (P,) internal values that this belongs to.
-    covariance
-        (P, P) of the internal values, of what the readings show.
-    unseen
-        (b, P) plausible changes of the internal values that the readings do not show.
-    noise
-        Standard uncertainty of one reading per axis [m].
-    freedom
-        Degrees of freedom of the noise, where it was estimated; None: stated.
-    remainder
-        What the model leaves unexplained; None where that could not be told from noise.
-    source
-        Which readings all of this comes from, in words.
+    Attributes:
+        names: Full names of the parameters.
+        values: (P,) internal values that this belongs to.
+        covariance: (P, P) of the internal values, of what the readings show.
+        unseen: (b, P) plausible changes of the internal values that the readings do not show.
+        noise: Standard uncertainty of one reading per axis [m].
+        freedom: Degrees of freedom of the noise, where it was estimated; None: stated.
+        remainder: What the model leaves unexplained; None where that could not be told from noise.
+        source: Which readings all of this comes from, in words.
     """
 
     names: tuple[str, ...]
@@ -178,19 +161,14 @@ class Uncertainty:
 def spread(seen: Array, unseen: Array, floor: Array | float) -> Array:
     """(...,) standard deviation of a quantity from its parts along Σ and along what is unseen.
 
-    Parameters
-    ----------
-    seen
-        (..., r) derivative times L of `Uncertainty.factors`.
-    unseen
-        (..., b) derivative times B.
-    floor
-        Size of the quantity that nobody asks about, the noise of a reading say.
+    Args:
+        seen: (..., r) derivative times L of `Uncertainty.factors`.
+        unseen: (..., b) derivative times B.
+        floor: Size of the quantity that nobody asks about, the noise of a reading say.
 
-    Returns
-    -------
-    Infinite where plausible changes that no reading shows would move the quantity by a third or
-    more of what is known of it; where they move it by less, that is added.
+    Returns:
+        Infinite where plausible changes that no reading shows would move the quantity by a third or
+        more of what is known of it; where they move it by less, that is added.
     """
     known, hidden = (seen**2).sum(axis=-1), (unseen**2).sum(axis=-1)
     lost = hidden > HIDDEN * (known + np.asarray(floor) ** 2)

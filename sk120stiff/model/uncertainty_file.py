@@ -137,15 +137,12 @@ def uncertainty_document(model: Model) -> dict[str, object] | None:
 def uncertainty_of(section: UncertaintySection | None, model: Model, where: str) -> Model:
     """The model with the uncertainty of its file.
 
-    Raises
-    ------
-    InputError
-        The matrix is none, or an entry has no possible value.
+    Raises:
+        InputError: The matrix is none, or an entry has no possible value.
 
-    Warns
-    -----
-    ToolkitWarning
-        The parameters are no longer those that were estimated; the uncertainty is dropped.
+    Warns:
+        ToolkitWarning: The parameters are no longer those that were estimated; the uncertainty is
+            dropped.
     """
     if section is None:
         return model

@@ -53,16 +53,11 @@ SHOWN = {
 class Cloud:
     """Points with a value each.
 
-    Attributes
-    ----------
-    position
-        (N, 3) base axes [m].
-    values
-        (N,) in `unit`.
-    label, unit
-        What the values are.
-    subtitle
-        What else the reader should know, the load for example.
+    Attributes:
+        position: (N, 3) base axes [m].
+        values: (N,) in `unit`.
+        label, unit: What the values are.
+        subtitle: What else the reader should know, the load for example.
     """
 
     position: Array
@@ -88,21 +83,14 @@ def cloud_of_map(
 ) -> Cloud:
     """Points of a map that have a value, evenly thinned out to about `points`.
 
-    Parameters
-    ----------
-    dataset
-        A map, see `sk120stiff.workspace.open_map`.
-    robot
-        The robot of the map: it says where the poses of a map over joints are.
-    variable
-        One of `SHOWN`.
-    load
-        Number of the load.
+    Args:
+        dataset: A map, see `sk120stiff.workspace.open_map`.
+        robot: The robot of the map: it says where the poses of a map over joints are.
+        variable: One of `SHOWN`.
+        load: Number of the load.
 
-    Raises
-    ------
-    InputError
-        There is no such variable or load, another robot, or no point has a value.
+    Raises:
+        InputError: There is no such variable or load, another robot, or no point has a value.
     """
     if variable not in SHOWN:
         raise InputError(

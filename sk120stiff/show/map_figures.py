@@ -41,19 +41,14 @@ def figures_of_map(
 ) -> list[MapFigure]:
     """Least stiffness, definiteness, and deflection ± over every pair of axes.
 
-    Parameters
-    ----------
-    dataset
-        A map, see `sk120stiff.workspace.open_map`.
-    load
-        Number of the load.
-    at
-        Point through which the slices go, by axis [rad or m]; the softest of the map by default.
+    Args:
+        dataset: A map, see `sk120stiff.workspace.open_map`.
+        load: Number of the load.
+        at: Point through which the slices go, by axis [rad or m]; the softest of the map by
+            default.
 
-    Raises
-    ------
-    InputError
-        There is no such load, the map has fewer than two axes, or no point has a value.
+    Raises:
+        InputError: There is no such load, the map has fewer than two axes, or no point has a value.
     """
     if not 0 <= load < dataset.sizes["load"]:
         raise InputError(f"the map has no load {load}", remedy=f"It has {dataset.sizes['load']}.")

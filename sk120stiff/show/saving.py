@@ -24,10 +24,8 @@ _PIXELS_PER_INCH = 105.0  # on a page; a figure as wide as the text then fills i
 def save_figure(figure: Figure, path: str | os.PathLike[str], *, dpi: int = 200) -> Path:
     """Write a figure as SVG, PNG or PDF, by the ending of the name; never half a file.
 
-    Raises
-    ------
-    InputError
-        The name ends in something else.
+    Raises:
+        InputError: The name ends in something else.
     """
     target = Path(path)
     kind = target.suffix.lstrip(".").lower()

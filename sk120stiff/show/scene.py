@@ -19,16 +19,11 @@ from sk120stiff.show.links import LinkTree, link_tree
 class Reading:
     """One load at a pose, with what was measured and what models say.
 
-    Attributes
-    ----------
-    wrench
-        (6,) force [N] and moment [N·m] at the point, base axes.
-    measured
-        (3,) displacement of the point, base axes [m], or None.
-    predicted
-        Model name → (3,) displacement [m]; the order is before, after, ...
-    label
-        What the reading is called; its number else.
+    Attributes:
+        wrench: (6,) force [N] and moment [N·m] at the point, base axes.
+        measured: (3,) displacement of the point, base axes [m], or None.
+        predicted: Model name → (3,) displacement [m]; the order is before, after, ...
+        label: What the reading is called; its number else.
     """
 
     wrench: Array
@@ -50,26 +45,17 @@ class ScenePose:
 class Scene:
     """A robot under load, with poses to visit.
 
-    Attributes
-    ----------
-    robot
-        The rigid robot.
-    elastic
-        What yields; see `Elastic.of_springs`.
-    poses
-        Poses of the list, usually those of the data.
-    title, subtitle
-        Headings of the page; the robot's name by default.
-    point
-        (3,) the point, in the frame that `elastic` ends in [m].
-    wrench
-        (6,) load shown at first; that of the first reading by default, else none.
-    a
-        (n,) pose shown at first; the first of the list by default, else all zero.
-    frame
-        Name of the frame that carries the point; the tool frame by default.
-    robot_argument, model_argument
-        How a command line names robot and model, for "copy as command".
+    Attributes:
+        robot: The rigid robot.
+        elastic: What yields; see `Elastic.of_springs`.
+        poses: Poses of the list, usually those of the data.
+        title, subtitle: Headings of the page; the robot's name by default.
+        point: (3,) the point, in the frame that `elastic` ends in [m].
+        wrench: (6,) load shown at first; that of the first reading by default, else none.
+        a: (n,) pose shown at first; the first of the list by default, else all zero.
+        frame: Name of the frame that carries the point; the tool frame by default.
+        robot_argument, model_argument: How a command line names robot and model, for "copy as
+            command".
     """
 
     robot: Robot

@@ -31,20 +31,13 @@ class Mesh:
 class Body:
     """A shape fixed to a link.
 
-    Attributes
-    ----------
-    link
-        Index of the link in the `LinkTree`.
-    placement
-        (4, 4) T_link_body [m].
-    kind
-        ``box``, ``cylinder``, ``sphere``, ``capsule`` (both along z) or ``mesh``.
-    size
-        box: x, y, z; cylinder, capsule: radius, length; sphere: radius; mesh: scale x, y, z.
-    colour
-        Red, green, blue, opacity in 0..1.
-    mesh
-        Triangles of a mesh.
+    Attributes:
+        link: Index of the link in the `LinkTree`.
+        placement: (4, 4) T_link_body [m].
+        kind: ``box``, ``cylinder``, ``sphere``, ``capsule`` (both along z) or ``mesh``.
+        size: box: x, y, z; cylinder, capsule: radius, length; sphere: radius; mesh: scale x, y, z.
+        colour: Red, green, blue, opacity in 0..1.
+        mesh: Triangles of a mesh.
     """
 
     link: int
@@ -70,10 +63,8 @@ def reach_of(robot: Robot, frame: str | None = None) -> float:
 def capsules(tree: LinkTree, reach: float, links: Sequence[int] | None = None) -> list[Body]:
     """Limbs from joint to joint and a hinge at every joint, thinner towards the end.
 
-    Parameters
-    ----------
-    links
-        Links to draw; all of them by default.
+    Args:
+        links: Links to draw; all of them by default.
     """
     depth = np.zeros(len(tree.names), dtype=int)
     for k, parent in enumerate(tree.parents):

@@ -63,10 +63,9 @@ def notebook_html(scene: Scene, *, height: int = 620) -> str:
 def render_page(payload: dict[str, Any], *, viewer: str | None) -> str:
     """The page around a payload.
 
-    Parameters
-    ----------
-    viewer
-        Meshcat's script to put into the page; None lets the page load it from the live server.
+    Args:
+        viewer: Meshcat's script to put into the page; None lets the page load it from the live
+            server.
     """
     return (
         environment()
@@ -85,10 +84,8 @@ def render_page(payload: dict[str, Any], *, viewer: str | None) -> str:
 def json_for_script(payload: object) -> str:
     """JSON that cannot end the `<script>` element it stands in.
 
-    Raises
-    ------
-    InputError
-        A number of it is not finite: something in the input overflows.
+    Raises:
+        InputError: A number of it is not finite: something in the input overflows.
     """
     try:
         text = json.dumps(payload, allow_nan=False, separators=(",", ":"))

@@ -15,21 +15,15 @@ from sk120stiff.errors import Refusal
 def cartesian_compliance(jacobian: Array, joint_stiffness: Array) -> Array:
     """C_X = J K⁻¹ Jᵀ.
 
-    Parameters
-    ----------
-    jacobian
-        (..., d, n); d = 3 for a position, 6 for position and orientation.
-    joint_stiffness
-        (..., n, n) K_θ (conventional) or K_θ − K_C (enhanced) [N·m/rad].
+    Args:
+        jacobian: (..., d, n); d = 3 for a position, 6 for position and orientation.
+        joint_stiffness: (..., n, n) K_θ (conventional) or K_θ − K_C (enhanced) [N·m/rad].
 
-    Returns
-    -------
-    (..., d, d) [m/N; rad/N; rad/(N·m)].
+    Returns:
+        (..., d, d) [m/N; rad/N; rad/(N·m)].
 
-    Raises
-    ------
-    Refusal
-        The joint stiffness is singular: the load is exactly critical.
+    Raises:
+        Refusal: The joint stiffness is singular: the load is exactly critical.
     """
     turned = np.swapaxes(jacobian, -1, -2)
     shape = np.broadcast_shapes(joint_stiffness.shape[:-2], turned.shape[:-2])
@@ -46,17 +40,13 @@ def cartesian_compliance(jacobian: Array, joint_stiffness: Array) -> Array:
 def cartesian_stiffness(jacobian: Array, joint_stiffness: Array) -> Array:
     """K_X = J⁻ᵀ K J⁻¹, eq. (8) with K = K_θ and eq. (10) with K = K_θ − K_C.
 
-    Parameters
-    ----------
-    jacobian
-        (..., n, n): as many task directions as coordinates.
-    joint_stiffness
-        (..., n, n) [N·m/rad].
+    Args:
+        jacobian: (..., n, n): as many task directions as coordinates.
+        joint_stiffness: (..., n, n) [N·m/rad].
 
-    Returns
-    -------
-    (..., n, n) [N/m; N/rad; N·m/rad], filled with NaN where J is singular (no stiffness exists
-    there: along the lost direction the arm is infinitely stiff).
+    Returns:
+        (..., n, n) [N/m; N/rad; N·m/rad], filled with NaN where J is singular (no stiffness exists
+        there: along the lost direction the arm is infinitely stiff).
     """
     rows, columns = jacobian.shape[-2:]
     if rows != columns:

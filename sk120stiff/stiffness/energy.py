@@ -17,14 +17,10 @@ from sk120stiff.stiffness.equilibrium import equilibrium, linear_springs
 class PaperWork:
     """The second-order works of eq. (14) and (15), each (...,) [J].
 
-    Attributes
-    ----------
-    cartesian
-        Fᵀ ΔX + ½ ΔXᵀ K_X ΔX with the enhanced K_X.
-    joint_enhanced
-        Γᵀ Δθ + ½ Δθᵀ (K_θ − K_C) Δθ: equal to `cartesian` by congruence.
-    joint_conventional
-        Γᵀ Δθ + ½ Δθᵀ K_θ Δθ: what the paper calls the conventional formulation.
+    Attributes:
+        cartesian: Fᵀ ΔX + ½ ΔXᵀ K_X ΔX with the enhanced K_X.
+        joint_enhanced: Γᵀ Δθ + ½ Δθᵀ (K_θ − K_C) Δθ: equal to `cartesian` by congruence.
+        joint_conventional: Γᵀ Δθ + ½ Δθᵀ K_θ Δθ: what the paper calls the conventional formulation.
     """
 
     cartesian: Array
@@ -37,16 +33,11 @@ def paper_work(
 ) -> PaperWork:
     """Works of eq. (14) and (15) for a displacement of the point.
 
-    Parameters
-    ----------
-    screws
-        Kinematics at the unloaded pose, n = 3 coordinates with springs.
-    stiffness
-        (3,) springs [N·m/rad].
-    force
-        (..., 3) force at the point, base axes [N].
-    displacement
-        (..., 3) displacement of the point [m].
+    Args:
+        screws: Kinematics at the unloaded pose, n = 3 coordinates with springs.
+        stiffness: (3,) springs [N·m/rad].
+        force: (..., 3) force at the point, base axes [N].
+        displacement: (..., 3) displacement of the point [m].
     """
     load = np.concatenate([np.asarray(force, dtype=float), np.zeros_like(force)], axis=-1)
     J = screws.linear_jacobian
@@ -80,10 +71,8 @@ def loading_balance(
     equilibrium; the energy is ½ Σ K (θ − θ_0)². They agree for any conservative load (pure forces),
     whatever its size.
 
-    Returns
-    -------
-    work, energy
-        (...,) each [J].
+    Returns:
+        work, energy: (...,) each [J].
     """
     load = np.asarray(wrench, dtype=float)
     springs = np.asarray(stiffness, dtype=float)

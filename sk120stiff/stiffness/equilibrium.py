@@ -33,24 +33,17 @@ FARTHEST = np.pi  # rad or m from the unloaded pose: no linear spring means more
 class Equilibrium:
     """A loaded mechanism at rest.
 
-    Attributes
-    ----------
-    z
-        (..., n) coordinates under load [rad or m].
-    screws
-        Kinematics there, at the point of measurement.
-    torques
-        (..., n) generalised forces of the load [N·m or N].
-    compliance
-        (..., n, n) tangent compliance of the springs [rad/(N·m)].
-    K_C
-        (..., n, n) complementary stiffness of the load there [N·m/rad].
-    weights
-        (..., n) torques of the arm's own weight [N·m or N]; zero where it was not asked for.
-    feedback
-        (..., n, n) derivative of all elongations by the coordinates, C K_C and the weight's share.
-    iterations
-        Newton steps taken.
+    Attributes:
+        z: (..., n) coordinates under load [rad or m].
+        screws: Kinematics there, at the point of measurement.
+        torques: (..., n) generalised forces of the load [N·m or N].
+        compliance: (..., n, n) tangent compliance of the springs [rad/(N·m)].
+        K_C: (..., n, n) complementary stiffness of the load there [N·m/rad].
+        weights: (..., n) torques of the arm's own weight [N·m or N]; zero where it was not asked
+            for.
+        feedback: (..., n, n) derivative of all elongations by the coordinates, C K_C and the
+            weight's share.
+        iterations: Newton steps taken.
     """
 
     z: Array
@@ -67,12 +60,9 @@ class Equilibrium:
 class Weight:
     """The arm's own weight on linear springs.
 
-    Attributes
-    ----------
-    gravity
-        (3,) acceleration in base axes [m/s²].
-    compliance
-        (n, n) or (..., n, n) compliance by which the arm sags [rad/(N·m)].
+    Attributes:
+        gravity: (3,) acceleration in base axes [m/s²].
+        compliance: (n, n) or (..., n, n) compliance by which the arm sags [rad/(N·m)].
     """
 
     gravity: Array
@@ -110,30 +100,20 @@ def equilibrium(
     zero. Newton's method finds it by itself while I − C K_C stays positive on its way; elsewhere
     the load is followed in steps (natural continuation; Allgower & Georg 1990, ch. 2).
 
-    Parameters
-    ----------
-    mechanism
-        Chain and coupling, virtual joints included.
-    z_0
-        (..., n) unloaded coordinates.
-    wrench
-        (..., 6) force [N] and moment [N·m] in base axes at `force_point`.
-    law
-        Elongation of every coordinate for given torques.
-    point, force_point
-        (3,) measured point and point where the force acts, in the end frame [m]. The force acts at
-        the measured point unless said otherwise.
-    soft
-        Indices of the coordinates that can yield under `law`; the others are not solved for.
-        Default: all.
-    weight
-        Lets the arm sag under its own weight, with and without load.
+    Args:
+        mechanism: Chain and coupling, virtual joints included.
+        z_0: (..., n) unloaded coordinates.
+        wrench: (..., 6) force [N] and moment [N·m] in base axes at `force_point`.
+        law: Elongation of every coordinate for given torques.
+        point, force_point: (3,) measured point and point where the force acts, in the end frame
+            [m]. The force acts at the measured point unless said otherwise.
+        soft: Indices of the coordinates that can yield under `law`; the others are not solved for.
+            Default: all.
+        weight: Lets the arm sag under its own weight, with and without load.
 
-    Raises
-    ------
-    Refusal
-        On the way from zero load the arm loses its balance, or a joint goes farther than half a
-        turn: the load is beyond what the springs can hold.
+    Raises:
+        Refusal: On the way from zero load the arm loses its balance, or a joint goes farther than
+            half a turn: the load is beyond what the springs can hold.
     """
     start = np.asarray(z_0, dtype=float)
     load = np.asarray(wrench, dtype=float)

@@ -19,27 +19,17 @@ BENT = 1e-3  # of the way from shoulder to wrist; nearer to it an elbow is neith
 class Branch:
     """The posture of an arm along a path of N points.
 
-    Attributes
-    ----------
-    first
-        (n,) joint coordinates at the first point [rad or m].
-    elbow
-        Joint that lies farthest from the line between shoulder and wrist at the first point; None
-        for chains without one, and for stretched arms.
-    elbow_height
-        Its height there, base frame [m].
-    elbow_up
-        Does it lie above that line?
-    lowest
-        Smallest height of any joint of the arm along the path, base frame [m].
-    lowest_joint, lowest_point
-        Which joint, and at which point of the path.
-    below
-        Number of points at which some joint lies below the floor.
-    floor
-        That height [m].
-    jumps
-        Points after which a joint moves by more than `JUMP` to the next one.
+    Attributes:
+        first: (n,) joint coordinates at the first point [rad or m].
+        elbow: Joint that lies farthest from the line between shoulder and wrist at the first point;
+            None for chains without one, and for stretched arms.
+        elbow_height: Its height there, base frame [m].
+        elbow_up: Does it lie above that line?
+        lowest: Smallest height of any joint of the arm along the path, base frame [m].
+        lowest_joint, lowest_point: Which joint, and at which point of the path.
+        below: Number of points at which some joint lies below the floor.
+        floor: That height [m].
+        jumps: Points after which a joint moves by more than `JUMP` to the next one.
     """
 
     first: Array

@@ -111,10 +111,9 @@ def _mjcf_place(placement: Array) -> str:
 def sdf_text(arm: SpringArm) -> str:
     """SDF 1.11: links, joints with ``spring_stiffness`` and ``spring_reference``, mimic joints.
 
-    Raises
-    ------
-    InputError
-        A spring ties several joints together, or a joint follows several: SDF has no word for it.
+    Raises:
+        InputError: A spring ties several joints together, or a joint follows several: SDF has no
+            word for it.
     """
     if arm.springs:
         raise InputError(

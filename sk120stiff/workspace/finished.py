@@ -24,12 +24,9 @@ if TYPE_CHECKING:
 class MapCheck:
     """What `verify_map` found.
 
-    Attributes
-    ----------
-    files
-        Number of files that were looked at: those of the manifest, and it itself.
-    missing, damaged
-        Those that are not there, and those whose content is another.
+    Attributes:
+        files: Number of files that were looked at: those of the manifest, and it itself.
+        missing, damaged: Those that are not there, and those whose content is another.
     """
 
     files: int
@@ -45,17 +42,12 @@ class MapCheck:
 def verify_map(path: str | os.PathLike[str], *, results: bool = True) -> MapCheck:
     """Compare every file of a finished map with the SHA-256 of when it was written.
 
-    Parameters
-    ----------
-    path
-        The map.
-    results
-        Read the results too, which are nearly all of it; else only what describes them.
+    Args:
+        path: The map.
+        results: Read the results too, which are nearly all of it; else only what describes them.
 
-    Raises
-    ------
-    InputError
-        There is no finished map.
+    Raises:
+        InputError: There is no finished map.
     """
     folder = Path(path)
     if not (folder / MANIFEST).is_file():
@@ -92,13 +84,10 @@ def damaged_map(path: Path, check: MapCheck) -> Refusal:
 def open_map(path: str | os.PathLike[str]) -> xarray.Dataset:
     """A finished map as a labelled dataset; values are read from disk when they are asked for.
 
-    Raises
-    ------
-    InputError
-        There is no finished map.
-    Refusal
-        Its loads, coordinates or descriptions are not as they were written. The results are not
-        looked at here, see `verify_map`.
+    Raises:
+        InputError: There is no finished map.
+        Refusal: Its loads, coordinates or descriptions are not as they were written. The results
+            are not looked at here, see `verify_map`.
     """
     import xarray
 
@@ -115,20 +104,15 @@ def open_map(path: str | os.PathLike[str]) -> xarray.Dataset:
 class LoadSummary:
     """One load of a map in a few numbers.
 
-    Attributes
-    ----------
-    softest, stiffest
-        Smallest and largest minimum stiffness of all points [N/m].
-    softest_at, stiffest_at
-        Coordinates of those points by axis [rad or m].
-    critical
-        Smallest critical load factor.
-    unstable
-        Number of points at which K_θ − K_C is not positive definite.
-    deflection, deflection_at
-        Largest length of a deflection [m] and where; None where there is no load.
-    deflection_std_parameters, deflection_std_remainder
-        Its ± there [m], infinite where unknown; None where the map has none.
+    Attributes:
+        softest, stiffest: Smallest and largest minimum stiffness of all points [N/m].
+        softest_at, stiffest_at: Coordinates of those points by axis [rad or m].
+        critical: Smallest critical load factor.
+        unstable: Number of points at which K_θ − K_C is not positive definite.
+        deflection, deflection_at: Largest length of a deflection [m] and where; None where there is
+            no load.
+        deflection_std_parameters, deflection_std_remainder: Its ± there [m], infinite where
+            unknown; None where the map has none.
     """
 
     softest: float

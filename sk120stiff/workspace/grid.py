@@ -28,12 +28,9 @@ CARTESIAN = ("x", "y", "z")
 class Axis:
     """One dimension of a grid.
 
-    Attributes
-    ----------
-    name
-        A joint, or x, y, z.
-    values
-        (k,) where the grid has points [rad or m].
+    Attributes:
+        name: A joint, or x, y, z.
+        values: (k,) where the grid has points [rad or m].
     """
 
     name: str
@@ -44,10 +41,8 @@ class Axis:
 class Grid:
     """Points at every combination of the values of some axes, the last axis fastest.
 
-    Attributes
-    ----------
-    axes
-        The dimensions.
+    Attributes:
+        axes: The dimensions.
     """
 
     axes: tuple[Axis, ...]
@@ -84,12 +79,9 @@ class Grid:
 class Chunks:
     """A grid cut into chunks of neighbouring points.
 
-    Attributes
-    ----------
-    shape
-        Shape of the grid.
-    target
-        Number of points that a chunk should have at most.
+    Attributes:
+        shape: Shape of the grid.
+        target: Number of points that a chunk should have at most.
     """
 
     shape: tuple[int, ...]
@@ -144,19 +136,13 @@ def parse_axes(
     Items are separated by semicolons or commas; a unit holds for the items before it that have
     none. A single number makes an axis of one point.
 
-    Parameters
-    ----------
-    texts
-        One text or several.
-    limits
-        Name → (lower limit, upper limit, kind of number) of everything that can be an axis.
-    ranges
-        Take ``start:stop`` without a step, as an axis of these two points.
+    Args:
+        texts: One text or several.
+        limits: Name → (lower limit, upper limit, kind of number) of everything that can be an axis.
+        ranges: Take ``start:stop`` without a step, as an axis of these two points.
 
-    Raises
-    ------
-    InputError
-        An unknown name, numbers that make no axis, a missing unit or limit.
+    Raises:
+        InputError: An unknown name, numbers that make no axis, a missing unit or limit.
     """
     items = [item for text in texts for item in re.split(r"[;,]", text) if item.strip()]
     axes: list[Axis] = []

@@ -24,15 +24,11 @@ REACH = 1.0  # m that count as one radian in the damping
 class Task:
     """Where N tools should be, in base axes.
 
-    Attributes
-    ----------
-    position
-        (N, 3) of the arm's point [m].
-    axis
-        (N, 3) or (3,) direction in which the tool's z axis should point, rotation about it free;
-        or None.
-    rotation
-        (N, 3, 3) or (3, 3) orientation of the tool frame; or None. Overrules `axis`.
+    Attributes:
+        position: (N, 3) of the arm's point [m].
+        axis: (N, 3) or (3,) direction in which the tool's z axis should point, rotation about it
+            free; or None.
+        rotation: (N, 3, 3) or (3, 3) orientation of the tool frame; or None. Overrules `axis`.
     """
 
     position: Array
@@ -87,12 +83,9 @@ def starting_poses(arm: ElasticArm, count: int, rest: Array) -> Array:
 class Reached:
     """What the search found for N targets.
 
-    Attributes
-    ----------
-    a
-        (N, n) joint coordinates, the best that were met [rad or m].
-    found
-        (N,) is the target met within the tolerances?
+    Attributes:
+        a: (N, n) joint coordinates, the best that were met [rad or m].
+        found: (N,) is the target met within the tolerances?
     """
 
     a: Array
@@ -113,18 +106,12 @@ def solve_inverse(
     The damping is half the squared error plus a little (Sugihara, IEEE T-RO 2011): the step goes
     over to Newton's near a solution and stays bounded where there is none.
 
-    Parameters
-    ----------
-    arm
-        The arm.
-    task
-        N targets.
-    start
-        (N, n) starting coordinates [rad or m].
-    movable
-        (n,) joints that may move; the others keep their start. All by default.
-    limits
-        Keep joints within their limits.
+    Args:
+        arm: The arm.
+        task: N targets.
+        start: (N, n) starting coordinates [rad or m].
+        movable: (n,) joints that may move; the others keep their start. All by default.
+        limits: Keep joints within their limits.
     """
     a = start.copy()
     moves = np.ones(arm.n, dtype=bool) if movable is None else movable
@@ -169,14 +156,10 @@ def lead_straight(
     The point moves in equal steps, the tool turns first to the orientation that is wanted. A target
     is met only if no joint jumps on the way, so the arm stays in the branch of its start.
 
-    Parameters
-    ----------
-    arm, task
-        The arm and the targets.
-    start
-        (n,) where the arm begins [rad or m].
-    movable
-        (n,) joints that may move; all by default.
+    Args:
+        arm, task: The arm and the targets.
+        start: (n,) where the arm begins [rad or m].
+        movable: (n,) joints that may move; all by default.
     """
     begin = arm.kinematics(start[None])
     a = np.tile(start, (task.count, 1))

@@ -22,18 +22,14 @@ from sk120stiff.workspace.posture import BestPosture, Judge, PathTask, Placement
 class Landscape:
     """Postures on a grid over an angle, and the one that was chosen.
 
-    Attributes
-    ----------
-    tilt
-        Is the angle between the tool's z axis and straight down (base −z)? Else it is that of the
-        tool's x axis about its z axis, from the base's x axis (its y axis where z is along x). At
-        the first point of the path.
-    angle
-        (k,) that angle [rad].
-    objective
-        (k,) worst compliance [m/N] or deflection [m] along the path; several per angle: branches.
-    chosen
-        Angle and objective of the posture that was chosen.
+    Attributes:
+        tilt: Is the angle between the tool's z axis and straight down (base −z)? Else it is that of
+            the tool's x axis about its z axis, from the base's x axis (its y axis where z is along
+            x). At the first point of the path.
+        angle: (k,) that angle [rad].
+        objective: (k,) worst compliance [m/N] or deflection [m] along the path; several per angle:
+            branches.
+        chosen: Angle and objective of the posture that was chosen.
     """
 
     tilt: bool
@@ -57,20 +53,15 @@ def posture_landscape(
 ) -> Landscape:
     """Judge postures over the orientations that a path leaves free, the part where `found` puts it.
 
-    Parameters
-    ----------
-    arm, path, minimise, placement, limit_margin, singularity_margin, largest_step
-        As they were given to `best_posture`.
-    found
-        What it answered.
-    angles, starts
-        Angles over a whole turn (four times as many orientations where all are free), and starts of
-        the inverse kinematics at each.
+    Args:
+        arm, path, minimise, placement, limit_margin, singularity_margin, largest_step: As they were
+            given to `best_posture`.
+        found: What it answered.
+        angles, starts: Angles over a whole turn (four times as many orientations where all are
+            free), and starts of the inverse kinematics at each.
 
-    Raises
-    ------
-    InputError
-        The task fixes the tool's orientation: there is nothing to turn.
+    Raises:
+        InputError: The task fixes the tool's orientation: there is nothing to turn.
     """
     if path.rotation is not None:
         raise InputError(

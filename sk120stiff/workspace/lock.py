@@ -20,15 +20,11 @@ def only_writer(path: Path) -> Iterator[None]:
     The lock is the kernel's: it falls when its process ends in whatever way, so that the file a
     killed run leaves behind stops nobody.
 
-    Raises
-    ------
-    InputError
-        Another process writes there; its pid and machine are named.
+    Raises:
+        InputError: Another process writes there; its pid and machine are named.
 
-    Warns
-    -----
-    ToolkitWarning
-        The file system knows no locks.
+    Warns:
+        ToolkitWarning: The file system knows no locks.
     """
     beside = path.with_name(f".{path.name}.lock")
     handle = _taken(beside, path)

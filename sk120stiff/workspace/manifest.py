@@ -31,12 +31,9 @@ def as_written(folder: Path, file: str, digest: str | None) -> bool:
 class Manifest:
     """Digests of all files of a finished map, relative names.
 
-    Attributes
-    ----------
-    describing
-        Files that hold no results: groups, arrays, coordinates, loads, identity.
-    results
-        Files of the chunks.
+    Attributes:
+        describing: Files that hold no results: groups, arrays, coordinates, loads, identity.
+        results: Files of the chunks.
     """
 
     describing: Digests

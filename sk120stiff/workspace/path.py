@@ -41,16 +41,11 @@ LONGEST_BLOCK = 1024  # points sought together
 class LoadedPath:
     """N points with the wrench that acts there.
 
-    Attributes
-    ----------
-    wrench
-        (N, 6) on the robot, base axes [N, N·m].
-    joints
-        (N, n) joint coordinates, where the file gives them [rad or m].
-    position, rotation
-        (N, 3) and (N, 3, 3) of the tool, where the file gives them [m].
-    table
-        The file.
+    Attributes:
+        wrench: (N, 6) on the robot, base axes [N, N·m].
+        joints: (N, n) joint coordinates, where the file gives them [rad or m].
+        position, rotation: (N, 3) and (N, 3, 3) of the tool, where the file gives them [m].
+        table: The file.
     """
 
     wrench: Array
@@ -68,10 +63,8 @@ class LoadedPath:
 def read_path(path: str | os.PathLike[str], robot: Robot) -> LoadedPath:
     """Read a path.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or columns are missing, doubled or without unit.
+    Raises:
+        InputError: The file cannot be read, or columns are missing, doubled or without unit.
     """
     table = read_table(Path(path))
     has = set(table.headers)
@@ -127,21 +120,14 @@ def joints_along(
     above the floor, and of these the one nearest to the pose with all joints at zero. A branch that
     does not reach the whole path gives way to the next one.
 
-    Parameters
-    ----------
-    path, arm
-        Where to go, and with what.
-    start
-        (n,) coordinates whose branch is wanted [rad or m].
-    stays_above
-        Tells of poses (M, n) which stay above the floor.
-    progress
-        Called with (points done, points in all).
+    Args:
+        path, arm: Where to go, and with what.
+        start: (n,) coordinates whose branch is wanted [rad or m].
+        stays_above: Tells of poses (M, n) which stay above the floor.
+        progress: Called with (points done, points in all).
 
-    Raises
-    ------
-    Refusal
-        A point cannot be reached; its line is named.
+    Raises:
+        Refusal: A point cannot be reached; its line is named.
     """
     if path.joints is not None:
         return path.joints
@@ -231,10 +217,8 @@ def write_joints(
 ) -> Path:
     """Write a path with other joint coordinates, in the units of the file it was read from.
 
-    Parameters
-    ----------
-    notes
-        Further columns as text, header → N cells; they replace columns of that name.
+    Args:
+        notes: Further columns as text, header → N cells; they replace columns of that name.
     """
     table = path.table
     columns: dict[str, list[str]] = {}

@@ -49,12 +49,9 @@ PROGRESS = ".progress"
 class Found:
     """What `MapStore.prepare` found in the place.
 
-    Attributes
-    ----------
-    done
-        Chunks that are there as they were written.
-    damaged
-        Files of an earlier run that are not; they are made again.
+    Attributes:
+        done: Chunks that are there as they were written.
+        damaged: Files of an earlier run that are not; they are made again.
     """
 
     done: frozenset[int]
@@ -65,14 +62,10 @@ class Found:
 class MapStore:
     """A map's folder.
 
-    Attributes
-    ----------
-    path
-        The folder, by custom ``….zarr``.
-    job
-        What the map holds.
-    chunk_points
-        Points that a chunk has at most.
+    Attributes:
+        path: The folder, by custom ``….zarr``.
+        job: What the map holds.
+        chunk_points: Points that a chunk has at most.
     """
 
     path: Path
@@ -90,10 +83,8 @@ class MapStore:
         Damaged files that hold no results are made again here; damaged chunks are removed, so
         that they count as missing.
 
-        Raises
-        ------
-        InputError
-            Something else is in that place, or the disk has not enough room.
+        Raises:
+            InputError: Something else is in that place, or the disk has not enough room.
         """
         self._remove_leftovers()
         if overwrite and self._is_there():

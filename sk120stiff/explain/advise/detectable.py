@@ -29,12 +29,9 @@ def detectable(
 ) -> tuple[tuple[Detectable, ...], tuple[str, ...]]:
     """Smallest size of every parameter that would have been named, and effects that never would.
 
-    Parameters
-    ----------
-    answer
-        The named effects are part of the model beside which others would show.
-    regression
-        Linearised readings.
+    Args:
+        answer: The named effects are part of the model beside which others would show.
+        regression: Linearised readings.
     """
     sums = regression.sums()
     chosen = {finding.effect.id for finding in answer.findings}
@@ -67,12 +64,9 @@ def detectable(
 def length_named(fall: float, count: int) -> float:
     """√λ at which the misfit falls by more than is needed in the share `POWER` of cases.
 
-    Parameters
-    ----------
-    fall
-        What is needed, see `entry_fall`.
-    count
-        Number of parameters that move with the effect.
+    Args:
+        fall: What is needed, see `entry_fall`.
+        count: Number of parameters that move with the effect.
     """
 
     def short(length: float) -> float:

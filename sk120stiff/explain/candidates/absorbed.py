@@ -22,16 +22,11 @@ WHOLE = 0.99  # share from which an effect counts as absorbed
 class Absorbed:
     """One effect at its usual size.
 
-    Attributes
-    ----------
-    effect
-        The effect.
-    shows
-        Rms displacement per axis that it brings [m].
-    remains
-        What of it is left once the springs are refitted [m].
-    visible
-        The same as a length in units of the noise, √λ; about 5 is needed to name it.
+    Attributes:
+        effect: The effect.
+        shows: Rms displacement per axis that it brings [m].
+        remains: What of it is left once the springs are refitted [m].
+        visible: The same as a length in units of the noise, √λ; about 5 is needed to name it.
     """
 
     effect: Effect
@@ -48,12 +43,9 @@ class Absorbed:
 def absorbed(fit: Fit, effects: Sequence[Effect]) -> tuple[Absorbed, ...]:
     """Effects at their usual sizes, each alone, against a fitted model's own parameters.
 
-    Parameters
-    ----------
-    fit
-        The fitted model.
-    effects
-        Effects that are not in it.
+    Args:
+        fit: The fitted model.
+        effects: Effects that are not in it.
     """
     problem = fit.problem
     full = fit.model

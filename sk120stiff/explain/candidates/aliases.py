@@ -19,16 +19,11 @@ def exact_aliases(
 ) -> tuple[str, ...]:
     """Those of `others` that imitate the fitted `effect` at all poses and loads.
 
-    Parameters
-    ----------
-    model
-        Fitted model that holds `effect`.
-    effect
-        The named effect.
-    others
-        Contenders.
-    point
-        (3,) measured point in the tool frame [m].
+    Args:
+        model: Fitted model that holds `effect`.
+        effect: The named effect.
+        others: Contenders.
+        point: (3,) measured point in the tool frame [m].
     """
     pool = random_pool(model.robot, poses=150, directions=3, force=300.0, point=point, seed=1)
     # Where the effect is absent: in its presence a gain of the sensor holds it already.
@@ -62,14 +57,10 @@ def aliases_by_design(
 
     Where loads only grow and no torque turns round, friction is lost motion with the other sign.
 
-    Parameters
-    ----------
-    effect, others
-        The named effect and its contenders.
-    signature
-        (R,) whitened column of the effect.
-    columns
-        (R, p) whitened columns of each contender.
+    Args:
+        effect, others: The named effect and its contenders.
+        signature: (R,) whitened column of the effect.
+        columns: (R, p) whitened columns of each contender.
     """
     found = []
     for other, own in zip(others, columns, strict=True):

@@ -26,18 +26,12 @@ WIDEST = 16.0  # ln of the factors by which the size is looked for
 class Remainder:
     """What a model leaves beyond the noise.
 
-    Attributes
-    ----------
-    rms
-        Its size at the measured loads, rms per axis [m].
-    interval
-        95 % interval of `rms`.
-    probability
-        Probability that noise alone leaves as much.
-    form
-        How it goes with the load.
-    where
-        Where it lives, in sentences.
+    Attributes:
+        rms: Its size at the measured loads, rms per axis [m].
+        interval: 95 % interval of `rms`.
+        probability: Probability that noise alone leaves as much.
+        form: How it goes with the load.
+        where: Where it lives, in sentences.
     """
 
     rms: float

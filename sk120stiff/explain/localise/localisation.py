@@ -20,18 +20,14 @@ MOSTLY_NOISE = 0.25  # share of the gap's square beyond the noise below which sh
 class PoseShare:
     """The gap of one pose.
 
-    Attributes
-    ----------
-    label
-        The pose.
-    rms, noise
-        Rms gap per axis, and what the noise would leave [m]; None where nothing tells the noise.
-    share
-        Its part of the whole, see `Localisation.whole`; below zero where the gap is less than the
-        noise.
-    probability
-        That chance makes such a gap at any of the poses. Where nothing tells the noise: such a gap
-        beside those of the other poses.
+    Attributes:
+        label: The pose.
+        rms, noise: Rms gap per axis, and what the noise would leave [m]; None where nothing tells
+            the noise.
+        share: Its part of the whole, see `Localisation.whole`; below zero where the gap is less
+            than the noise.
+        probability: That chance makes such a gap at any of the poses. Where nothing tells the
+            noise: such a gap beside those of the other poses.
     """
 
     label: str
@@ -68,16 +64,12 @@ class DirectionShare:
 class OrderShare:
     """One order of the gap in the load.
 
-    Attributes
-    ----------
-    name
-        ``linear``, ``constant`` or ``curved``.
-    share
-        Its part of what exceeds the noise.
-    excess
-        By how much it exceeds the noise, as a sum of squares [noise variances].
-    probability
-        That chance makes it, corrected for three looks; None where the readings do not allow it.
+    Attributes:
+        name: ``linear``, ``constant`` or ``curved``.
+        share: Its part of what exceeds the noise.
+        excess: By how much it exceeds the noise, as a sum of squares [noise variances].
+        probability: That chance makes it, corrected for three looks; None where the readings do not
+            allow it.
     """
 
     name: Literal["linear", "constant", "curved"]
@@ -90,14 +82,12 @@ class OrderShare:
 class OwnAtPoses:
     """Something of its own at every pose, beside the model: is it more than noise?
 
-    Attributes
-    ----------
-    name
-        ``constant``, ``drift``, ``proportional`` to the load, ``branches``: other when unloading.
-    statistic, freedom
-        What it takes away of the misfit [noise variances], and its degrees of freedom.
-    probability
-        That chance makes it.
+    Attributes:
+        name: ``constant``, ``drift``, ``proportional`` to the load, ``branches``: other when
+            unloading.
+        statistic, freedom: What it takes away of the misfit [noise variances], and its degrees of
+            freedom.
+        probability: That chance makes it.
     """
 
     name: Literal["constant", "drift", "proportional", "branches"]
@@ -110,14 +100,11 @@ class OwnAtPoses:
 class PostureTrend:
     """How the gap of poses goes with their posture.
 
-    Attributes
-    ----------
-    name
-        ``the reach``, ``the height``, ``the position of joint_2_l``.
-    correlation, probability
-        Rank correlation, and that of chance, corrected for the number of postures.
-    low, high
-        Rms gaps of the lower and of the upper half of the poses [m].
+    Attributes:
+        name: ``the reach``, ``the height``, ``the position of joint_2_l``.
+        correlation, probability: Rank correlation, and that of chance, corrected for the number of
+            postures.
+        low, high: Rms gaps of the lower and of the upper half of the poses [m].
     """
 
     name: str
@@ -131,21 +118,16 @@ class PostureTrend:
 class Suspicion:
     """How closely the gap goes with one suspect.
 
-    Attributes
-    ----------
-    family, name, label
-        See `Suspect`.
-    statistic, freedom
-        T and its degrees of freedom.
-    probability
-        That chance makes a T as large in any of the looks.
-    explained
-        Share of the whole that it takes away, beyond what its freedom takes of mere noise.
-    evidence
-        Decides the order: what is left of T when every degree of freedom has been paid for.
-    abscissa, partial
-        (N,) the variable, and the gap along the suspect's direction [m], freed of what the model's
-        own parameters had covered up; empty far down the list.
+    Attributes:
+        family, name, label: See `Suspect`.
+        statistic, freedom: T and its degrees of freedom.
+        probability: That chance makes a T as large in any of the looks.
+        explained: Share of the whole that it takes away, beyond what its freedom takes of mere
+            noise.
+        evidence: Decides the order: what is left of T when every degree of freedom has been paid
+            for.
+        abscissa, partial: (N,) the variable, and the gap along the suspect's direction [m], freed
+            of what the model's own parameters had covered up; empty far down the list.
     """
 
     family: str
@@ -169,32 +151,22 @@ class Suspicion:
 class Localisation:
     """Where a gap lives.
 
-    Attributes
-    ----------
-    rms, noise
-        Rms gap per axis, and what the noise alone would leave [m]; None where nothing tells it.
-    noise_from
-        Where the size of the noise comes from: it was ``stated``, ``repeats`` tell it, or the
-        ``scatter`` within poses; ``unknown``: nothing tells, but the gap itself.
-    whole
-        What shares are shares of: the ``excess`` of the gap's square over the noise, or the square
-        of the ``gap`` itself, where the noise is unknown or makes most of it.
-    beyond
-        Share of the whole that noise does not make; 1 where nothing tells.
-    probability
-        That noise alone makes such a gap (`lack_of_fit`); None where nothing tells.
-    poses, levels, directions, orders, postures
-        By pose, by size of the load, by direction in several axes, by order in the load, by
-        posture.
-    own
-        What poses may have of their own.
-    suspects
-        All that it may go with, the strongest first.
-    beside
-        The same for what remains once the strongest has been allowed for, shares still of the
-        whole; empty without a strongest one.
-    clocked, branched
-        Whether the readings tell their order or time, and have both branches.
+    Attributes:
+        rms, noise: Rms gap per axis, and what the noise alone would leave [m]; None where nothing
+            tells it.
+        noise_from: Where the size of the noise comes from: it was ``stated``, ``repeats`` tell it,
+            or the ``scatter`` within poses; ``unknown``: nothing tells, but the gap itself.
+        whole: What shares are shares of: the ``excess`` of the gap's square over the noise, or the
+            square of the ``gap`` itself, where the noise is unknown or makes most of it.
+        beyond: Share of the whole that noise does not make; 1 where nothing tells.
+        probability: That noise alone makes such a gap (`lack_of_fit`); None where nothing tells.
+        poses, levels, directions, orders, postures: By pose, by size of the load, by direction in
+            several axes, by order in the load, by posture.
+        own: What poses may have of their own.
+        suspects: All that it may go with, the strongest first.
+        beside: The same for what remains once the strongest has been allowed for, shares still of
+            the whole; empty without a strongest one.
+        clocked, branched: Whether the readings tell their order or time, and have both branches.
     """
 
     rms: float

@@ -46,12 +46,9 @@ SEEN_AT_ALL = 1e-6  # share of a column that must remain, else the model's own p
 def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
     """Find where the gap of a fitted model lives.
 
-    Parameters
-    ----------
-    fit
-        The fitted model, usually the base model.
-    noise
-        What to hold the gap against; None: the fit's own `yardstick`.
+    Args:
+        fit: The fitted model, usually the base model.
+        noise: What to hold the gap against; None: the fit's own `yardstick`.
     """
     look = _look(fit, noise or yardstick(fit))
     test = lack_of_fit(fit)

@@ -21,12 +21,9 @@ from sk120stiff.measurements.poses import rows_by_label
 class RandomEffects:
     """The exchangeable parameters of a fitted model as part of its noise.
 
-    Attributes
-    ----------
-    fit
-        The fitted model.
-    derivative
-        (N, 3, P) its sensitivities, reading axes.
+    Attributes:
+        fit: The fitted model.
+        derivative: (N, 3, P) its sensitivities, reading axes.
     """
 
     fit: Fit

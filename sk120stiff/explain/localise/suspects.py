@@ -25,22 +25,15 @@ SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not
 class Suspect:
     """One thing that the gap may go with.
 
-    Attributes
-    ----------
-    family
-        ``place``, ``law``, ``linkage``, ``angle``, ``axes``, ``instrument`` or ``series``.
-    name
-        Completes the sentence "The gap goes with ...".
-    columns
-        (N, 3, k) change of the readings per unit of each of k free factors, base axes [m].
-    abscissa
-        (N,) the variable that a figure draws the gap against.
-    label
-        Name and unit of the abscissa.
-    direction
-        (N, 3) direction in which it moves the point, base axes; None where the fit decides it.
-    carried
-        (N, k) load behind each column, where a place yields [N or N·m].
+    Attributes:
+        family: ``place``, ``law``, ``linkage``, ``angle``, ``axes``, ``instrument`` or ``series``.
+        name: Completes the sentence "The gap goes with ...".
+        columns: (N, 3, k) change of the readings per unit of each of k free factors, base axes [m].
+        abscissa: (N,) the variable that a figure draws the gap against.
+        label: Name and unit of the abscissa.
+        direction: (N, 3) direction in which it moves the point, base axes; None where the fit
+            decides it.
+        carried: (N, k) load behind each column, where a place yields [N or N·m].
     """
 
     family: str
@@ -56,14 +49,10 @@ class Suspect:
 class Axes:
     """Three directions that go with the pose.
 
-    Attributes
-    ----------
-    name
-        ``world``, ``arm plane``, ``forearm`` or ``tool``.
-    words
-        What each of the three directions is called.
-    directions
-        (N, 3, 3) unit directions as columns, base axes.
+    Attributes:
+        name: ``world``, ``arm plane``, ``forearm`` or ``tool``.
+        words: What each of the three directions is called.
+        directions: (N, 3, 3) unit directions as columns, base axes.
     """
 
     name: str
@@ -102,14 +91,10 @@ def _words(joint: ArmJoint) -> tuple[str, str, str]:
 def suspects_of(model: Model, situation: Situation, predicted: Array) -> tuple[Suspect, ...]:
     """Everything that the gap of a model may go with.
 
-    Parameters
-    ----------
-    model
-        The model whose gap is looked at.
-    situation
-        Its N readings.
-    predicted
-        (N, 3) what it predicts, base axes [m].
+    Args:
+        model: The model whose gap is looked at.
+        situation: Its N readings.
+        predicted: (N, 3) what it predicts, base axes [m].
     """
     return (
         *_places(situation),

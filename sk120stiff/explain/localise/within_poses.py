@@ -28,15 +28,11 @@ Own = Literal["constant", "drift", "branches"]
 class WithinPoses:
     """What single poses tell of a whitened gap.
 
-    Attributes
-    ----------
-    noise
-        What it is held against.
-    orders
-        Linear, constant and curved parts, each beyond the ones before it.
-    own
-        What poses may have of their own, each beyond the model alone; empty where nothing tells the
-        noise.
+    Attributes:
+        noise: What it is held against.
+        orders: Linear, constant and curved parts, each beyond the ones before it.
+        own: What poses may have of their own, each beyond the model alone; empty where nothing
+            tells the noise.
     """
 
     noise: Yardstick
@@ -49,18 +45,12 @@ def within_poses(
 ) -> WithinPoses:
     """Lay out a whitened gap over the loads of every pose.
 
-    Parameters
-    ----------
-    fit
-        The fitted model.
-    white
-        (3N,) its whitened gap, the model's columns projected out.
-    inside
-        (3N, k) orthonormal basis of those columns.
-    whiten
-        Whitens (N, 3, ...) in reading axes, noise and draws together.
-    noise
-        What to hold it against.
+    Args:
+        fit: The fitted model.
+        white: (3N,) its whitened gap, the model's columns projected out.
+        inside: (3N, k) orthonormal basis of those columns.
+        whiten: Whitens (N, 3, ...) in reading axes, noise and draws together.
+        noise: What to hold it against.
     """
     situation, scale = fit.problem.situation, noise.scale
     group = np.repeat(situation.pose, 3)

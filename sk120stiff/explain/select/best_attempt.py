@@ -26,12 +26,9 @@ Try = Callable[[NoiseModel], Attempt]
 def best_attempt(measurements: Measurements, under: Try) -> tuple[Attempt, NoiseModel]:
     """The best attempt, and the noise that its fits are to be held against.
 
-    Parameters
-    ----------
-    measurements
-        Readings in use.
-    under
-        Makes an attempt under one noise model.
+    Args:
+        measurements: Readings in use.
+        under: Makes an attempt under one noise model.
     """
     tried = [under(noise) for noise in candidates(measurements)]
     found = tried[likelier([-each.total for each in tried])]

@@ -21,20 +21,14 @@ CLEAR = 2.0  # standard errors from which on a difference is called one
 class Compared:
     """One line of the table.
 
-    Attributes
-    ----------
-    name
-        Name of the model.
-    fit
-        It, fitted to all readings.
-    held_out
-        Its error at poses left out; None where there is only one pose.
-    aic, bic
-        Criteria above the least of all models.
-    loss, loss_std
-        Held-out rms above that of the best model, and its standard error over poses [m].
-    note
-        What to think of it, in words.
+    Attributes:
+        name: Name of the model.
+        fit: It, fitted to all readings.
+        held_out: Its error at poses left out; None where there is only one pose.
+        aic, bic: Criteria above the least of all models.
+        loss, loss_std: Held-out rms above that of the best model, and its standard error over poses
+            [m].
+        note: What to think of it, in words.
     """
 
     name: str
@@ -57,31 +51,21 @@ def compare(
 ) -> tuple[Compared, ...]:
     """Fit models to the same readings under the same noise, and rank them by held-out error.
 
-    Parameters
-    ----------
-    models
-        Models by name.
-    measurements
-        Readings with displacements.
-    noise
-        Covariance for all; default: what the data say of themselves, those of the other poses
-        where poses are left out.
-    seed
-        Of the parts in which poses are left out.
-    progress
-        Called as ``progress(done, total)``.
+    Args:
+        models: Models by name.
+        measurements: Readings with displacements.
+        noise: Covariance for all; default: what the data say of themselves, those of the other
+            poses where poses are left out.
+        seed: Of the parts in which poses are left out.
+        progress: Called as ``progress(done, total)``.
 
-    Returns
-    -------
-    tuple of Compared
-        Best held-out error first (of equals, least BIC); by BIC where there is only one pose.
+    Returns:
+        tuple of Compared: Best held-out error first (of equals, least BIC); by BIC where there is
+            only one pose.
 
-    Raises
-    ------
-    InputError
-        Fewer than two models, or readings that cannot be used.
-    Refusal
-        A model could not be fitted; its name is given.
+    Raises:
+        InputError: Fewer than two models, or readings that cannot be used.
+        Refusal: A model could not be fitted; its name is given.
     """
     if len(models) < 2:
         raise InputError("a comparison takes two models or more")

@@ -31,16 +31,11 @@ Learn = Callable[[Measurements], Sequence[Fit]]
 class HeldOut:
     """Gaps at poses left out of the fit, pose by pose.
 
-    Attributes
-    ----------
-    poses
-        Labels of the g poses.
-    squares
-        (g,) mean square of the gap per axis at each pose [m²].
-    counts
-        (g,) number of readings at each pose.
-    folds
-        In how many parts the poses were left out.
+    Attributes:
+        poses: Labels of the g poses.
+        squares: (g,) mean square of the gap per axis at each pose [m²].
+        counts: (g,) number of readings at each pose.
+        folds: In how many parts the poses were left out.
     """
 
     poses: tuple[str, ...]
@@ -86,30 +81,19 @@ def held_out(
 ) -> tuple[HeldOut, ...]:
     """Leave poses out, learn from the others, predict those left out; for all poses in turn.
 
-    Parameters
-    ----------
-    measurements
-        Readings with displacements; masked ones take no part.
-    learn
-        The way from readings to fits, see `refitted`.
-    folds
-        Number of parts, at most; with fewer poses every pose is left out by itself.
-    seed
-        Of the draw of the parts.
-    progress
-        Called as ``progress(done, total)``.
+    Args:
+        measurements: Readings with displacements; masked ones take no part.
+        learn: The way from readings to fits, see `refitted`.
+        folds: Number of parts, at most; with fewer poses every pose is left out by itself.
+        seed: Of the draw of the parts.
+        progress: Called as ``progress(done, total)``.
 
-    Returns
-    -------
-    tuple of HeldOut
-        One for every fit that `learn` gives.
+    Returns:
+        tuple of HeldOut: One for every fit that `learn` gives.
 
-    Raises
-    ------
-    InputError
-        There are no displacements, or only one pose.
-    Refusal
-        A part could not be fitted, so that nothing can be said of its poses.
+    Raises:
+        InputError: There are no displacements, or only one pose.
+        Refusal: A part could not be fitted, so that nothing can be said of its poses.
     """
     used = measurements.masked()
     measured = used.displacement

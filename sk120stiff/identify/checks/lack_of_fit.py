@@ -20,18 +20,12 @@ SURELY = 1e-3  # probability below which a stated σ is said to be off
 class LackOfFit:
     """The test of a fitted model.
 
-    Attributes
-    ----------
-    against
-        What the misfit is held against.
-    statistic
-        χ² against a σ that is exact, else F (Fisher 1922).
-    freedom
-        Degrees of freedom of the misfit, and of the yardstick (None: known exactly).
-    probability
-        Of a larger value if the model were true.
-    factor
-        Rms of the whole misfit in units of the yardstick; 1 if noise is all there is.
+    Attributes:
+        against: What the misfit is held against.
+        statistic: χ² against a σ that is exact, else F (Fisher 1922).
+        freedom: Degrees of freedom of the misfit, and of the yardstick (None: known exactly).
+        probability: Of a larger value if the model were true.
+        factor: Rms of the whole misfit in units of the yardstick; 1 if noise is all there is.
     """
 
     against: Source
@@ -91,15 +85,12 @@ def lack_of_fit(fit: Fit) -> LackOfFit | None:
 
     Model-form error that a fit took into account is no noise: it is what this test looks for.
 
-    Parameters
-    ----------
-    fit
-        A fit by least squares.
+    Args:
+        fit: A fit by least squares.
 
-    Returns
-    -------
-    LackOfFit
-        None where nothing tells the noise, and for a robust fit, whose misfit is no sum of squares.
+    Returns:
+        LackOfFit: None where nothing tells the noise, and for a robust fit, whose misfit is no sum
+            of squares.
     """
     if fit.problem.weights is not None or fit.degrees_of_freedom < 1:
         return None

@@ -28,16 +28,11 @@ def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
 def left_over(white: Array, inside: Array, local: Array, group: Index) -> tuple[float, int]:
     """Sum of squares that is left, and the rank of what was taken out.
 
-    Parameters
-    ----------
-    white
-        (R,) whitened gap.
-    inside
-        (R, k) orthonormal basis of what the model's parameters can do.
-    local
-        (R, m) whitened columns that are free at every pose.
-    group
-        (R,) pose of each row.
+    Args:
+        white: (R,) whitened gap.
+        inside: (R, k) orthonormal basis of what the model's parameters can do.
+        local: (R, m) whitened columns that are free at every pose.
+        group: (R,) pose of each row.
     """
     left, columns, rank = white.copy(), inside.copy(), 0
     for rows in rows_by_label(group):

@@ -22,12 +22,9 @@ REACH = (0.5, 2.0)  # beyond it no sensor is misread, but a unit is wrong
 class OneGain:
     """A model with every force times one gain, fitted to the readings of a fit.
 
-    Attributes
-    ----------
-    gain
-        True force over the force as it was read.
-    rms
-        Gap that it leaves, root mean square per axis [m].
+    Attributes:
+        gain: True force over the force as it was read.
+        rms: Gap that it leaves, root mean square per axis [m].
     """
 
     gain: float
@@ -37,12 +34,9 @@ class OneGain:
 def one_gain(model: Model, fit: Fit) -> OneGain:
     """The gain that suits a model best, by the noise of a fit, at exact equilibrium.
 
-    Parameters
-    ----------
-    model
-        Its values stay as they are.
-    fit
-        Gives readings and noise.
+    Args:
+        model: Its values stay as they are.
+        fit: Gives readings and noise.
     """
     problem = fit.problem
     situation = problem.situation

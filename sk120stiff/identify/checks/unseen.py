@@ -34,12 +34,9 @@ def why_unseen(situation: Situation, parameter: Parameter) -> str | None:
     A spring turns the point about its joint's axis by c τ. Nothing of it shows where the point lies
     on that axis in every pose, or where every load passes through it.
 
-    Parameters
-    ----------
-    situation
-        Poses (N, n), loads and points of the readings, taken or planned.
-    parameter
-        The parameter; only a joint's spring has a reason of this kind.
+    Args:
+        situation: Poses (N, n), loads and points of the readings, taken or planned.
+        parameter: The parameter; only a joint's spring has a reason of this kind.
     """
     if not parameter.effect.joint_spring or not situation.count:
         return None

@@ -42,18 +42,12 @@ NAMES: dict[Source, str] = {
 class Yardstick:
     """The noise of a fit's readings.
 
-    Attributes
-    ----------
-    source
-        Where its size comes from.
-    scale
-        Noise variance over the one that the fit assumed.
-    freedom
-        Degrees of freedom behind it: infinite where it is exact, 0 where unknown.
-    sigma
-        Standard uncertainty of one reading per axis [m]; None where unknown.
-    floor
-        Rms per axis that this noise alone gives displacements [m]; None where unknown.
+    Attributes:
+        source: Where its size comes from.
+        scale: Noise variance over the one that the fit assumed.
+        freedom: Degrees of freedom behind it: infinite where it is exact, 0 where unknown.
+        sigma: Standard uncertainty of one reading per axis [m]; None where unknown.
+        floor: Rms per axis that this noise alone gives displacements [m]; None where unknown.
     """
 
     source: Source
@@ -139,14 +133,10 @@ def contradiction(fit: Fit) -> str | None:
 def left_within_poses(fit: Fit, white: Array, inside: Array) -> tuple[float, int, Array]:
     """What all that is smooth in the load leaves: its square, what it took, and the columns.
 
-    Parameters
-    ----------
-    fit
-        Gives readings and noise.
-    white
-        (3N,) whitened gap.
-    inside
-        (3N, k) orthonormal basis of what the model's parameters can do.
+    Args:
+        fit: Gives readings and noise.
+        white: (3N,) whitened gap.
+        inside: (3N, k) orthonormal basis of what the model's parameters can do.
     """
     situation = fit.problem.situation
     basis = load_basis(situation, jump=True, cubic=True, branches=True)

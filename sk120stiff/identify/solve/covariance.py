@@ -15,15 +15,12 @@ HIDDEN = 0.1  # variance by which blind directions may move an estimate, over it
 def covariance_of(jacobian: Array, held: Mask, span: Array) -> Array:
     """(JᵀJ)⁻¹ over the columns that are not held; infinite along directions without information.
 
-    Parameters
-    ----------
-    jacobian
-        (R, P) whitened derivative.
-    held
-        (P,) parameters that a bound holds; their rows and columns are zero.
-    span
-        (P,) sizes beyond which the parameters are implausible. A parameter is lost if a plausible
-        change that does not show would move it by a third of its standard error or more.
+    Args:
+        jacobian: (R, P) whitened derivative.
+        held: (P,) parameters that a bound holds; their rows and columns are zero.
+        span: (P,) sizes beyond which the parameters are implausible. A parameter is lost if a
+            plausible change that does not show would move it by a third of its standard error or
+            more.
     """
     P = jacobian.shape[1]
     covariance = np.zeros((P, P))
@@ -78,14 +75,10 @@ def internal_intervals(
     The misfit over the noise rises by reach² at their ends, all other parameters refitted. Where no
     bound is near, that is x ± reach·std.
 
-    Parameters
-    ----------
-    x, jacobian, residual, held, bounds, span
-        Of the fit, in scaled parameters.
-    reach
-        Quantile of the normal or Student distribution.
-    unit
-        Noise seen over noise assumed; infinite where nobody knows.
+    Args:
+        x, jacobian, residual, held, bounds, span: Of the fit, in scaled parameters.
+        reach: Quantile of the normal or Student distribution.
+        unit: Noise seen over noise assumed; infinite where nobody knows.
     """
     std = np.sqrt(np.diag(covariance_of(jacobian, held, span)))
     lost = ~np.isfinite(std)

@@ -28,14 +28,10 @@ WORTHWHILE = 2.0  # least fall of the largest standard error for which a pose is
 class Overlay:
     """Parameters that lie on one another, one at least on its bound and one off it.
 
-    Attributes
-    ----------
-    members
-        Indices of the estimated parameters, ascending.
-    held
-        Those of them that lie on their bound.
-    likeness
-        Least cosine between two of their columns.
+    Attributes:
+        members: Indices of the estimated parameters, ascending.
+        held: Those of them that lie on their bound.
+        likeness: Least cosine between two of their columns.
     """
 
     members: tuple[int, ...]
@@ -47,16 +43,11 @@ class Overlay:
 class Separating:
     """A measured reading with one joint turned, which tells overlaid parameters apart.
 
-    Attributes
-    ----------
-    pose
-        Label of the measured pose.
-    joint
-        Index of the joint that stands elsewhere.
-    position
-        Where it stands [rad or m].
-    gain
-        By how much the largest standard error of the overlaid parameters falls.
+    Attributes:
+        pose: Label of the measured pose.
+        joint: Index of the joint that stands elsewhere.
+        position: Where it stands [rad or m].
+        gain: By how much the largest standard error of the overlaid parameters falls.
     """
 
     pose: str
@@ -79,12 +70,10 @@ def overlays(
     A moving parameter lies on held ones where its likelihood interval, with these free to leave
     their bounds, is `INFLATED` times what it is with these nailed to them.
 
-    Parameters
-    ----------
-    x, jacobian, residual, at_bound, bounds, span
-        Of the fit, in scaled parameters.
-    reach
-        Square root of the rise of the misfit at the interval's ends, in units of the assumed noise.
+    Args:
+        x, jacobian, residual, at_bound, bounds, span: Of the fit, in scaled parameters.
+        reach: Square root of the rise of the misfit at the interval's ends, in units of the assumed
+            noise.
     """
     held, moving = np.flatnonzero(at_bound), np.flatnonzero(~at_bound)
     if not len(held) or not len(moving) or not np.isfinite(reach):
@@ -139,14 +128,10 @@ def separating(problem: Problem, group: Overlay, jacobian: Array) -> Separating 
     Only the joint limits are kept; whether the arm gets there is for the user to see. None where no
     such reading helps.
 
-    Parameters
-    ----------
-    problem
-        What was fitted.
-    group
-        Parameters that lie on one another.
-    jacobian
-        (R, P) whitened derivative at the fit.
+    Args:
+        problem: What was fitted.
+        group: Parameters that lie on one another.
+        jacobian: (R, P) whitened derivative at the fit.
     """
     rigid, situation = problem.model, problem.situation
     robot = rigid.robot

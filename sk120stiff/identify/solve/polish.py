@@ -35,16 +35,11 @@ SLOPE = 1e-9  # cosine between residual and a column below which the misfit coun
 class Minimum:
     """Where a search ended.
 
-    Attributes
-    ----------
-    x
-        (P,) parameters.
-    residual, jacobian
-        (R,) whitened gap and (R, P) derivative there.
-    at_bound
-        (P,) parameters that a physical bound holds: the misfit would fall beyond it.
-    iterations
-        Evaluations of the model.
+    Attributes:
+        x: (P,) parameters.
+        residual, jacobian: (R,) whitened gap and (R, P) derivative there.
+        at_bound: (P,) parameters that a physical bound holds: the misfit would fall beyond it.
+        iterations: Evaluations of the model.
     """
 
     x: Array
@@ -64,23 +59,16 @@ def polish(
 ) -> Minimum:
     """Least squares within bounds from a start that is near.
 
-    Parameters
-    ----------
-    evaluate
-        Gives residual (R,) in units of the noise, and its derivative (R, P).
-    start
-        (P,) clipped to the bounds. Along directions that are not seen the answer stays there.
-    bounds
-        Lower and upper (P,).
-    span
-        (P,) sizes of the parameters beyond which they are implausible.
-    fine
-        Relative step at which nothing is left to gain.
+    Args:
+        evaluate: Gives residual (R,) in units of the noise, and its derivative (R, P).
+        start: (P,) clipped to the bounds. Along directions that are not seen the answer stays
+            there.
+        bounds: Lower and upper (P,).
+        span: (P,) sizes of the parameters beyond which they are implausible.
+        fine: Relative step at which nothing is left to gain.
 
-    Raises
-    ------
-    Refusal
-        The steps do not become small, or the model cannot be evaluated at the start.
+    Raises:
+        Refusal: The steps do not become small, or the model cannot be evaluated at the start.
     """
     x = _snapped(start, bounds)
     residual, jacobian = evaluate(x)
@@ -125,11 +113,9 @@ def polish(
 def seen_directions(jacobian: Array, span: Array) -> tuple[Array, Array, Array, Array]:
     """Directions of the parameters, each over its span, split by what the readings see of them.
 
-    Returns
-    -------
-    U, singular, V, blind
-        (R, r), (r,), (P, r): J diag(span) = U diag(singular) Vᵀ over directions that are seen;
-        (P, b) an orthonormal basis of those that are not.
+    Returns:
+        U, singular, V, blind: (R, r), (r,), (P, r): J diag(span) = U diag(singular) Vᵀ over
+            directions that are seen; (P, b) an orthonormal basis of those that are not.
     """
     scaled = jacobian * span
     missing = max(scaled.shape[1] - len(scaled), 0)

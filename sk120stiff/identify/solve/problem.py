@@ -18,16 +18,11 @@ from sk120stiff.model import Model
 class Problem:
     """A model, readings and their noise.
 
-    Attributes
-    ----------
-    model
-        Gives the starting values and says which parameters are free.
-    measurements
-        N readings in use, with displacements.
-    noise
-        Covariance of the readings.
-    weights
-        (N,) share of its information that each reading keeps, in (0, 1]; None: all of it.
+    Attributes:
+        model: Gives the starting values and says which parameters are free.
+        measurements: N readings in use, with displacements.
+        noise: Covariance of the readings.
+        weights: (N,) share of its information that each reading keeps, in (0, 1]; None: all of it.
     """
 
     model: Model

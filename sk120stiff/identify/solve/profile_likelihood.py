@@ -22,20 +22,13 @@ CLOSE = 1e-3  # of the distance that is sought
 class Valley:
     """A least-squares problem around its minimum.
 
-    Attributes
-    ----------
-    evaluate
-        Residual (R,) in units of the noise and derivative (R, P), of parameters (P,).
-    x, misfit
-        (P,) minimum within bounds, and the sum of squares there.
-    bounds
-        Lower and upper (P,).
-    span
-        (P,) sizes beyond which the parameters are implausible.
-    std
-        (P,) standard errors, to start from; zero where a bound holds the estimate.
-    slopes
-        (P,) lengths of the columns of the derivative at the minimum.
+    Attributes:
+        evaluate: Residual (R,) in units of the noise and derivative (R, P), of parameters (P,).
+        x, misfit: (P,) minimum within bounds, and the sum of squares there.
+        bounds: Lower and upper (P,).
+        span: (P,) sizes beyond which the parameters are implausible.
+        std: (P,) standard errors, to start from; zero where a bound holds the estimate.
+        slopes: (P,) lengths of the columns of the derivative at the minimum.
     """
 
     evaluate: Evaluate

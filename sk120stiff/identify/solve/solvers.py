@@ -33,24 +33,17 @@ def minimise(
     bounds are set onto them and the rest is fitted again. Both end in `polish`, which also lets go
     of bounds that were taken too early, so they give the same values to the last digits.
 
-    Parameters
-    ----------
-    evaluate
-        Gives residual (R,) and derivative (R, P); raises `Refusal` where the model has no answer.
-    start
-        (P,) where it has one; clipped to the bounds. Along directions that the readings do not see
-        the answer stays there.
-    bounds
-        Lower and upper (P,).
-    span
-        (P,) sizes beyond which the parameters are implausible.
-    method
-        ``"trf"`` or ``"lm"``.
+    Args:
+        evaluate: Gives residual (R,) and derivative (R, P); raises `Refusal` where the model has no
+            answer.
+        start: (P,) where it has one; clipped to the bounds. Along directions that the readings do
+            not see the answer stays there.
+        bounds: Lower and upper (P,).
+        span: (P,) sizes beyond which the parameters are implausible.
+        method: ``"trf"`` or ``"lm"``.
 
-    Raises
-    ------
-    Refusal
-        The fit did not converge.
+    Raises:
+        Refusal: The fit did not converge.
     """
     x = np.clip(start, *bounds)
     counted = _Counted(evaluate)

@@ -16,19 +16,14 @@ def profile_intervals(
 ) -> tuple[tuple[float, float], ...]:
     """Confidence intervals of the public values, one (low, high) per estimated parameter.
 
-    Parameters
-    ----------
-    fit
-        A converged fit.
-    level
-        Confidence.
-    progress
-        Called as ``progress(done, total)``.
+    Args:
+        fit: A converged fit.
+        level: Confidence.
+        progress: Called as ``progress(done, total)``.
 
-    Notes
-    -----
-    An end that no misfit sets lies at the physical bound, which may be infinite. A parameter that
-    the readings do not show has both ends there.
+    Notes:
+        An end that no misfit sets lies at the physical bound, which may be infinite. A parameter
+        that the readings do not show has both ends there.
     """
     problem = fit.problem
     lower, upper = problem.bounds

@@ -37,18 +37,12 @@ CONSTANTS = (0.0, 0.3, 1.0, 3.0, 10.0, 30.0)  # of the noise of one reading
 class Components:
     """What a gap says of its own covariance.
 
-    Attributes
-    ----------
-    form
-        The likeliest sizes of the model-form error.
-    noise_factor
-        Likeliest noise over the one assumed; 1 where σ is known.
-    gain
-        Fall of -2 ln L against noise alone.
-    inflation
-        Factor by which σ would have to grow, were the gap noise alone.
-    inflation_gain
-        Fall of -2 ln L by that factor.
+    Attributes:
+        form: The likeliest sizes of the model-form error.
+        noise_factor: Likeliest noise over the one assumed; 1 where σ is known.
+        gain: Fall of -2 ln L against noise alone.
+        inflation: Factor by which σ would have to grow, were the gap noise alone.
+        inflation_gain: Fall of -2 ln L by that factor.
     """
 
     form: ModelForm
@@ -117,20 +111,14 @@ def _refined(sums: Deviance, start: ModelForm) -> tuple[ModelForm, float]:
 class Deviance:
     """-2 ln L of the model-form error of one fit's gap, as a function of its sizes.
 
-    Attributes
-    ----------
-    proportional
-        How many of the q random effects of a pose go in proportion to the load; the others are
-        constant.
-    zz, zx, xx
-        Products, over every pose and over all rows, of random effects (q), derivative (p) and gap,
-        whitened by the noise alone; the gap is the last of p + 1 columns.
-    rows
-        Whitened readings.
-    scale
-        σ of one reading [m].
-    known
-        σ is known; else its likeliest value is taken at every form.
+    Attributes:
+        proportional: How many of the q random effects of a pose go in proportion to the load; the
+            others are constant.
+        zz, zx, xx: Products, over every pose and over all rows, of random effects (q), derivative
+            (p) and gap, whitened by the noise alone; the gap is the last of p + 1 columns.
+        rows: Whitened readings.
+        scale: σ of one reading [m].
+        known: σ is known; else its likeliest value is taken at every form.
     """
 
     proportional: int

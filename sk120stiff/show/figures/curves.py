@@ -24,20 +24,13 @@ _MARKERS = ("o", "s", "^")
 class LoadCurve:
     """One pose loaded step by step.
 
-    Attributes
-    ----------
-    title
-        What the panel is headed with, e.g. ``pose 1``.
-    force
-        (k,) size of the load at each reading [N].
-    measured
-        (k, 3) measured displacement, base axes [m]; None where there is none.
-    sigma
-        (k, 3) standard uncertainty of the readings [m], or None.
-    line_force
-        (l,) loads at which the models were evaluated [N]; default: `force`.
-    models
-        Model name → (l, 3) predicted displacement [m].
+    Attributes:
+        title: What the panel is headed with, e.g. ``pose 1``.
+        force: (k,) size of the load at each reading [N].
+        measured: (k, 3) measured displacement, base axes [m]; None where there is none.
+        sigma: (k, 3) standard uncertainty of the readings [m], or None.
+        line_force: (l,) loads at which the models were evaluated [N]; default: `force`.
+        models: Model name → (l, 3) predicted displacement [m].
     """
 
     title: str

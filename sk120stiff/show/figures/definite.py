@@ -29,17 +29,12 @@ def definiteness_map(
 ) -> Figure:
     """Classes over two joints, one panel per case.
 
-    Parameters
-    ----------
-    x, y
-        (nx,), (ny,) joint values [rad] or positions [m].
-    classes
-        (ny, nx) or (cases, ny, nx) indices into `sk120stiff.stiffness.CLASSES`; any
-        other number is a pose without a class and stays white.
-    titles
-        One per case.
-    units
-        Units of the two axes as they are drawn: one of `sk120stiff.show.style.FROM_SI`.
+    Args:
+        x, y: (nx,), (ny,) joint values [rad] or positions [m].
+        classes: (ny, nx) or (cases, ny, nx) indices into `sk120stiff.stiffness.CLASSES`; any other
+            number is a pose without a class and stays white.
+        titles: One per case.
+        units: Units of the two axes as they are drawn: one of `sk120stiff.show.style.FROM_SI`.
     """
     x, y = FROM_SI[units[0]] * np.asarray(x), FROM_SI[units[1]] * np.asarray(y)
     found = np.asarray(classes)

@@ -20,18 +20,12 @@ from sk120stiff.stiffness import symmetric_part
 class PlaneEllipse:
     """A compliance at a place.
 
-    Attributes
-    ----------
-    centre
-        (3,) position, base axes [m].
-    compliance
-        (3, 3) [m/N].
-    label
-        Written beside the ellipse; may be empty.
-    outline
-        (k, 3) points of the arm to draw through the plane, or None [m].
-    reference
-        (3, 3) a second compliance for comparison, drawn as an outline, or None.
+    Attributes:
+        centre: (3,) position, base axes [m].
+        compliance: (3, 3) [m/N].
+        label: Written beside the ellipse; may be empty.
+        outline: (k, 3) points of the arm to draw through the plane, or None [m].
+        reference: (3, 3) a second compliance for comparison, drawn as an outline, or None.
     """
 
     centre: Array
@@ -49,12 +43,9 @@ def plane_ellipses(
     Each curve is {C f : f a unit vector of the plane}, cut to the plane; all share one scale, which
     the legend states.
 
-    Parameters
-    ----------
-    plane
-        ``xy``, ``xz`` or ``yz`` of the base frame.
-    names
-        What the compliance and the reference are called.
+    Args:
+        plane: ``xy``, ``xz`` or ``yz`` of the base frame.
+        names: What the compliance and the reference are called.
     """
     if plane not in ("xy", "xz", "yz") or not ellipses:
         raise InputError("give at least one ellipse, and a plane among xy, xz, yz")

@@ -36,14 +36,10 @@ def gap_per_pose(
 ) -> Figure:
     """Root-mean-square gap of each pose, one bar per model.
 
-    Parameters
-    ----------
-    poses
-        Labels of the poses.
-    gaps
-        Model name → (poses,) gap [m], in the order before, after, ...
-    noise_floor
-        What the noise alone would leave [m].
+    Args:
+        poses: Labels of the poses.
+        gaps: Model name → (poses,) gap [m], in the order before, after, ...
+        noise_floor: What the noise alone would leave [m].
     """
     count = len(poses)
     series = {name: 1e6 * np.asarray(values, dtype=float) for name, values in gaps.items()}

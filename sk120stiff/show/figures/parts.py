@@ -22,16 +22,12 @@ def surface_parts(
 ) -> Figure:
     """Three maps side by side: the derivative that each force component multiplies.
 
-    Parameters
-    ----------
-    x, y
-        (nx,), (ny,) joint values of the grid [rad].
-    parts
-        (3, ny, nx) contribution of a unit force along x, y and z to the element [N·m/rad per N].
-    element
-        Name of the element, e.g. ``C11``.
-    x_label, y_label
-        Names of the two joints.
+    Args:
+        x, y: (nx,), (ny,) joint values of the grid [rad].
+        parts: (3, ny, nx) contribution of a unit force along x, y and z to the element [N·m/rad per
+            N].
+        element: Name of the element, e.g. ``C11``.
+        x_label, y_label: Names of the two joints.
     """
     values = np.asarray(parts, dtype=float)
     if values.shape != (3, len(y), len(x)):
@@ -72,12 +68,10 @@ def curve_parts(
 ) -> Figure:
     """The same along one joint: three panels, one line for each named case.
 
-    Parameters
-    ----------
-    x
-        (k,) abscissa, already in `x_unit`.
-    parts
-        Name of the case → (3, k) contributions of a unit force along x, y, z [N·m/rad per N].
+    Args:
+        x: (k,) abscissa, already in `x_unit`.
+        parts: Name of the case → (3, k) contributions of a unit force along x, y, z [N·m/rad per
+            N].
     """
     cases: Sequence[str] = list(parts)
     with styled():

@@ -26,20 +26,15 @@ def posture_choice(
 ) -> Figure:
     """What the tool's orientation does to the worst point, and the chosen posture along the path.
 
-    Parameters
-    ----------
-    per_point
-        (N,) compliance [m/N] or deflection [m] along the path.
-    compliance
-        Are the values compliances? They are then drawn as stiffness.
-    landscape
-        (k,) angles of the tool [rad] and (k,) worst values along the path; None where it is fixed.
-    chosen
-        Angle and worst value of the chosen posture.
-    tilt
-        Are the angles those of the tool's axis from straight down? Else turns about that axis.
-    blind
-        (m,) worst values of postures met at random, whose median is drawn.
+    Args:
+        per_point: (N,) compliance [m/N] or deflection [m] along the path.
+        compliance: Are the values compliances? They are then drawn as stiffness.
+        landscape: (k,) angles of the tool [rad] and (k,) worst values along the path; None where it
+            is fixed.
+        chosen: Angle and worst value of the chosen posture.
+        tilt: Are the angles those of the tool's axis from straight down? Else turns about that
+            axis.
+        blind: (m,) worst values of postures met at random, whose median is drawn.
     """
     if (landscape is None) != (chosen is None):
         raise InputError("a landscape and the posture chosen in it are given together")

@@ -18,14 +18,11 @@ from sk120stiff.show.style import hide_spare, styled, subplots
 class Suspect:
     """A variable that the gap may depend on.
 
-    Attributes
-    ----------
-    name
-        With its unit in brackets, e.g. ``torque of joint_2_l [N·m]``.
-    values
-        (k,) value at every residual, in that unit.
-    strength
-        How much of the gap it explains, 0 to 1; None leaves it to the square of the correlation.
+    Attributes:
+        name: With its unit in brackets, e.g. ``torque of joint_2_l [N·m]``.
+        values: (k,) value at every residual, in that unit.
+        strength: How much of the gap it explains, 0 to 1; None leaves it to the square of the
+            correlation.
     """
 
     name: str
@@ -38,14 +35,10 @@ def residual_suspects(
 ) -> Figure:
     """Residual against each suspect; the strongest one is marked.
 
-    Parameters
-    ----------
-    residuals
-        (k,) gap [m].
-    suspects
-        Variables with (k,) values each.
-    label
-        Name of the ordinate, in µm.
+    Args:
+        residuals: (k,) gap [m].
+        suspects: Variables with (k,) values each.
+        label: Name of the ordinate, in µm.
     """
     gap = 1e6 * np.asarray(residuals, dtype=float)
     if not suspects:

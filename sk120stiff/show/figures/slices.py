@@ -29,18 +29,12 @@ def stiffness_slice(
 ) -> Figure:
     """A quantity over two joint values or two positions, as filled contours.
 
-    Parameters
-    ----------
-    x, y
-        (nx,), (ny,) joint values [rad] or positions [m].
-    values
-        (ny, nx) quantity in SI, e.g. the least principal stiffness [N/m]; NaN stays white.
-    scale
-        Factor from SI to the unit that `value_label` names.
-    marks
-        Label → (x, y) [rad or m] of poses to mark.
-    units
-        Units of the two axes as they are drawn: one of `sk120stiff.show.style.FROM_SI`.
+    Args:
+        x, y: (nx,), (ny,) joint values [rad] or positions [m].
+        values: (ny, nx) quantity in SI, e.g. the least principal stiffness [N/m]; NaN stays white.
+        scale: Factor from SI to the unit that `value_label` names.
+        marks: Label → (x, y) [rad or m] of poses to mark.
+        units: Units of the two axes as they are drawn: one of `sk120stiff.show.style.FROM_SI`.
     """
     x, y = FROM_SI[units[0]] * np.asarray(x), FROM_SI[units[1]] * np.asarray(y)
     shown = scale * np.asarray(values, dtype=float)

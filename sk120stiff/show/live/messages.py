@@ -44,10 +44,9 @@ class Bounds:
 def read_request(text: str | bytes, bounds: Bounds) -> tuple[int, Request]:
     """Number and content of a request.
 
-    Raises
-    ------
-    InputError
-        Not JSON of the agreed form, or a number out of range; the message is safe to send back.
+    Raises:
+        InputError: Not JSON of the agreed form, or a number out of range; the message is safe to
+            send back.
     """
     if isinstance(text, bytes):
         raise InputError("a request is text, not bytes")

@@ -32,19 +32,13 @@ TRIES = 50
 class LiveServer(Served):
     """Serves one scene to any number of pages, each with its own pose and load.
 
-    Parameters
-    ----------
-    scene
-        What to show.
-    host
-        Address to listen on; anything but loopback opens the page to the network.
-    port
-        First port to try; the next ones follow where it is busy. 0 takes any.
+    Args:
+        scene: What to show.
+        host: Address to listen on; anything but loopback opens the page to the network.
+        port: First port to try; the next ones follow where it is busy. 0 takes any.
 
-    Raises
-    ------
-    InputError
-        The address cannot be used, or no port is free.
+    Raises:
+        InputError: The address cannot be used, or no port is free.
     """
 
     def __init__(self, scene: Scene, *, host: str = LOOPBACK, port: int = FIRST_PORT) -> None:

@@ -15,10 +15,8 @@ _LOG = logging.getLogger(__name__)
 def attempted(title: str, build: Callable[[], Section | None]) -> Section | None:
     """The section, or a section of that title that says what went wrong.
 
-    Warns
-    -----
-    ToolkitWarning
-        It could not be made.
+    Warns:
+        ToolkitWarning: It could not be made.
     """
     try:
         return build()
@@ -29,10 +27,8 @@ def attempted(title: str, build: Callable[[], Section | None]) -> Section | None
 def failure(what: str, error: Exception) -> str:
     """Warn that `what` could not be made, and return the sentence; the traceback goes to the log.
 
-    Warns
-    -----
-    ToolkitWarning
-        Always.
+    Warns:
+        ToolkitWarning: Always.
     """
     reason = " ".join(str(error).split()) or "no message"
     said = f"{what[0].upper()}{what[1:]} could not be made ({type(error).__name__}: {reason})."

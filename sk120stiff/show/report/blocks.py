@@ -18,18 +18,12 @@ if TYPE_CHECKING:
 class Table:
     """A table; the first column heads its rows.
 
-    Attributes
-    ----------
-    header
-        One name per column.
-    rows
-        Cells: text as it stands, numbers with `digits` significant digits, None as a dash.
-    caption
-        What the table says, in a sentence.
-    units
-        One per column, shown under the names; empty where a column has none.
-    digits
-        Significant digits of numbers.
+    Attributes:
+        header: One name per column.
+        rows: Cells: text as it stands, numbers with `digits` significant digits, None as a dash.
+        caption: What the table says, in a sentence.
+        units: One per column, shown under the names; empty where a column has none.
+        digits: Significant digits of numbers.
     """
 
     header: Sequence[str]
@@ -106,18 +100,12 @@ class Code:
 class SceneFrame:
     """The 3-D scene inside the report.
 
-    Attributes
-    ----------
-    scene
-        A `Scene`, or the text of a self-contained page.
-    title
-        What it shows, for screen readers and for print.
-    caption
-        Sentence under it.
-    link
-        Relative address of the scene as a page of its own, if there is one.
-    height
-        In CSS pixels.
+    Attributes:
+        scene: A `Scene`, or the text of a self-contained page.
+        title: What it shows, for screen readers and for print.
+        caption: Sentence under it.
+        link: Relative address of the scene as a page of its own, if there is one.
+        height: In CSS pixels.
     """
 
     scene: Scene | str

@@ -21,14 +21,10 @@ def reproducibility(
 ) -> dict[str, str]:
     """Command, versions and SHA-256 of the input files, in the order to show them.
 
-    Parameters
-    ----------
-    command
-        The command line, or the Python call, that made the result.
-    files
-        Input files; a missing one is named as missing.
-    seed
-        Seed of random numbers, if any were drawn.
+    Args:
+        command: The command line, or the Python call, that made the result.
+        files: Input files; a missing one is named as missing.
+        seed: Seed of random numbers, if any were drawn.
     """
     facts = {"Command": command}
     if seed is not None:

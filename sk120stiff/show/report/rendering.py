@@ -32,18 +32,12 @@ _COLOURS = {
 class Report:
     """A titled sequence of sections.
 
-    Attributes
-    ----------
-    title
-        Heading of the page.
-    sections
-        Its parts, in order.
-    subtitle
-        A line under the heading.
-    lead
-        The answer, in a sentence or two, before everything else.
-    reproducibility
-        Name → text, shown last; see `reproducibility`.
+    Attributes:
+        title: Heading of the page.
+        sections: Its parts, in order.
+        subtitle: A line under the heading.
+        lead: The answer, in a sentence or two, before everything else.
+        reproducibility: Name → text, shown last; see `reproducibility`.
     """
 
     title: str

@@ -23,16 +23,12 @@ PAPER, OURS = "paper's springs", "identified"
 class Demo:
     """What the demo has computed.
 
-    Attributes
-    ----------
-    paper
-        The model with the springs that the paper gives.
-    found, other
-        Springs identified by the trust-region and by the Levenberg–Marquardt algorithm.
-    answer
-        What `explain` says of the same readings.
-    hidden
-        Other effects at their usual size against the identified springs.
+    Attributes:
+        paper: The model with the springs that the paper gives.
+        found, other: Springs identified by the trust-region and by the Levenberg–Marquardt
+            algorithm.
+        answer: What `explain` says of the same readings.
+        hidden: Other effects at their usual size against the identified springs.
     """
 
     paper: Model

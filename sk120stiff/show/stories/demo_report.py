@@ -56,16 +56,11 @@ def demo_report(
 ) -> Report:
     """Tell the demo as a report.
 
-    Parameters
-    ----------
-    demo
-        What was computed.
-    scene, scene_link
-        Text of the scene's page, and its address beside the report.
-    next_poses
-        Address of the file with poses to measure next; empty where there is none.
-    reproducibility
-        Name → text, shown last.
+    Args:
+        demo: What was computed.
+        scene, scene_link: Text of the scene's page, and its address beside the report.
+        next_poses: Address of the file with poses to measure next; empty where there is none.
+        reproducibility: Name → text, shown last.
     """
     situation = demo.found.problem.situation
     following = next_section(demo.answer, next_poses)

@@ -22,12 +22,9 @@ def gap_section(
 ) -> Section:
     """Table and waterfall of the steps, the gap of every pose, the gap vectors.
 
-    Parameters
-    ----------
-    heldout
-        What the held-out gap was taken on, in words.
-    scene, scene_link
-        Text of the scene's page, and its address beside the report.
+    Args:
+        heldout: What the held-out gap was taken on, in words.
+        scene, scene_link: Text of the scene's page, and its address beside the report.
     """
     floor = answer.noise_floor
     blocks: list[Block] = [

@@ -25,14 +25,10 @@ MOST_POINTS = 500  # in one panel; more would only make the page heavy
 class ArmView:
     """One pose as a line through the arm, with the gap at its end.
 
-    Attributes
-    ----------
-    outline
-        (k, 3) points from base to tool, base axes [m].
-    gaps
-        Name → (3,) gap [m].
-    label
-        The pose.
+    Attributes:
+        outline: (k, 3) points from base to tool, base axes [m].
+        gaps: Name → (3,) gap [m].
+        label: The pose.
     """
 
     outline: Array

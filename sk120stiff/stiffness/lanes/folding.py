@@ -24,48 +24,31 @@ VARIABLE, CONSTANT, NONE = 0, 1, 2  # does the turn about a joint's z depend on 
 class Fold(NamedTuple):
     """Constants of a chain of m joints, n coordinates and s of them soft.
 
-    Attributes
-    ----------
-    start
-        (9,) columns of the rotation before the first joint.
-    shift
-        (m + 1, 3) translation before each joint, and to the point after the last [m].
-    final
-        (3, 3) rotation from the axes after the last joint to the end frame.
-    tilt
-        (m, 2) cosine and sine of the turn about x before each joint.
-    pose_map, value
-        (m, n) and (m,): joint values q = pose_map z + value.
-    actuated, rest
-        Number of coordinates that motors drive, and (n,) where the others stand [rad or m].
-    offset
-        (m,) constant angle beside each joint's value [rad].
-    slides
-        (m,) 1 for a joint that slides, 0 for one that turns.
-    kind, constant
-        (m,) VARIABLE, CONSTANT or NONE, and (m, 2) cosine and sine where constant.
-    column_joint, column_coordinate, column_factor
-        Entries of the map from coordinates to joints, q = Σ factor · z.
-    mass, centre
-        (m,) mass that each joint carries [kg], and (m, 3) its centre in the folded frame [m].
-    gravity, sag
-        (3,) acceleration [m/s²] and (s, s) compliance of the soft coordinates under the weight;
-        all zero where nothing weighs.
-    soft
-        (s,) coordinates with a finite spring.
-    springs
-        (s(s+1)/2,) lower triangle of their K_θ by rows.
-    whitener
-        (s, s) L⁻¹ with L Lᵀ = K_θ.
-    pair
-        (p, 2) pairs of joints, the first nearer to the base or the same.
-    pair_end
-        (p,) end of each pair's stretch in the following two.
-    row
-        (e, 2) element of the lower triangle of K_C that a pair adds to, and of the strictly lower
-        triangle of its skew part; -1 for none.
-    factor
-        (e, 2) how much of it.
+    Attributes:
+        start: (9,) columns of the rotation before the first joint.
+        shift: (m + 1, 3) translation before each joint, and to the point after the last [m].
+        final: (3, 3) rotation from the axes after the last joint to the end frame.
+        tilt: (m, 2) cosine and sine of the turn about x before each joint.
+        pose_map, value: (m, n) and (m,): joint values q = pose_map z + value.
+        actuated, rest: Number of coordinates that motors drive, and (n,) where the others stand
+            [rad or m].
+        offset: (m,) constant angle beside each joint's value [rad].
+        slides: (m,) 1 for a joint that slides, 0 for one that turns.
+        kind, constant: (m,) VARIABLE, CONSTANT or NONE, and (m, 2) cosine and sine where constant.
+        column_joint, column_coordinate, column_factor: Entries of the map from coordinates to
+            joints, q = Σ factor · z.
+        mass, centre: (m,) mass that each joint carries [kg], and (m, 3) its centre in the folded
+            frame [m].
+        gravity, sag: (3,) acceleration [m/s²] and (s, s) compliance of the soft coordinates under
+            the weight; all zero where nothing weighs.
+        soft: (s,) coordinates with a finite spring.
+        springs: (s(s+1)/2,) lower triangle of their K_θ by rows.
+        whitener: (s, s) L⁻¹ with L Lᵀ = K_θ.
+        pair: (p, 2) pairs of joints, the first nearer to the base or the same.
+        pair_end: (p,) end of each pair's stretch in the following two.
+        row: (e, 2) element of the lower triangle of K_C that a pair adds to, and of the strictly
+            lower triangle of its skew part; -1 for none.
+        factor: (e, 2) how much of it.
     """
 
     start: Array
@@ -105,24 +88,16 @@ def fold(
 ) -> Fold:
     """Fold a mechanism with springs for the kernel.
 
-    Parameters
-    ----------
-    mechanism
-        Chain and linear coupling, virtual joints allowed.
-    springs
-        (n,) spring of each coordinate [N·m/rad or N/m], or (n, n) their symmetric K_θ. Infinite
-        ones (on the diagonal) are rigid.
-    point
-        (3,) the point in the end frame [m].
-    virtual
-        (n_v,) where the virtual joints stand [rad or m].
-    weight
-        Lets the arm sag before the load comes; only soft coordinates do.
+    Args:
+        mechanism: Chain and linear coupling, virtual joints allowed.
+        springs: (n,) spring of each coordinate [N·m/rad or N/m], or (n, n) their symmetric K_θ.
+            Infinite ones (on the diagonal) are rigid.
+        point: (3,) the point in the end frame [m].
+        virtual: (n_v,) where the virtual joints stand [rad or m].
+        weight: Lets the arm sag before the load comes; only soft coordinates do.
 
-    Raises
-    ------
-    InputError
-        The coupling is not linear, or the springs are no positive definite stiffness.
+    Raises:
+        InputError: The coupling is not linear, or the springs are no positive definite stiffness.
     """
     coupling = mechanism.elastic or mechanism.coupling
     if not isinstance(coupling, LinearCoupling):

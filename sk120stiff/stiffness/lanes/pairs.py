@@ -12,10 +12,8 @@ from sk120stiff.arrays import Array, Integers
 def contributions(to_joints: Array) -> tuple[Integers, Integers, Integers, Array]:
     """The pairs, their stretches, rows and factors of `Fold`.
 
-    Parameters
-    ----------
-    to_joints
-        (m, s) factors of the soft coordinates.
+    Args:
+        to_joints: (m, s) factors of the soft coordinates.
     """
     pairs: list[tuple[int, int]] = []
     ends: list[int] = []
