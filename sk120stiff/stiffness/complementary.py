@@ -37,6 +37,10 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
     about fixed axes has no potential. Symmetrise before any statement about definiteness.
     """
     load = np.asarray(wrench, dtype=float)
+    if not load.any():
+        n = screws.first.shape[-1]
+        batch = np.broadcast_shapes(screws.position.shape[:-1], load.shape[:-1])
+        return np.zeros((*batch, n, n))
     force, moment = load[..., None, :3], load[..., None, 3:]
     v, w = screws.linear, screws.angular
     upper = np.triu(np.cross(force, w) @ np.swapaxes(v, -1, -2))

@@ -1,0 +1,376 @@
+"""From positions and a model to geometry and springs, known as well as the positions tell them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic, situation_of
+from sk120stiff.effects.base import Options
+from sk120stiff.errors import InputError, Refusal
+from sk120stiff.identify.absolute.gauge import Frozen, least_set
+from sk120stiff.identify.absolute.placing import Placing, place
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.absolute.settle import settle
+from sk120stiff.identify.absolute.selection import waves_that_show
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solving import as_fit
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model, Parameter
+
+START = {"position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4}  # m or rad
+ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
+FAR = 8.0  # standard sizes of a row beyond which it is wild
+NORMAL = 1.538  # median length of three independent standard normal numbers
+REGISTERED = "registered"
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """Geometry and springs from positions.
+
+    Attributes
+    ----------
+    fit
+        The fit; its problem is a `PoseProblem`.
+    placed
+        The closed-form placing that came before; None where positions were not whole.
+    frozen
+        Small errors of geometry that these readings cannot tell.
+    still
+        Actuated joints that never move.
+    wild
+        (N,) rows of the readings given that were set aside.
+    waves
+        Transmission errors that show beyond doubt and so are in the model.
+    notes
+        What is to be said, in sentences.
+    """
+
+    fit: Fit
+    placed: Placing | None
+    frozen: tuple[Frozen, ...]
+    still: tuple[str, ...]
+    wild: Mask
+    waves: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def problem(self) -> PoseProblem:
+        """What was fitted."""
+        if not isinstance(self.fit.problem, PoseProblem):
+            raise TypeError("a calibration is a fit of poses")
+        return self.fit.problem
+
+    @property
+    def distances(self) -> Array:
+        """(K,) length of the gap at every row with a whole position [m]."""
+        return row_lengths(self.problem, self.fit.x)
+
+
+def row_lengths(problem: PoseProblem, x: Array) -> Array:
+    """(K,) length of the gap at every row with a whole position [m]."""
+    position = problem.channels.position
+    if position is None:
+        return np.zeros(0)
+    gap = problem.channel_gap(problem.values(x))[0]
+    held = problem.channels.held("position")
+    full = np.full(position.shape, np.nan)
+    full[held] = gap[problem.channels.kinds[0]]
+    length = np.linalg.norm(full, axis=1)
+    return np.asarray(length[np.isfinite(length)])
+
+
+def calibrate(
+    model: Model,
+    readings: Measurements,
+    *,
+    geometry: bool = True,
+    waves: bool = True,
+    freedom: Sequence[str] = (),
+    catalogue: Catalogue = CATALOGUE,
+) -> Calibration:
+    """Register the tracker, and estimate geometry, the marker's place and springs together.
+
+    Parameters
+    ----------
+    model
+        Starting values; its free parameters are estimated beside the geometry.
+    readings
+        Rows of where markers stand.
+    geometry
+        Estimate six small errors of every joint's frame, as far as they can be told.
+    waves
+        Let transmission errors in where the readings show them beyond doubt: what they leave out
+        would be taken for springs.
+    freedom
+        Full names of parameters to keep at their values.
+    catalogue
+        Where effects come from.
+
+    Raises
+    ------
+    InputError
+        No such robot gave these positions, or there are too few of them.
+    Refusal
+        The fit did not converge.
+    """
+    said = readings.absolute
+    if said is None:
+        raise InputError("there are no positions", where=str(readings.path or "measurements"))
+    model = in_gravity(model, said.gravity)
+    placed = place(model.robot, readings)
+    if placed is None and said.frame == "unknown":
+        raise InputError(
+            "fewer than three whole positions: nothing tells where the tracker stands",
+            where=str(readings.path or "measurements"),
+            remedy="Measure more poses, or state positions in base axes.",
+        )
+    wild = np.zeros(readings.n_readings, dtype=bool) if placed is None else placed.wild
+    start = started(model, readings, placed, geometry=geometry, catalogue=catalogue)
+    start, unloaded = _loaded(start, readings)
+    kept_back = set(freedom)
+    start = replace(
+        start,
+        parameters=tuple(
+            replace(p, free=False) if p.name in kept_back else p for p in start.parameters
+        ),
+    )
+    found, frozen, wild = _fitted(start, readings, wild)
+    chosen: tuple[str, ...] = ()
+    if waves:
+        shown = waves_that_show(found, catalogue)
+        if shown:
+            chosen = tuple(effect.id for effect in shown)
+            start = with_values_of(start, found.model)
+            for effect in shown:
+                start = start + effect
+            found, frozen, wild = _fitted(start, readings, wild)
+    a = readings.joints[readings.use]
+    still = tuple(
+        name for name, reach in zip(readings.joint_names, np.ptp(a, axis=0), strict=True)
+        if reach < 1e-6
+    )  # fmt: skip
+    notes = [*(placed.notes if placed is not None else ()), *unloaded]
+    return Calibration(found, placed, frozen, still, wild, chosen, tuple(notes))
+
+
+def in_gravity(model: Model, gravity: Array | None) -> Model:
+    """The model under the acceleration (3,) that a file states in base axes [m/s²]."""
+    if gravity is None:
+        return model
+    robot = model.robot
+    own = robot.gravity_in_base
+    scale = float(np.linalg.norm(own))
+    if not gravity.any() or scale == 0.0:
+        return replace(model, robot=replace(robot, gravity=np.zeros(3)), uncertainty=None)
+    # `Robot.gravity` is in axes of the root: turn what the file says as the root is turned.
+    columns = [replace(robot, gravity=axis).gravity_in_base for axis in np.eye(3)]
+    turned = np.linalg.solve(np.array(columns).T, gravity)
+    return replace(model, robot=replace(robot, gravity=turned), uncertainty=None)
+
+
+def options_of(readings: Measurements) -> Options:
+    """What effects may be told of readings."""
+    said = readings.absolute
+    labels = () if said is None or said.groups is None else tuple(dict.fromkeys(said.groups))
+    return Options(
+        poses=readings.poses,
+        timed=readings.time is not None,
+        series=labels,
+        thermal=said is not None and said.temperature is not None,
+    )
+
+
+def started(
+    model: Model,
+    readings: Measurements,
+    placed: Placing | None,
+    *,
+    geometry: bool,
+    catalogue: Catalogue = CATALOGUE,
+) -> Model:
+    """The model with frame, marker, payload and geometry beside what it has, where they are open."""
+    said, robot, told = readings.absolute, model.robot, options_of(readings)
+    if said is None:
+        return model
+    present = {effect.id for effect in model.effects}
+
+    def joined(model: Model, name: str, where: str, values: Array | None = None) -> Model:
+        effect = catalogue.effect(robot, name, where, told)
+        if effect.id in present or not effect.parameters:
+            return model
+        internal = np.zeros(len(effect.parameters)) if values is None else values
+        return model + [
+            Parameter(effect, spec, float(value), origin=REGISTERED)
+            for spec, value in zip(effect.parameters, internal, strict=True)
+        ]
+
+    if said.frame == "unknown" and placed is not None:
+        frame = np.concatenate([placed.shift, placed.turn])
+        model = joined(model, "tracker_frame", "tracker", frame)
+    if said.fit_point:
+        marker = np.zeros(3) if placed is None else placed.marker
+        model = joined(model, "tool_offset", robot.tool_frame, marker)
+        if said.groups is not None:
+            model = joined(model, "marker_shift", robot.tool_frame)
+    elif said.series is not None and len(set(said.series)) > 1:
+        model = joined(model, "marker_shift", robot.tool_frame)
+    if said.fit_payload:
+        model = joined(model, "payload", robot.tool_frame)
+    if geometry:
+        for where in catalogue["joint_frame"].places(robot):
+            model = joined(model, "joint_frame", where)
+    return model
+
+
+def _loaded(model: Model, readings: Measurements) -> tuple[Model, list[str]]:
+    """The model without springs where nothing bends them, and a sentence on that."""
+    said = readings.absolute
+    weighs = model.robot.mechanism().chain.weighs and model.robot.gravity.any()
+    hung = said is not None and bool(said.payload.any()) and bool(model.robot.gravity.any())
+    if weighs or hung or readings.wrench.any():
+        return model, []
+    springs = [effect.id for effect in model.effects if isinstance(effect, Elastic)]
+    for name in springs:
+        model = model.without(name)
+    why = (
+        "the URDF states no masses" if not model.robot.mechanism().chain.weighs else "gravity is 0"
+    )
+    return model, [
+        f"Nothing bends this arm as far as is known: {why}, and no payload and no load is stated. "
+        "Springs cannot be told from these positions; geometry can."
+    ]
+
+
+def _fitted(
+    start: Model, readings: Measurements, wild: Mask
+) -> tuple[Fit, tuple[Frozen, ...], Mask]:
+    """Fit, learn the noise, set wild rows aside, until nothing changes."""
+    said = readings.absolute
+    if said is None:
+        raise InputError("there are no positions")
+    sigma = dict(START)
+    model = start
+    for round_ in range(ROUNDS):
+        used = readings.select(np.flatnonzero(readings.use & ~wild))
+        found, frozen = _once(model, start, used, sigma)
+        problem = found.problem
+        if not isinstance(problem, PoseProblem):
+            raise TypeError("a fit of poses")
+        sigma = learned(found)
+        again = _wild(problem, found, readings, wild)
+        if round_ and (again == wild).all():
+            break
+        wild = again
+        model = with_values_of(start, found.model)
+    return found, frozen, wild
+
+
+def _rigid_columns(problem: PoseProblem, start: Model) -> Array:
+    """(M, P_free) whitened derivative of the rigid arm as it was stated.
+
+    Through sag and through second order nearly everything shows a little; nobody means that when
+    he says that an error of geometry can be told.
+    """
+    stiff = [p.internal * (not isinstance(p.effect, Elastic)) for p in start.parameters]
+    slope = problem.channel_gap(np.array(stiff), derivative=True)[1]
+    return slope[:, problem.free] * problem.scale / problem.of_channels.sigma[:, None]
+
+
+def _once(
+    model: Model, start: Model, used: Measurements, sigma: dict[str, float]
+) -> tuple[Fit, tuple[Frozen, ...]]:
+    said = used.absolute
+    if said is None:
+        raise InputError("there are no positions")
+    stated = all(said.channels.stated(kind) for kind in said.channels.present)
+    noise = NoiseModel(
+        said.channels.sigma.get("position", sigma["position"]),
+        zero="separate",
+        freedom=np.inf if stated else 0,
+    )
+    wide = PoseProblem(model, used, noise, sigma=sigma)
+    _refuse_too_few(wide)
+    small, frozen = least_set(model, _rigid_columns(wide, start), wide.scale, wide.span)
+    problem = PoseProblem(small, used, noise, sigma=sigma)
+    return as_fit(
+        problem, settle(problem.evaluate, problem.start, problem.bounds, problem.span)
+    ), frozen
+
+
+def _refuse_too_few(problem: PoseProblem) -> None:
+    frame = [
+        k for k in problem.free
+        if problem.model.parameters[k].effect.name in ("tracker_frame", "tool_offset")
+    ]  # fmt: skip
+    if len(problem.rows) <= len(frame):
+        raise InputError(
+            f"{len(problem.rows)} numbers cannot tell the {len(frame)} of the tracker's frame and "
+            "the marker's place",
+            where=str(problem.measurements.path or "measurements"),
+            remedy="Measure more poses.",
+        )
+
+
+def learned(found: Fit) -> dict[str, float]:
+    """Standard size of what is left in each kind of channel, over what it states of itself."""
+    problem = found.problem
+    if not isinstance(problem, PoseProblem):
+        raise TypeError("a fit of poses")
+    gap = found.residual * problem.of_channels.sigma
+    out = dict(START)
+    share = len(gap) / max(found.degrees_of_freedom, 1)
+    for kind, part in zip(problem.channels.present, problem.channels.kinds, strict=True):
+        unit = problem.channels.scale(kind)
+        size = float(np.sqrt(np.mean((gap[part] / unit) ** 2) * share))
+        out[kind] = max(size, 1e-9)
+    return out
+
+
+def _wild(problem: PoseProblem, found: Fit, readings: Measurements, wild: Mask) -> Mask:
+    """Rows whose gap no normal noise of the size of the others gives."""
+    used = np.flatnonzero(readings.use & ~wild)
+    square = np.bincount(problem.rows, found.residual**2, minlength=len(used))
+    count = np.bincount(problem.rows, minlength=len(used))
+    length = np.sqrt(square * 3.0 / np.maximum(count, 1))
+    size = float(np.median(length[count > 0])) / NORMAL
+    far = length > FAR * size
+    out = wild.copy()
+    if size > 0.0 and far.mean() < 0.1:
+        out[used[far]] = True
+    return out
+
+
+def with_values_of(model: Model, other: Model) -> Model:
+    """The model with the values that another one has for the same parameters."""
+    known = {p.name: p.internal for p in other.parameters}
+    return replace(
+        model,
+        parameters=tuple(replace(p, internal=known.get(p.name, p.internal)) for p in model.parameters),
+    )
+
+
+def situation_and_effects(
+    model: Model, readings: Measurements, catalogue: Catalogue = CATALOGUE
+) -> tuple[Effect, ...]:
+    """Every effect that could act on these readings and is not in the model."""
+    situation = situation_of(model.robot, readings)
+    present = {effect.id for effect in model.effects}
+    told = options_of(readings)
+    found = [
+        kind.at(model.robot, where, told)
+        for kind in catalogue
+        for where in kind.places(model.robot)
+    ]
+    return tuple(
+        effect for effect in found if effect.id not in present and effect.applies_to(situation)
+    )
+
+
+def refused(error: Refusal) -> str:
+    """The refusal as a sentence."""
+    return error.what

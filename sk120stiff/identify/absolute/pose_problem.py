@@ -1,0 +1,127 @@
+"""The least-squares problem of single numbers: each channel's gap over its own uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Index
+from sk120stiff.effects.geometry import ToolOffset
+from sk120stiff.effects.marker_shift import MarkerShift
+from sk120stiff.errors import InputError
+from sk120stiff.identify.solve.problem import Problem
+from sk120stiff.measurements import Channels
+from sk120stiff.measurements.absolute import Absolute
+from sk120stiff.model.pose_reading import read_poses
+
+ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
+
+
+@dataclass(frozen=True)
+class Independent:
+    """Whitening of M channels that are independent of one another.
+
+    Attributes
+    ----------
+    sigma
+        (M,) standard uncertainty of each [m or rad].
+    """
+
+    sigma: Array
+
+    @property
+    def logdet(self) -> float:
+        """Natural logarithm of the determinant of the covariance."""
+        return float(2.0 * np.log(self.sigma).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class PoseProblem(Problem):
+    """A model and readings of where markers stand.
+
+    Attributes
+    ----------
+    sigma
+        Standard uncertainty of each kind of channel that did not state its own [m or rad].
+    """
+
+    sigma: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.measurements.absolute is None:
+            raise InputError("there are no positions", where=str(self.measurements.path or ""))
+
+    @property
+    def said(self) -> Absolute:
+        """What the readings say beside their numbers."""
+        if self.measurements.absolute is None:
+            raise InputError("there are no positions")
+        return self.measurements.absolute
+
+    @property
+    def channels(self) -> Channels:
+        """The readings."""
+        return self.said.channels
+
+    @cached_property
+    def rows(self) -> Index:
+        """(M,) reading that each channel belongs to."""
+        return self.channels.rows
+
+    @cached_property
+    def lengths(self) -> Index:
+        """Channels that are lengths, not angles."""
+        parts = zip(self.channels.present, self.channels.kinds, strict=True)
+        picked = [np.arange(part.start, part.stop) for kind, part in parts if kind != "rotation"]
+        return np.concatenate([*picked, np.zeros(0, dtype=np.intp)]).astype(np.intp)
+
+    @cached_property
+    def of_channels(self) -> Independent:
+        """How uncertain every channel is."""
+        scales = []
+        for kind in self.channels.present:
+            scale = self.channels.scale(kind)
+            scales.append(scale if self.channels.stated(kind) else scale * self.sigma[kind])
+        return Independent(np.concatenate(scales))
+
+    @property
+    def whitener(self) -> Independent:  # type: ignore[override]
+        """See `Problem.whitener`."""
+        return self.of_channels
+
+    @cached_property
+    def span(self) -> Array:
+        """(P_free,) sizes in scaled units beyond which a value is implausible."""
+        sizes = []
+        for k in self.free:
+            parameter = self.model.parameters[k]
+            rough = self.said.fit_point and isinstance(parameter.effect, ToolOffset | MarkerShift)
+            sizes.append(ROUGH if rough else parameter.spec.plausible)
+        return np.array(sizes) / self.scale
+
+    def channel_gap(
+        self, values: Array, *, derivative: bool = False
+    ) -> tuple[Array, Array]:
+        """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction."""
+        seen = read_poses(self.model, self.situation, values, derivative=derivative)
+        shape = (self.situation.count, 3)
+        moved, moving = np.zeros(shape), np.zeros((*shape, seen.columns.shape[-1]))
+        if self.channels.shift is not None:
+            if derivative:
+                moved, moving = self.model.predict_with_sensitivities(self.situation, values)
+            else:
+                moved = self.model.predict(self.situation, values)
+        return self.channels.project(seen.position, seen.rotation, seen.columns, moved, moving)
+
+    def gap(self, x: Array) -> Array:
+        """(L,) measured minus predicted of all channels that are lengths [m]."""
+        return self.channel_gap(self.values(x))[0][self.lengths]
+
+    def evaluate(self, x: Array) -> tuple[Array, Array]:
+        """Whitened gap (M,) and its derivative (M, P_free) by `x`."""
+        gap, slope = self.channel_gap(self.values(x), derivative=True)
+        per = 1.0 / self.of_channels.sigma
+        return gap * per, -(slope[:, self.free] * self.scale) * per[:, None]
