@@ -16,7 +16,7 @@ from sk120stiff.cli.explain_output import (
     said,
 )
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.identify import parameter_rows
+from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import all_effects, situation_of

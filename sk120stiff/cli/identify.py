@@ -11,7 +11,9 @@ from typing import Annotated
 
 import typer
 
+from sk120stiff.cli.calibration import calibration_answer
 from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.identify_rows import Interval, parameter_rows
 from sk120stiff.cli.opening import model_for, open_data, provenance, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
@@ -31,7 +33,6 @@ from sk120stiff.identify import (
     lack_of_fit,
     profile_intervals,
     refitted,
-    unseen_reasons,
     weak_directions,
     yardstick,
 )
@@ -39,8 +40,6 @@ from sk120stiff.identify.report import noise_sentence, place_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, write_model
 from sk120stiff.slips import look, refuse_unbelievable, without_copies
-
-Interval = tuple[float, float]
 
 
 class Method(StrEnum):
@@ -101,6 +100,8 @@ def command(
     start = plain
     for name in effects or ():
         start = with_effect(start, name, readings)
+    if readings.absolute is not None:
+        return calibration_answer(start, readings, data, fix or (), out)
     start = with_freedom(start, fix or (), free)
     doubts = look(plain, readings)
     refuse_unbelievable(doubts, plain, readings)
@@ -160,40 +161,6 @@ def command(
         "model": out,
     }
     return Answer(document, _parts(found, intervals, error, lines, out))
-
-
-def parameter_rows(
-    found: Fit, profile: Sequence[Interval] | None = None
-) -> list[dict[str, object]]:
-    """The estimated parameters as the JSON of several commands states them.
-
-    `value` ± `std` are the estimate and its standard error to first order; `interval_95` is made in
-    compliances, where the readings are linear, and is the better one for soft data. A value that
-    the readings do not show is null, and `reason` says why.
-    """
-    rows: list[dict[str, object]] = []
-    starts = found.problem.model.values[found.problem.free]
-    ends = found.intervals()
-    unseen = unseen_reasons(found)
-    for k, p in enumerate(found.parameters):
-        shown = bool(found.identifiable[k])
-        row: dict[str, object] = {
-            "name": p.name,
-            "value": p.value if shown else None,
-            "std": p.std if shown else None,
-            "unit": p.spec.unit,
-            "meaning": p.spec.meaning,
-            "interval_95": ends[k],
-            "start": p.spec.public(float(starts[k])),
-            "at_bound": bool(found.at_bound[k]),
-            "identifiable": shown,
-            "reason": unseen.get(p.name),
-            "plausible": abs(p.value) <= p.spec.plausible,
-        }
-        if profile is not None:
-            row["profile_95"] = profile[k]
-        rows.append(row)
-    return rows
 
 
 def with_effect(model: Model, text: str, readings: Measurements) -> Model:

@@ -8,20 +8,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic, situation_of
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
 from sk120stiff.effects.base import Options
-from sk120stiff.errors import InputError, Refusal
+from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.gauge import Frozen, least_set
 from sk120stiff.identify.absolute.placing import Placing, place
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.absolute.settle import settle
 from sk120stiff.identify.absolute.selection import waves_that_show
+from sk120stiff.identify.absolute.settle import settle
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model, Parameter
 
 START = {"position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4}  # m or rad
+SAME = 0.2  # change of the logarithm of a noise that is none
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
 FAR = 8.0  # standard sizes of a row beyond which it is wild
 NORMAL = 1.538  # median length of three independent standard normal numbers
@@ -145,10 +146,7 @@ def calibrate(
         shown = waves_that_show(found, catalogue)
         if shown:
             chosen = tuple(effect.id for effect in shown)
-            start = with_values_of(start, found.model)
-            for effect in shown:
-                start = start + effect
-            found, frozen, wild = _fitted(start, readings, wild)
+            found = extended(found, shown)
     a = readings.joints[readings.use]
     still = tuple(
         name for name, reach in zip(readings.joint_names, np.ptp(a, axis=0), strict=True)
@@ -169,7 +167,7 @@ def in_gravity(model: Model, gravity: Array | None) -> Model:
         return replace(model, robot=replace(robot, gravity=np.zeros(3)), uncertainty=None)
     # `Robot.gravity` is in axes of the root: turn what the file says as the root is turned.
     columns = [replace(robot, gravity=axis).gravity_in_base for axis in np.eye(3)]
-    turned = np.linalg.solve(np.array(columns).T, gravity)
+    turned = np.asarray(np.linalg.solve(np.array(columns).T, gravity), dtype=np.float64)
     return replace(model, robot=replace(robot, gravity=turned), uncertainty=None)
 
 
@@ -193,7 +191,7 @@ def started(
     geometry: bool,
     catalogue: Catalogue = CATALOGUE,
 ) -> Model:
-    """The model with frame, marker, payload and geometry beside what it has, where they are open."""
+    """The model with frame, marker, payload and geometry beside what it has."""
     said, robot, told = readings.absolute, model.robot, options_of(readings)
     if said is None:
         return model
@@ -250,24 +248,49 @@ def _fitted(
     start: Model, readings: Measurements, wild: Mask
 ) -> tuple[Fit, tuple[Frozen, ...], Mask]:
     """Fit, learn the noise, set wild rows aside, until nothing changes."""
-    said = readings.absolute
-    if said is None:
-        raise InputError("there are no positions")
-    sigma = dict(START)
-    model = start
-    for round_ in range(ROUNDS):
+    sigma, model = dict(START), start
+    for _ in range(ROUNDS):
         used = readings.select(np.flatnonzero(readings.use & ~wild))
-        found, frozen = _once(model, start, used, sigma)
-        problem = found.problem
-        if not isinstance(problem, PoseProblem):
-            raise TypeError("a fit of poses")
-        sigma = learned(found)
-        again = _wild(problem, found, readings, wild)
-        if round_ and (again == wild).all():
+        wide = _problem(model, used, sigma)
+        _refuse_too_few(wide)
+        small, frozen = least_set(model, _rigid_columns(wide, start), wide.span)
+        found = fitted(_problem(small, used, sigma))
+        before, sigma = sigma, learned(found)
+        again = _wild(found, readings, wild)
+        if (again == wild).all() and all(
+            abs(np.log(sigma[kind] / before[kind])) < SAME for kind in wide.channels.present
+        ):
             break
-        wild = again
-        model = with_values_of(start, found.model)
+        wild, model = again, with_values_of(start, found.model)
     return found, frozen, wild
+
+
+def fitted(problem: PoseProblem) -> Fit:
+    """Least squares from the problem's start."""
+    return as_fit(problem, settle(problem.evaluate, problem.start, problem.bounds, problem.span))
+
+
+def extended(found: Fit, effects: Sequence[Effect]) -> Fit:
+    """The same readings fitted with further effects; what was frozen stays so."""
+    model = found.model
+    for effect in effects:
+        model = model + effect
+    first = fitted(replace(_poses(found), model=model))
+    return fitted(replace(_poses(first), model=first.model, sigma=learned(first)))
+
+
+def _poses(found: Fit) -> PoseProblem:
+    if not isinstance(found.problem, PoseProblem):
+        raise TypeError("a fit of poses")
+    return found.problem
+
+
+def _problem(model: Model, used: Measurements, sigma: dict[str, float]) -> PoseProblem:
+    channels = None if used.absolute is None else used.absolute.channels
+    stated = channels is not None and all(channels.stated(kind) for kind in channels.present)
+    size = sigma["position"] if channels is None else channels.sigma.get("position")
+    noise = NoiseModel(size or sigma["position"], zero="separate", freedom=np.inf if stated else 0)
+    return PoseProblem(model, used, noise, sigma=sigma)
 
 
 def _rigid_columns(problem: PoseProblem, start: Model) -> Array:
@@ -279,27 +302,6 @@ def _rigid_columns(problem: PoseProblem, start: Model) -> Array:
     stiff = [p.internal * (not isinstance(p.effect, Elastic)) for p in start.parameters]
     slope = problem.channel_gap(np.array(stiff), derivative=True)[1]
     return slope[:, problem.free] * problem.scale / problem.of_channels.sigma[:, None]
-
-
-def _once(
-    model: Model, start: Model, used: Measurements, sigma: dict[str, float]
-) -> tuple[Fit, tuple[Frozen, ...]]:
-    said = used.absolute
-    if said is None:
-        raise InputError("there are no positions")
-    stated = all(said.channels.stated(kind) for kind in said.channels.present)
-    noise = NoiseModel(
-        said.channels.sigma.get("position", sigma["position"]),
-        zero="separate",
-        freedom=np.inf if stated else 0,
-    )
-    wide = PoseProblem(model, used, noise, sigma=sigma)
-    _refuse_too_few(wide)
-    small, frozen = least_set(model, _rigid_columns(wide, start), wide.scale, wide.span)
-    problem = PoseProblem(small, used, noise, sigma=sigma)
-    return as_fit(
-        problem, settle(problem.evaluate, problem.start, problem.bounds, problem.span)
-    ), frozen
 
 
 def _refuse_too_few(problem: PoseProblem) -> None:
@@ -318,9 +320,7 @@ def _refuse_too_few(problem: PoseProblem) -> None:
 
 def learned(found: Fit) -> dict[str, float]:
     """Standard size of what is left in each kind of channel, over what it states of itself."""
-    problem = found.problem
-    if not isinstance(problem, PoseProblem):
-        raise TypeError("a fit of poses")
+    problem = _poses(found)
     gap = found.residual * problem.of_channels.sigma
     out = dict(START)
     share = len(gap) / max(found.degrees_of_freedom, 1)
@@ -331,8 +331,9 @@ def learned(found: Fit) -> dict[str, float]:
     return out
 
 
-def _wild(problem: PoseProblem, found: Fit, readings: Measurements, wild: Mask) -> Mask:
+def _wild(found: Fit, readings: Measurements, wild: Mask) -> Mask:
     """Rows whose gap no normal noise of the size of the others gives."""
+    problem = _poses(found)
     used = np.flatnonzero(readings.use & ~wild)
     square = np.bincount(problem.rows, found.residual**2, minlength=len(used))
     count = np.bincount(problem.rows, minlength=len(used))
@@ -350,27 +351,7 @@ def with_values_of(model: Model, other: Model) -> Model:
     known = {p.name: p.internal for p in other.parameters}
     return replace(
         model,
-        parameters=tuple(replace(p, internal=known.get(p.name, p.internal)) for p in model.parameters),
+        parameters=tuple(
+            replace(p, internal=known.get(p.name, p.internal)) for p in model.parameters
+        ),
     )
-
-
-def situation_and_effects(
-    model: Model, readings: Measurements, catalogue: Catalogue = CATALOGUE
-) -> tuple[Effect, ...]:
-    """Every effect that could act on these readings and is not in the model."""
-    situation = situation_of(model.robot, readings)
-    present = {effect.id for effect in model.effects}
-    told = options_of(readings)
-    found = [
-        kind.at(model.robot, where, told)
-        for kind in catalogue
-        for where in kind.places(model.robot)
-    ]
-    return tuple(
-        effect for effect in found if effect.id not in present and effect.applies_to(situation)
-    )
-
-
-def refused(error: Refusal) -> str:
-    """The refusal as a sentence."""
-    return error.what

@@ -1,4 +1,4 @@
-"""Which small errors of joint frames can be told apart at all: a least set, and why the rest is not.
+"""Which small errors of joint frames can be told apart: a least set, and why the rest is not.
 
 Columns of the derivative are taken one after the other. One that the earlier ones make up, or that
 beside them would be known no better than what is plausible anyway, is frozen at its value; what it
@@ -52,9 +52,7 @@ class Frozen:
         return f"{self.name} {how} {', '.join(self.inside)}: it is counted there."
 
 
-def least_set(
-    model: Model, jacobian: Array, scale: Array, span: Array
-) -> tuple[Model, tuple[Frozen, ...]]:
+def least_set(model: Model, jacobian: Array, span: Array) -> tuple[Model, tuple[Frozen, ...]]:
     """The model with what cannot be told frozen, and what that is.
 
     Parameters
@@ -63,11 +61,13 @@ def least_set(
         Its free parameters are the columns.
     jacobian
         (M, P_free) whitened derivative by scaled parameters.
-    scale, span
-        (P_free,) internal size of one unit, and plausible size in these units.
+    span
+        (P_free,) plausible sizes in scaled units.
     """
     free = model.free
-    jacobian = np.linalg.qr(jacobian, mode="r")  # lengths and angles of columns are those of R
+    jacobian = np.asarray(
+        np.linalg.qr(jacobian, mode="r")
+    )  # lengths and angles of columns are those of R
     movable = np.array([isinstance(model.parameters[k].effect, MAY_FREEZE) for k in free])
     geometry = [k for k in range(len(free)) if _moves_geometry(model, int(free[k]))]
     order = [k for k in geometry if not movable[k]] + [k for k in geometry if movable[k]]

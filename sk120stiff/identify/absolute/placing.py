@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.registration import Registration, register
@@ -126,11 +126,12 @@ class _Cloud:
             if found is None:
                 raise InputError("fewer than three positions", remedy="Measure more poses.")
             left = self.left(found)
+            best = found
             again = left <= max(FAR * float(np.median(left)), LEAST)
             if (again == kept).all() or again.mean() < 1.0 - WILD:
                 break
             kept = again
-        return found, kept
+        return best, kept
 
     def left(self, found: Registration) -> Array:
         """(N,) distance of every position from where the placed robot has the marker [m]."""
@@ -147,7 +148,7 @@ class _Cloud:
 
 
 def _no_such_arm(
-    cloud: _Cloud, found: Registration, readings: Measurements, whole: Array
+    cloud: _Cloud, found: Registration, readings: Measurements, whole: Index
 ) -> InputError:
     """What would explain positions that no placing of this robot gives."""
     where = str(readings.path or "measurements")
@@ -188,8 +189,8 @@ def _slips(cloud: _Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float
     """What is left with one slip mended, what it is, and the remedy."""
     turning = ~np.array(cloud.robot.prismatic)
 
-    def left(**change: Array) -> float:
-        return replace(cloud, **change).placed(fit_marker=True)[0].rms
+    def left(a: Array = cloud.a, x: Array = cloud.x) -> float:
+        return replace(cloud, a=a, x=x).placed(fit_marker=True)[0].rms
 
     for factor, was, unit in (
         (np.pi / 180.0, "degrees, not radians", "deg"),

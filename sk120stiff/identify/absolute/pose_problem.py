@@ -102,9 +102,7 @@ class PoseProblem(Problem):
             sizes.append(ROUGH if rough else parameter.spec.plausible)
         return np.array(sizes) / self.scale
 
-    def channel_gap(
-        self, values: Array, *, derivative: bool = False
-    ) -> tuple[Array, Array]:
+    def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction."""
         seen = read_poses(self.model, self.situation, values, derivative=derivative)
         shape = (self.situation.count, 3)

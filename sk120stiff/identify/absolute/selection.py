@@ -2,75 +2,72 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Catalogue, Effect
+from sk120stiff.effects.base import Options
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
+
+CLEAR = 6.0  # by which the BIC must fall
 
 
 def waves_that_show(found: Fit, catalogue: Catalogue) -> tuple[Effect, ...]:
     """Transmission errors that the BIC asks for, one after the other, beside a fitted model."""
-    from sk120stiff.identify.absolute.pose_problem import PoseProblem
+    model, kind = found.model, catalogue["transmission_error"]
+    present = {effect.id for effect in model.effects}
+    every = (kind.at(model.robot, where, Options()) for where in kind.places(model.robot))
+    effects = [effect for effect in every if effect.id not in present]
+    if not effects:
+        return ()
+    blocks = columns_of(found, effects)
+    picked = _forward(blocks, found.residual, len(found.x))
+    return tuple(effects[k] for k in picked)
 
+
+def columns_of(found: Fit, effects: Sequence[Effect]) -> list[Array]:
+    """(M, p) whitened derivatives by further effects, beside what the fit estimates already."""
     problem = found.problem
     if not isinstance(problem, PoseProblem):
         raise TypeError("a fit of poses")
-    model, kind = found.model, catalogue["transmission_error"]
-    present = {effect.id for effect in model.effects}
-    effects = [
-        effect
-        for effect in (kind.at(model.robot, where, _none()) for where in kind.places(model.robot))
-        if effect.id not in present
-    ]
-    if not effects:
-        return ()
-    wider = model
+    wider = found.model
     for effect in effects:
         wider = wider + effect
-    every = replace(problem, model=wider)
-    slope = every.channel_gap(wider.values, derivative=True)[1]
-    first = len(model.parameters)
-    white = slope[:, first:] / problem.of_channels.sigma[:, None]
-    Q = np.linalg.qr(found.jacobian)[0]
+    slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
+    white = slope[:, len(found.model.parameters) :] / problem.of_channels.sigma[:, None]
+    Q = np.asarray(np.linalg.qr(found.jacobian)[0])
     white = white - Q @ (Q.T @ white)
-    residual = found.residual - Q @ (Q.T @ found.residual)
-    per = white.shape[1] // len(effects)
-    groups = [slice(per * k, per * (k + 1)) for k in range(len(effects))]
-    return tuple(effects[k] for k in _forward(white, residual, groups, len(found.x)))
+    ends = np.cumsum([len(effect.parameters) for effect in effects])
+    return np.split(white, ends[:-1], axis=1)
 
 
-def _forward(columns: Array, residual: Array, groups: list[slice], spent: int) -> list[int]:
-    count = len(residual)
-    chosen: list[int] = []
-    scale = np.linalg.norm(columns, axis=0)
-    columns = columns / np.where(scale > 0.0, scale, 1.0)
-    while len(chosen) < len(groups):
-        tried = []
-        for k in range(len(groups)):
-            if k in chosen:
-                continue
-            pick = np.concatenate([np.arange(g.start, g.stop) for g in (*map(groups.__getitem__, chosen), groups[k])])
-            fitted = np.linalg.lstsq(columns[:, pick], residual, rcond=1e-6)[0]
-            left = residual - columns[:, pick] @ fitted
-            rank = 4 * (len(chosen) + 1)
-            tried.append((count * np.log(left @ left / count) + rank * np.log(count), k, left))
-        best = min(tried, key=lambda item: item[0])
-        fitted_now = [g for g in map(groups.__getitem__, chosen)]
-        pick = np.concatenate([np.arange(g.start, g.stop) for g in fitted_now]) if chosen else None
-        now = residual
-        if pick is not None:
-            now = residual - columns[:, pick] @ np.linalg.lstsq(columns[:, pick], residual, rcond=1e-6)[0]
-        score = count * np.log(now @ now / count) + 4 * len(chosen) * np.log(count)
-        if best[0] >= score - 6.0 or spent + 4 * (len(chosen) + 1) >= count // 2:
+def _forward(blocks: list[Array], residual: Array, spent: int) -> list[int]:
+    """Blocks that lower the BIC clearly, the best one first."""
+    count, chosen = len(residual), list[int]()
+    score = _bic([], residual)
+    while len(chosen) < len(blocks):
+        rest = [k for k in range(len(blocks)) if k not in chosen]
+        tried = {k: _bic([blocks[j] for j in (*chosen, k)], residual) for k in rest}
+        best = min(rest, key=lambda k: tried[k])
+        spent += blocks[best].shape[1]
+        if tried[best] > score - CLEAR or 2 * spent > count:
             break
-        chosen.append(best[1])
+        chosen.append(best)
+        score = tried[best]
     return chosen
 
 
-def _none():  # type: ignore[no-untyped-def]
-    from sk120stiff.effects.base import Options
-
-    return Options()
+def _bic(blocks: list[Array], residual: Array) -> float:
+    count, left, rank = len(residual), residual, 0
+    if blocks:
+        A = np.concatenate(blocks, axis=1)
+        size = np.linalg.norm(A, axis=0)
+        A = A / np.where(size > 0.0, size, 1.0)
+        weights, _, found, _ = np.linalg.lstsq(A, residual, rcond=1e-6)
+        left, rank = residual - A @ weights, int(found)
+    square = max(float(left @ left), 1e-300)
+    return float(count * np.log(square / count) + rank * np.log(count))

@@ -71,10 +71,15 @@ def settle(evaluate: Evaluate, start: Array, bounds: tuple[Array, Array], span: 
 
 
 def linear_step(
-    jacobian: Array, residual: Array, x: Array, start: Array, bounds: tuple[Array, Array], span: Array
+    jacobian: Array,
+    residual: Array,
+    x: Array,
+    start: Array,
+    bounds: tuple[Array, Array],
+    span: Array,
 ) -> Array:
     """(P,) step to the minimum of the linearised problem within the bounds."""
-    R = np.linalg.qr(np.column_stack([jacobian, residual]), mode="r")
+    R = np.asarray(np.linalg.qr(np.column_stack([jacobian, residual]), mode="r"))
     A = np.concatenate([R[:, :-1], np.diag(1.0 / span)])
     b = np.concatenate([-R[:, -1], (start - x) / span])
     size = np.linalg.norm(A, axis=0)

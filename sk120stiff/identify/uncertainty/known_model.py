@@ -38,6 +38,26 @@ def known_model(fit: Fit) -> Model:
     """
     if not np.isfinite(fit.unit):
         return fit.model
+    test, noise = lack_of_fit(fit), yardstick(fit)
+    sigma = noise.sigma or fit.problem.noise.sigma * fit.noise_factor
+    known = known_estimates(fit, sigma, _source(fit, noise))
+    if test is not None:
+        known = replace(known, remainder=_remainder(fit, known, test))
+    return fit.model.known(known)
+
+
+def known_estimates(fit: Fit, sigma: float, source: str) -> Uncertainty:
+    """What the readings show of the estimates, and what they do not.
+
+    Parameters
+    ----------
+    fit
+        A fit with a known size of its noise.
+    sigma
+        Standard uncertainty of one reading per axis [m].
+    source
+        Which readings it comes from, in words.
+    """
     problem = fit.problem
     scale, span = problem.scale, problem.span
     free = np.zeros(len(fit.x), dtype=bool)
@@ -51,19 +71,15 @@ def known_model(fit: Fit) -> Model:
     unseen = np.where(lost[:, None], blind * size[:, None], 0.0).T
     nothing = np.sqrt(np.diag(covariance)) < ROUNDING * np.abs(unseen).max(axis=0, initial=0.0)
     covariance = np.where(nothing | nothing[:, None], 0.0, covariance)
-    test, noise = lack_of_fit(fit), yardstick(fit)
-    known = Uncertainty(
+    return Uncertainty(
         names=tuple(parameter.name for parameter in fit.parameters),
         values=np.array([parameter.internal for parameter in fit.parameters]),
         covariance=0.5 * (covariance + covariance.T),
         unseen=unseen[np.abs(unseen).max(axis=1, initial=0.0) > 0.0],
-        noise=noise.sigma or problem.noise.sigma * fit.noise_factor,
+        noise=sigma,
         freedom=None if np.isinf(fit.freedom) else float(fit.freedom),
-        source=_source(fit, noise),
+        source=source,
     )
-    if test is not None:
-        known = replace(known, remainder=_remainder(fit, known, test))
-    return fit.model.known(known)
 
 
 def _source(fit: Fit, noise: Yardstick) -> str:

@@ -1,0 +1,85 @@
+"""What `identify` answers where readings say where markers stand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.identify_rows import parameter_rows
+from sk120stiff.cli.opening import provenance
+from sk120stiff.cli.tables import table
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
+from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
+from sk120stiff.identify.uncertainty.known_model import known_estimates
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model, write_model
+
+
+def calibration_answer(
+    model: Model, readings: Measurements, data: Path, fix: Sequence[str], out: Path | None
+) -> Answer:
+    """Geometry, springs and what cannot be told, as JSON and for people."""
+    found = calibrate(model, readings, freedom=tuple(fix))
+    fit = found.fit
+    if out is not None:
+        write_model(replace(known_calibration(found), provenance=provenance(data, readings)), out)
+    reasons = unseen(found)
+    sigma = readings.absolute.channels.sigma if readings.absolute is not None else {}
+    stated = sigma.get("position")
+    document = {
+        "robot": model.robot.name,
+        "parameters": parameter_rows(fit, unseen=reasons),
+        "rms_um": fit.rms * 1e6,
+        "mean_distance_um": _mean(found),
+        "placed_rms_um": None if found.placed is None else found.placed.rms * 1e6,
+        "sigma_um": None if stated is None else stated * 1e6,
+        "sigma_stated": fit.sigma_known,
+        "chi_square": fit.chi_square,
+        "degrees_of_freedom": fit.degrees_of_freedom,
+        "inflated": fit.noise_factor if fit.exceeds else None,
+        "condition": fit.condition,
+        "weak_directions": [item.sentence() for item in found.frozen],
+        "frozen": [item.name for item in found.frozen],
+        "still_joints": list(found.still),
+        "set_aside": [
+            {"pose": readings.pose[row], "line": int(readings.line[row])}
+            for row in found.wild.nonzero()[0]
+        ],
+        "waves": list(found.waves),
+        "noise": gap_sentence(found),
+        "notes": list(found.notes),
+        "iterations": fit.iterations,
+        "model": out,
+    }
+    parts: list[object] = [_table(found), *findings(found, readings)]
+    if out is not None:
+        parts.append(f"Written to {out}.")
+    return Answer(document, parts)
+
+
+def known_calibration(found: Calibration) -> Model:
+    """The fitted model with its uncertainty, as it is written to a file."""
+    fit = found.fit
+    sigma = fit.problem.noise.sigma if fit.sigma_known else fit.rms
+    source = f"{found.problem.situation.count} readings of positions"
+    return fit.model.known(known_estimates(fit, sigma, source))
+
+
+def _mean(found: Calibration) -> float | None:
+    distances = found.distances
+    return float(distances.mean() * 1e6) if len(distances) else None
+
+
+def _table(found: Calibration) -> object:
+    fit = found.fit
+    known = fit.identifiable
+    rows: list[tuple[object, ...]] = []
+    for k, (p, (low, high)) in enumerate(zip(fit.parameters, fit.intervals(), strict=True)):
+        if not known[k]:
+            rows.append((p.name, "not identifiable", "", "", "", p.spec.unit))
+            continue
+        std = "on its bound" if p.std is None else p.std
+        rows.append((p.name, p.value, std, low, high, p.spec.unit))
+    return table("Parameters", ["name", "value", "± std", "95 % from", "to", "unit"], rows)

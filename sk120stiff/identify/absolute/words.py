@@ -1,0 +1,75 @@
+"""A calibration in words: what was found, what cannot be told, what was set aside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.solve.polish import FAINTEST
+from sk120stiff.measurements import Measurements
+
+SHOWN = 12  # frozen parameters and rows that are told one by one
+
+NO_TORQUE = "neither weight nor payload nor load puts a torque on it that shows"
+SHARED = "these positions tell it together with errors of geometry only"
+
+
+def gap_sentence(found: Calibration) -> str:
+    """How far positions are off the model, and what the noise is taken to be."""
+    fit, problem = found.fit, found.problem
+    distances = found.distances
+    mean = f", {1e6 * distances.mean():.3g} µm mean distance" if len(distances) else ""
+    said = (
+        f"Gap {1e6 * fit.rms:.3g} µm rms per axis{mean}, over {len(problem.rows)} numbers of "
+        f"{problem.situation.count} readings; {fit.estimated} values estimated."
+    )
+    if not fit.sigma_known:
+        return f"{said} No uncertainty is stated; the gap itself is taken for it."
+    if fit.exceeds:
+        return (
+            f"{said} That is {fit.noise_factor:.3g} times the stated uncertainty: something is "
+            "missing ('explain' looks for it), and the standard errors are larger by as much."
+        )
+    return f"{said} That agrees with the stated uncertainty."
+
+
+def unseen(found: Calibration) -> dict[str, str]:
+    """Full name → reason, for every estimated parameter that the positions do not determine."""
+    fit = found.fit
+    alone = np.linalg.norm(fit.jacobian, axis=0) * fit.problem.span > FAINTEST
+    return {
+        p.name: SHARED if shows else NO_TORQUE
+        for p, known, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
+        if not known
+    }
+
+
+def findings(found: Calibration, readings: Measurements) -> list[str]:
+    """Everything beside the numbers, in sentences."""
+    said = list(found.notes)
+    if found.placed is not None:
+        said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
+    said.append(gap_sentence(found))
+    if found.waves:
+        said.append(
+            f"Waves over the joints' angles show beyond doubt ({', '.join(found.waves)}) and are "
+            "in the model: springs would take them for sag."
+        )
+    said += [f"{name} cannot be seen: {why}." for name, why in unseen(found).items()]
+    said += [f"{joint} never moves: what is beyond it moves as one." for joint in found.still]
+    if found.frozen:
+        said.append(f"{len(found.frozen)} small errors of geometry cannot be told apart here:")
+        said += _some([f"  {item.sentence()}" for item in found.frozen])
+    rows = np.flatnonzero(found.wild)
+    if len(rows):
+        said.append(f"{len(rows)} rows lie far off all others and were set aside:")
+        said += _some([f"  line {readings.line[row]} (pose {readings.pose[row]})" for row in rows])
+    return said
+
+
+def _some(lines: Sequence[str]) -> list[str]:
+    if len(lines) <= SHOWN:
+        return list(lines)
+    return [*lines[:SHOWN], f"  ... and {len(lines) - SHOWN} more."]
