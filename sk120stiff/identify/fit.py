@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SHOWN = 4  # parameters in one line
+MANY = 20  # rows for one parameter from which on turning them first pays
 LEVEL = 0.01  # probability below which model and readings are said to disagree
 
 
@@ -115,6 +116,14 @@ class Fit:
         """Root mean square of the gap over all readings and axes [m]."""
         return float(np.sqrt(np.mean(self.gap**2)))
 
+    @cached_property
+    def small(self) -> tuple[Array, Array]:
+        """Derivative and gap, turned: few rows hold all that is known of the parameters."""
+        if len(self.residual) < MANY * (len(self.x) + 1):
+            return self.jacobian, self.residual
+        Q, R = np.linalg.qr(self.jacobian)
+        return np.asarray(R), np.asarray(Q.T @ self.residual)
+
     @property
     def chi_square(self) -> float:
         """Sum of squares of the whitened gap."""
@@ -124,7 +133,7 @@ class Fit:
     def estimated(self) -> int:
         """Number of combinations of parameters that the readings determine."""
         moving = ~self.at_bound
-        return len(seen_directions(self.jacobian[:, moving], self.problem.span[moving])[1])
+        return len(seen_directions(self.small[0][:, moving], self.problem.span[moving])[1])
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -195,7 +204,7 @@ class Fit:
         """Parameters that lie on one another, of which the bounds alone say who carries what."""
         reach = self.reach() * self.unit
         bounds, span = self.problem.bounds, self.problem.span
-        return overlays(self.x, self.jacobian, self.residual, self.at_bound, bounds, span, reach)
+        return overlays(self.x, *self.small, self.at_bound, bounds, span, reach)
 
     @cached_property
     def held(self) -> Mask:
@@ -215,7 +224,7 @@ class Fit:
         Where a bound decides which of several like parameters carries the load, all of them count
         as free: what one has, another may.
         """
-        covariance = covariance_of(self.jacobian, self.held, self.problem.span)
+        covariance = covariance_of(self.small[0], self.held, self.problem.span)
         if np.isfinite(self.unit):
             beside = np.zeros(len(self.x)) if self.doubt is None else self.doubt
             return np.asarray(covariance * self.unit**2 + np.diag(beside**2))
@@ -249,13 +258,13 @@ class Fit:
     @cached_property
     def condition(self) -> float:
         """Condition number of the whitened derivative with columns of unit length."""
-        return condition_of(self.jacobian)
+        return condition_of(self.small[0])
 
     @cached_property
     def identifiable(self) -> Mask:
         """(P_free,) parameters that the readings determine at all, those on a bound included."""
         return np.asarray(
-            np.isfinite(np.diag(covariance_of(self.jacobian, self.held, self.problem.span)))
+            np.isfinite(np.diag(covariance_of(self.small[0], self.held, self.problem.span)))
         )
 
     def reach(self, level: float = 0.95) -> float:
@@ -274,8 +283,7 @@ class Fit:
         """
         ends = internal_intervals(
             self.x,
-            self.jacobian,
-            self.residual,
+            *self.small,
             self.at_bound,
             self.problem.bounds,
             self.problem.span,

@@ -12,7 +12,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.registration import Registration, register
 from sk120stiff.robot import Robot
-from sk120stiff.robot.kinematics.rotation import vector_of
+from sk120stiff.robot.rotations import rotation_vector
 
 FEWEST = 3  # positions that a frame can be registered from
 ROUNDS = 8  # of registering and leaving out what lies far off
@@ -96,7 +96,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     wild[whole[~kept]] = True
     return Placing(
         shift=found.shift,
-        turn=vector_of(found.turn),
+        turn=rotation_vector(found.turn),
         marker=found.marker if free else np.zeros(3),
         rms=found.rms,
         wild=wild,
@@ -246,8 +246,7 @@ def _markers(cloud: _Cloud) -> Iterator[tuple[float, float, str, str]]:
 
 
 def _zeros_and_signs(cloud: _Cloud, names: tuple[str, ...]) -> tuple[float, str]:
-    """Best zeros (quarter turns) and signs of the joints, one joint after the other, and how to
-    write them; the first joint's zero is the tracker's frame, the last one's the marker's place."""
+    """What is left with the best zeros (quarter turns) and signs, and how to write them."""
     n = cloud.a.shape[1]
     sign, zero = np.ones(n), np.zeros(n)
     turning = ~np.array(cloud.robot.prismatic)
@@ -257,18 +256,18 @@ def _zeros_and_signs(cloud: _Cloud, names: tuple[str, ...]) -> tuple[float, str]
         return moved.placed(fit_marker=True)[0].rms
 
     best = left(sign, zero)
-    for _ in range(3):
-        before = best
+    for _ in range(n):
+        tried: list[tuple[float, int, float, float]] = []
         for k in range(n):
             for s in (1.0, -1.0):
                 for quarter in range(4 if turning[k] else 1):
                     own_sign, own_zero = sign.copy(), zero.copy()
                     own_sign[k], own_zero[k] = s, quarter * np.pi / 2
-                    rms = left(own_sign, own_zero)
-                    if rms < 0.999 * best:
-                        best, sign, zero = rms, own_sign, own_zero
-        if best > 0.999 * before:
+                    tried.append((left(own_sign, own_zero), k, s, quarter * np.pi / 2))
+        nearest = min(tried)
+        if nearest[0] > 0.9 * best:
             break
+        best, k, sign[nearest[1]], zero[nearest[1]] = nearest
     changed = []
     for k, name in enumerate(names):
         degrees = (np.degrees(zero[k]) + 180.0) % 360.0 - 180.0
@@ -286,7 +285,7 @@ def _refuse_other_axes(
     """Positions said to be in base axes must be there."""
     screws = cloud.robot.screws(cloud.a)
     at = screws.frame_position + np.einsum("nij,nj->ni", screws.rotation, cloud.point)
-    angle = float(np.linalg.norm(vector_of(found.turn)))
+    angle = float(np.linalg.norm(rotation_vector(found.turn)))
     off = float(np.median(np.linalg.norm(cloud.x - at, axis=1)))
     if angle < TURNED and off < max(SHIFTED * spread, 10.0 * found.rms):
         return

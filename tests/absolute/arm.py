@@ -1,0 +1,141 @@
+"""A six-axis arm that nothing of the product computes: kinematics, weight and sag of its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+Array = NDArray[np.float64]
+G = 9.80665
+NAMES = ("j1", "j2", "j3", "j4", "j5", "j6")
+ORIGINS = np.array(
+    [[0, 0, 0.5], [0.25, 0, 0.2], [0, 0, 0.9], [0.1, 0, 0.15], [0.7, 0, 0], [0.15, 0, 0]]
+)
+AXES = np.array([[0, 0, 1], [0, 1, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0.0]])
+MASSES = np.array([60.0, 45.0, 30.0, 15.0, 6.0, 3.0])
+CENTRES = np.array(
+    [[0.1, 0, 0.1], [0, 0.02, 0.45], [0.05, 0, 0.08], [0.3, 0, 0.02], [0.05, 0, 0], [0.03, 0, 0]]
+)
+TOOL = np.array([0.1, 0.0, 0.0])
+
+
+@dataclass
+class Arm:
+    """What is wrong with it, and how it yields; SI."""
+
+    compliance: Array = field(default_factory=lambda: np.zeros(6))
+    shift: Array = field(default_factory=lambda: np.zeros((6, 3)))  # of joint origins
+    turn: Array = field(default_factory=lambda: np.zeros((6, 3)))  # of joint frames
+    marker: Array = field(default_factory=lambda: np.array([0.05, -0.08, 0.12]))
+    waves: Array = field(default_factory=lambda: np.zeros((6, 2)))  # sin q, cos q
+    weighs: bool = True
+
+    def pose(self, q: Array) -> tuple[Array, Array, float]:
+        """Marker (3,), tool axes (3, 3) and potential energy at true joint values."""
+        R, p, energy = np.eye(3), np.zeros(3), 0.0
+        for k in range(6):
+            p = p + R @ (ORIGINS[k] + self.shift[k])
+            R = R @ Rotation.from_rotvec(self.turn[k]).as_matrix()
+            R = R @ Rotation.from_rotvec(AXES[k] * q[k]).as_matrix()
+            energy += MASSES[k] * G * (p + R @ CENTRES[k])[2]
+        p = p + R @ TOOL
+        return p + R @ self.marker, R, energy
+
+    def stands(self, a: Array) -> tuple[Array, Array]:
+        """Marker (N, 3) and tool axes (N, 3, 3) at rest under its own weight."""
+        points, axes = [], []
+        for row in a:
+            start = row + self.waves[:, 0] * np.sin(row) + self.waves[:, 1] * np.cos(row)
+            q = start.copy()
+            for _ in range(4 if self.weighs and self.compliance.any() else 0):
+                torque = np.array([-self._slope(q, k) for k in range(6)])
+                q = start + self.compliance * torque
+            x, R, _ = self.pose(q)
+            points.append(x)
+            axes.append(R)
+        return np.array(points), np.array(axes)
+
+    def _slope(self, q: Array, k: int) -> float:
+        step = np.zeros(6)
+        step[k] = 1e-5
+        return (self.pose(q + step)[2] - self.pose(q - step)[2]) / 2e-5
+
+
+def urdf(weighs: bool = True) -> str:
+    """The arm as it was drawn."""
+    links, joints = ['<link name="base"/>'], []
+    for k, name in enumerate(NAMES):
+        mass = (
+            f'<inertial><origin xyz="{_text(CENTRES[k])}"/><mass value="{MASSES[k]}"/>'
+            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+        )
+        links.append(f'<link name="l{k + 1}">{mass if weighs else ""}</link>')
+        parent = "base" if k == 0 else f"l{k}"
+        joints.append(
+            f'<joint name="{name}" type="revolute"><parent link="{parent}"/>'
+            f'<child link="l{k + 1}"/><origin xyz="{_text(ORIGINS[k])}"/>'
+            f'<axis xyz="{_text(AXES[k])}"/>'
+            '<limit lower="-3.1" upper="3.1" effort="1" velocity="1"/></joint>'
+        )
+    links.append('<link name="tool"/>')
+    joints.append(
+        '<joint name="fix" type="fixed"><parent link="l6"/><child link="tool"/>'
+        f'<origin xyz="{_text(TOOL)}"/></joint>'
+    )
+    return f'<robot name="six">{"".join(links + joints)}</robot>'
+
+
+def _text(v: Array) -> str:
+    return " ".join(f"{x:.12g}" for x in v)
+
+
+def poses(count: int, seed: int) -> Array:
+    """(count, 6) joint values over most of the reach."""
+    rng = np.random.default_rng(seed)
+    return rng.uniform([-1.5, -0.8, -0.9, -2, -1.5, -2.5], [1.5, 0.9, 1.0, 2, 1.5, 2.5], (count, 6))
+
+
+def errors(seed: int) -> Arm:
+    """Springs, and small errors of all joint frames."""
+    rng = np.random.default_rng(seed)
+    return Arm(
+        compliance=np.array([1 / 9e5, 1 / 8e5, 1 / 5e5, 1 / 1e5, 1 / 8e4, 1 / 5e4]),
+        shift=3e-4 * rng.normal(size=(6, 3)),
+        turn=3e-4 * rng.normal(size=(6, 3)),
+    )
+
+
+TURN = Rotation.from_rotvec([0.4, -1.9, 1.2])
+SHIFT = np.array([3.0, -1.5, 0.7])
+
+
+def write(
+    folder: Path,
+    a: Array,
+    x: Array,
+    settings: str,
+    *,
+    more: str = "",
+    cells: list[str] | None = None,
+) -> Path:
+    """A file of positions x (N, 3) [m] and the robot beside it."""
+    path = folder / "readings.csv"
+    lines = [",".join(f"{n}[deg]" for n in NAMES) + ",x[mm],y[mm],z[mm]" + more]
+    for k, (q, p) in enumerate(zip(np.degrees(a), 1e3 * x, strict=True)):
+        end = "" if cells is None else f",{cells[k]}"
+        lines.append(",".join("" if np.isnan(v) else f"{v:.10g}" for v in (*q, *p)) + end)
+    path.write_text("\n".join(lines) + "\n")
+    (folder / "six.urdf").write_text(urdf("massless" not in settings))
+    path.with_suffix(".yaml").write_text(
+        "robot: six.urdf\nbase_frame: base\ntool_frame: tool\n" + settings.replace("massless", "")
+    )
+    return path
+
+
+def tracked(x: Array) -> Array:
+    """Positions (N, 3) as a tracker that stands elsewhere sees them."""
+    return TURN.apply(x) + SHIFT
