@@ -22,6 +22,16 @@ def length_error(name: str, *, typical: float, scale: float, meaning: str) -> Pa
     )
 
 
+def tool_slides(robot: Robot, name: str) -> tuple[VirtualJoint, ...]:
+    """Three slides along the axes of the tool frame, at its origin."""
+    chain = robot.mechanism().chain
+    last, place = chain.m - 1, chain.placements[-1]
+    return tuple(
+        VirtualJoint(f"{name}.{label}", last, place, axis, revolute=False)
+        for label, axis in zip("xyz", np.eye(3), strict=True)
+    )
+
+
 @dataclass(frozen=True)
 class JointOffset(Geometric):
     """The joint stands elsewhere than it reads."""
@@ -94,13 +104,7 @@ class ToolOffset(Geometric):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three rigid slides at the tool frame."""
-        chain = robot.mechanism().chain
-        return tuple(
-            VirtualJoint(
-                f"{self.id}.{label}", chain.m - 1, chain.placements[-1], axis, revolute=False
-            )
-            for label, axis in zip("xyz", np.eye(3), strict=True)
-        )
+        return tool_slides(robot, self.id)
 
 
 @dataclass(frozen=True)

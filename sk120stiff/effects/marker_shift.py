@@ -10,7 +10,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Geometric, Options, scale_of
-from sk120stiff.effects.geometry import length_error
+from sk120stiff.effects.geometry import length_error, tool_slides
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
@@ -72,13 +72,7 @@ class MarkerShift(Geometric):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three rigid slides at the tool frame."""
-        chain = robot.mechanism().chain
-        return tuple(
-            VirtualJoint(
-                f"{self.id}.{label}", chain.m - 1, chain.placements[-1], axis, revolute=False
-            )
-            for label, axis in zip("xyz", np.eye(3), strict=True)
-        )
+        return tool_slides(robot, self.id)
 
     def shifts(self, situation: Situation) -> Array:
         """One in the series that the parameter belongs to."""

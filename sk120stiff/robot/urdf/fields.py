@@ -49,16 +49,8 @@ class Fields:
         Raises:
             InputError: Something else stands there.
         """
-        text = element.get(attribute)
-        if text is None:
-            return None
-        if not text.strip():
-            self.warn("number_syntax", element, f"{attribute} is empty; taken as absent")
-            return None
-        values = self._tokens(element, attribute, text, 1)
-        if len(values) != 1:
-            self._refuse(element, attribute, text, f"holds {len(values)} numbers, not one")
-        return values[0]
+        values = self.vector(element, attribute, 1)
+        return None if values is None else float(values[0])
 
     def bound(self, element: Element, attribute: str) -> float | None:
         """Like `number`, but whatever is no finite number means None and is noted."""
