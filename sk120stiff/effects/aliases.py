@@ -16,7 +16,6 @@ from sk120stiff.effects.base import SPRINGS, Effect, LinearElastic
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.effects.situation import Situation, situation_of_load
-from sk120stiff.errors import listed
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length, sample_poses
 
@@ -59,14 +58,20 @@ class AliasClasses:
     within: tuple[tuple[str, str], ...]
     overlaps: tuple[Overlap, ...]
 
+    def imitators(self, effect_id: str) -> tuple[str, ...]:
+        """Effects that can do all that this one does: no reading can speak against them."""
+        alike = [name for group in self.same if effect_id in group for name in group]
+        wider = [wide for narrow, wide in self.within if narrow == effect_id]
+        return tuple(dict.fromkeys(name for name in (*alike, *wider) if name != effect_id))
+
     def sentences(self) -> list[str]:
         """The same in words, one statement each."""
         out = [f"{name} cannot be seen: no reading changes with it." for name in self.invisible]
         out += [
-            f"{name} cannot be seen beside {listed(springs)}, which can do all that it does."
+            f"{name} cannot be seen beside {_listed(springs)}, which can do all that it does."
             for name, springs in self.absorbed.items()
         ]
-        out += [f"{listed(group)} do the same: only together." for group in self.same]
+        out += [f"{_listed(group)} do the same: only together." for group in self.same]
         out += [f"Whatever {narrow} does, {wide} can do." for narrow, wide in self.within]
         return out
 
@@ -297,3 +302,9 @@ def _basis(columns: Array, tolerance: float) -> Array:
         return np.zeros((len(columns), 0))
     vectors, values, _ = np.linalg.svd(left / np.linalg.norm(left, axis=0), full_matrices=False)
     return np.asarray(vectors[:, values > tolerance * values[0]])
+
+
+def _listed(names: Sequence[str]) -> str:
+    if len(names) < 2:
+        return "".join(names)
+    return ", ".join(names[:-1]) + " and " + names[-1]

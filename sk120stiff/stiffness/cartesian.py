@@ -28,6 +28,7 @@ def cartesian_compliance(jacobian: Array, joint_stiffness: Array) -> Array:
     turned = np.swapaxes(jacobian, -1, -2)
     shape = np.broadcast_shapes(joint_stiffness.shape[:-2], turned.shape[:-2])
     stiffness = np.broadcast_to(joint_stiffness, (*shape, *joint_stiffness.shape[-2:]))
+    turned = np.broadcast_to(turned, (*shape, *turned.shape[-2:]))  # a stack of matrices
     try:
         return np.asarray(jacobian @ np.linalg.solve(stiffness, turned))
     except np.linalg.LinAlgError as error:

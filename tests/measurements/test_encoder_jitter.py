@@ -40,7 +40,7 @@ def file_of(tmp_path: Path, jitter: float) -> Path:
 def test_up_to_a_milliradian_is_the_same_pose_and_goes_through_fk(tmp_path: Path) -> None:
     data = sk.read(file_of(tmp_path, 4e-4))
     found = sk.fit(sk.base_model(sk.load_robot(ROBOT)), data)
-    springs = [p.public_value for p in found.parameters]
+    springs = [p.value for p in found.parameters]
     assert springs == pytest.approx([1.4098e6, 4.0076e5, 9.3528e5], rel=1e-5)
     assert found.rms < 1e-10
     assert np.abs(data.zero_joints - data.joints).max() > 1e-4

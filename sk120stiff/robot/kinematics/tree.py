@@ -29,7 +29,7 @@ class Tree:
     def __init__(self, xml: str) -> None:
         with captured_stderr() as said:
             try:
-                self._model = pin.buildModelFromXML(xml, mimic=False)
+                self._model = pin.buildModelFromXML(xml)  # without its mimic joints, the default
             except (ValueError, RuntimeError) as error:
                 raise InputError(
                     f"Pinocchio cannot build this robot: {said.text.strip() or error}",

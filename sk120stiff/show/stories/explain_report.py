@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import (
@@ -23,7 +22,7 @@ from sk120stiff.show.stories.limits_section import blind_section, left_section, 
 from sk120stiff.show.stories.parameters_section import parameters_section
 from sk120stiff.show.stories.verdicts import FEW, lead_of, title_of
 from sk120stiff.show.stories.where_section import where_section
-from sk120stiff.show.wording import chance, counted, percent, um
+from sk120stiff.show.wording import chance, counted, listed, percent, um
 
 CROSS = "on poses left out in turn (cross-validation by pose)"
 
