@@ -34,28 +34,18 @@ LEVEL = 0.01  # probability below which model and readings are said to disagree
 class Fit:
     """A model whose free parameters were estimated from readings.
 
-    Attributes
-    ----------
-    problem
-        What was fitted; its noise has the scale that was stated or assumed before the fit.
-    model
-        The model with the estimates and their standard errors.
-    x
-        (P_free,) estimates in units of `problem.scale`.
-    residual, jacobian
-        (3N,) whitened gap and (3N, P_free) its derivative by `x`.
-    at_bound
-        (P_free,) estimates that a physical bound holds.
-    iterations
-        Evaluations of the model.
-    reasons
-        What was decided about the noise beyond the data's description, in sentences.
-    spread
-        Noise seen over noise assumed, where a robust fit found it without its outliers.
-    inflation
-        Variance of the estimates over that of least squares with the same weights (robust fits).
-    doubt
-        (P_free,) by how much other possible models move the estimates; None: by nothing.
+    Attributes:
+        problem: What was fitted; its noise has the scale that was stated or assumed before the fit.
+        model: The model with the estimates and their standard errors.
+        x: (P_free,) estimates in units of `problem.scale`.
+        residual, jacobian: (3N,) whitened gap and (3N, P_free) its derivative by `x`.
+        at_bound: (P_free,) estimates that a physical bound holds.
+        iterations: Evaluations of the model.
+        reasons: What was decided about the noise beyond the data's description, in sentences.
+        spread: Noise seen over noise assumed, where a robust fit found it without its outliers.
+        inflation: Variance of the estimates over that of least squares with the same weights
+            (robust fits).
+        doubt: (P_free,) by how much other possible models move the estimates; None: by nothing.
     """
 
     problem: Problem

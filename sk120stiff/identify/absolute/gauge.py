@@ -30,14 +30,10 @@ MAY_FREEZE = (JointFrame, MarkerShift, ThermalGrowth)
 class Frozen:
     """A parameter that these readings cannot tell, kept at its value.
 
-    Attributes
-    ----------
-    name
-        ``effect:where.parameter``.
-    inside
-        Parameters that it is counted in; empty where it does not show at all.
-    exact
-        No readings at these poses would tell it; else they would, were they far less noisy.
+    Attributes:
+        name: ``effect:where.parameter``.
+        inside: Parameters that it is counted in; empty where it does not show at all.
+        exact: No readings at these poses would tell it; else they would, were they far less noisy.
     """
 
     name: str
@@ -55,14 +51,10 @@ class Frozen:
 def least_set(model: Model, jacobian: Array, span: Array) -> tuple[Model, tuple[Frozen, ...]]:
     """The model with what cannot be told frozen, and what that is.
 
-    Parameters
-    ----------
-    model
-        Its free parameters are the columns.
-    jacobian
-        (M, P_free) whitened derivative by scaled parameters.
-    span
-        (P_free,) plausible sizes in scaled units.
+    Args:
+        model: Its free parameters are the columns.
+        jacobian: (M, P_free) whitened derivative by scaled parameters.
+        span: (P_free,) plausible sizes in scaled units.
     """
     free = model.free
     jacobian = np.asarray(

@@ -30,20 +30,13 @@ MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wr
 class Placing:
     """The rigid robot laid onto the positions.
 
-    Attributes
-    ----------
-    shift, turn
-        (3,) [m] and (3,) rotation vector of the base frame as the instrument sees it.
-    marker
-        (3,) how far markers are off their stated place, tool axes [m].
-    rms
-        Distance that is left, rows that are wild set aside [m].
-    wild
-        (N,) rows far off all others.
-    distance
-        (N,) what is left at each row [m]; NaN where no whole position was read.
-    notes
-        What is to be said, in sentences.
+    Attributes:
+        shift, turn: (3,) [m] and (3,) rotation vector of the base frame as the instrument sees it.
+        marker: (3,) how far markers are off their stated place, tool axes [m].
+        rms: Distance that is left, rows that are wild set aside [m].
+        wild: (N,) rows far off all others.
+        distance: (N,) what is left at each row [m]; NaN where no whole position was read.
+        notes: What is to be said, in sentences.
     """
 
     shift: Array
@@ -58,11 +51,9 @@ class Placing:
 def place(robot: Robot, readings: Measurements) -> Placing | None:
     """Register the positions; None where fewer than three whole ones were read.
 
-    Raises
-    ------
-    InputError
-        They are not of this robot, or of joints or lengths in other units, of mirrored axes, of
-        columns in another order; the message says which slip would explain it.
+    Raises:
+        InputError: They are not of this robot, or of joints or lengths in other units, of mirrored
+            axes, of columns in another order; the message says which slip would explain it.
     """
     said = readings.absolute
     if said is None or said.channels.position is None:

@@ -22,21 +22,14 @@ ENOUGH = 1e-3  # a step that changes the predictions by less than this share of 
 def settle(evaluate: Evaluate, start: Array, bounds: tuple[Array, Array], span: Array) -> Minimum:
     """Least squares within bounds from a start that is near.
 
-    Parameters
-    ----------
-    evaluate
-        Gives residual (M,) in units of the noise, and its derivative (M, P).
-    start
-        (P,) where the prior is centred.
-    bounds
-        Lower and upper (P,).
-    span
-        (P,) sizes of the parameters beyond which they are implausible: widths of the prior.
+    Args:
+        evaluate: Gives residual (M,) in units of the noise, and its derivative (M, P).
+        start: (P,) where the prior is centred.
+        bounds: Lower and upper (P,).
+        span: (P,) sizes of the parameters beyond which they are implausible: widths of the prior.
 
-    Raises
-    ------
-    Refusal
-        The steps do not become small.
+    Raises:
+        Refusal: The steps do not become small.
     """
     x = np.clip(start, *bounds)
     residual, jacobian = evaluate(x)

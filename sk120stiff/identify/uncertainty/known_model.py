@@ -49,14 +49,10 @@ def known_model(fit: Fit) -> Model:
 def known_estimates(fit: Fit, sigma: float, source: str) -> Uncertainty:
     """What the readings show of the estimates, and what they do not.
 
-    Parameters
-    ----------
-    fit
-        A fit with a known size of its noise.
-    sigma
-        Standard uncertainty of one reading per axis [m].
-    source
-        Which readings it comes from, in words.
+    Args:
+        fit: A fit with a known size of its noise.
+        sigma: Standard uncertainty of one reading per axis [m].
+        source: Which readings it comes from, in words.
     """
     problem = fit.problem
     scale, span = problem.scale, problem.span
