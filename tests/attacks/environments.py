@@ -8,8 +8,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from scripts.attacks_inputs import desk
-from scripts.attacks_judge import Verdict, apart
+from tests.attacks.inputs import desk
+from tests.attacks.judge import Verdict, apart
 
 CLOSED, FULL, GONE = "closed", "/dev/full", "reader gone"
 SILENT = (0, 1, 2, 3, 141)  # where nobody can hear it, an exit code says it

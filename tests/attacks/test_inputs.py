@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts.attacks_inputs import COMMANDS, mutated_inputs
+from tests.attacks.inputs import COMMANDS, mutated_inputs
 
 # Seeds at which the program once failed, beside the first ones.
 KNOWN = {"m.csv": (1070, 1280), "mod.yaml": (13, 20, 33, 34), "rob/robot.yaml": (59,),

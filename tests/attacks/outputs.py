@@ -12,9 +12,9 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from scripts.attacks_judge import Verdict, here, leftovers
+from tests.attacks.judge import Verdict, here, leftovers
 
-SK120 = Path(__file__).resolve().parents[1] / "robots" / "motoman_sk120"
+SK120 = Path(__file__).resolve().parents[2] / "robots" / "motoman_sk120"
 JOINTS = ",".join(f"joint_{k}_{c}[deg]" for k, c in enumerate("slurbt", start=1))
 GRID = ("--grid", "joint_2_l=0:20:10 deg")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts.attacks_outputs import ATTACKS, content, desk_of_outputs, words_of
+from tests.attacks.outputs import ATTACKS, content, desk_of_outputs, words_of
 
 
 @pytest.fixture

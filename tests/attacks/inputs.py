@@ -7,10 +7,10 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-from scripts.attacks_files import mutated_csv, mutated_xml, mutated_yaml
-from scripts.attacks_judge import Verdict, here
+from tests.attacks.files import mutated_csv, mutated_xml, mutated_yaml
+from tests.attacks.judge import Verdict, here
 
-SK120 = Path(__file__).resolve().parents[1] / "robots" / "motoman_sk120"
+SK120 = Path(__file__).resolve().parents[2] / "robots" / "motoman_sk120"
 JOINTS = ",".join(f"joint_{k}_{c}[deg]" for k, c in enumerate("slurbt", start=1))
 PATH = f"point,{JOINTS},fx[N],fy[N],fz[N]\n" + "".join(
     f"{k},{10 * k}.5,20.0,-30.0,5.0,-60.0,0.0,0.0,0.0,-300.0\n" for k in range(5)
