@@ -32,9 +32,9 @@ def branches_by_order(
     size = np.linalg.norm(wrench[:, :3], axis=1)
     falling = np.zeros(len(pose), dtype=bool)
     told, able = 0, 0
-    for label in np.unique(pose):
-        rows = np.flatnonzero((pose == label) & (size > 0.0))
-        rows = rows[np.argsort(sequence[rows], kind="stable")]
+    loaded = np.flatnonzero(size > 0.0)
+    loaded = loaded[np.lexsort((sequence[loaded], pose[loaded]))]
+    for rows in np.split(loaded, np.flatnonzero(np.diff(pose[loaded])) + 1):
         if len(rows) < 3:
             continue
         able += 1

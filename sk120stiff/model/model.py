@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BLOCK = 2048  # readings solved together: large enough for array work, small enough for the cache
+SQUARES = 4_000_000  # numbers in one square matrix for each of them: 32 MB, of which ten are alive
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +205,7 @@ class Model:
         """
         given = self.values if values is None else values
         return np.concatenate(
-            [self.assembly.solve(part, given).displacement for part in _blocks(situation)]
+            [self.assembly.solve(part, given).displacement for part in self._blocks(situation)]
             or [np.zeros((0, 3))]
         )
 
@@ -214,11 +215,16 @@ class Model:
         """(N, 3) predicted readings [m] and (N, 3, P) derivatives by the internal values."""
         given = self.values if values is None else values
         displacement, derivative = [], []
-        for part in _blocks(situation):
+        for part in self._blocks(situation):
             solution = self.assembly.solve(part, given)
             displacement.append(solution.displacement)
             derivative.append(self.assembly.sensitivities(solution, given))
         return np.concatenate(displacement), np.concatenate(derivative)
+
+    def _blocks(self, situation: Situation) -> list[Situation]:
+        """Readings in stretches that bound the memory, whatever the number of coordinates."""
+        block = min(BLOCK, max(1, SQUARES // self.assembly.mechanism.n**2))
+        return [situation.rows(slice(k, k + block)) for k in range(0, situation.count, block)]
 
     def deflect(
         self,
@@ -284,9 +290,3 @@ def joint_spring_model(robot: Robot, stiffness: ArrayLike | None = None) -> Mode
             origin = "starting value" if stiffness is None else "given"
             model = model + [Parameter(spring, spec, value, origin=origin)]
     return model
-
-
-def _blocks(situation: Situation) -> list[Situation]:
-    if situation.count <= BLOCK:
-        return [situation]
-    return [situation.rows(slice(k, k + BLOCK)) for k in range(0, situation.count, BLOCK)]

@@ -13,6 +13,10 @@ from sk120stiff.measurements.data import Frame
 from sk120stiff.robot import Robot, Screws
 from sk120stiff.slips.passive import unit_displacements
 
+MOST = 2000  # rows that tell what is wrong with a file as well as all of them
+STRETCH = 100  # rows that are taken together, so that rows that moved still have their neighbours
+APART = 2  # rows between stretches, as far as a row is sought
+
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
@@ -99,6 +103,28 @@ class Sheet:
         kept[rows[np.linspace(0, len(rows) - 1, most).astype(np.intp)]] = True
         return replace(self, kept=kept)
 
+    def in_part(self) -> Sheet:
+        """About `MOST` of the rows in use, in stretches that mirror each other in the file.
+
+        A slip of the pen is one of whole columns: it stands in every part of them. Masked rows part
+        the stretches, so that nothing moves from one into the next.
+        """
+        rows, used = len(self.kept), int(self.kept.sum())
+        if used <= MOST:
+            return self
+        first = np.linspace(0, rows - STRETCH, MOST * rows // (used * STRETCH))
+        first = np.where(first < 0.5 * first[-1], np.floor(first), np.ceil(first)).astype(np.intp)
+        taken = (first[:, None] + np.arange(STRETCH + APART)).ravel()[:-APART]
+        taken = np.minimum(taken, rows - 1)
+        kept = self.kept[taken] & (np.arange(len(taken)) % (STRETCH + APART) < STRETCH)
+        return replace(
+            self,
+            joints=self.joints[taken],
+            wrench=self.wrench[taken],
+            displacement=self.displacement[taken],
+            kept=kept,
+        )
+
     def moved(self, rows: Index, *, joints: bool = False, wrench: bool = False) -> Sheet:
         """The displacements (or these columns) of row `rows[i]` in row i; -1: of no row."""
         known = rows >= 0
@@ -111,7 +137,7 @@ class Sheet:
 
 
 def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
-    """The readings on a robot; None for a plan.
+    """The readings on a robot, of very many a part; None for a plan.
 
     Raises:
         InputError: The file's joints are not the robot's actuated joints.
@@ -129,4 +155,4 @@ def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
         point=measurements.point,
         force_point=measurements.force_point,
         kept=measurements.use & measurements.wrench.any(axis=1),
-    )
+    ).in_part()
