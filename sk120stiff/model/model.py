@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BLOCK = 2048  # readings solved together: large enough for array work, small enough for the cache
-SQUARES = 4_000_000  # numbers in one square matrix for each of them: 32 MB, of which ten are alive
+SQUARES = 1_000_000  # numbers in one square matrix for each of them: 8 MB, of which ten are alive
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,6 +224,8 @@ class Model:
     def _blocks(self, situation: Situation) -> list[Situation]:
         """Readings in stretches that bound the memory, whatever the number of coordinates."""
         block = min(BLOCK, max(1, SQUARES // self.assembly.mechanism.n**2))
+        if situation.count <= block:
+            return [situation]
         return [situation.rows(slice(k, k + block)) for k in range(0, situation.count, block)]
 
     def deflect(

@@ -49,7 +49,7 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
         turned = np.triu(np.cross(moment, w) @ np.swapaxes(w, -1, -2), 1)
         K_C = K_C + np.swapaxes(turned, -1, -2)
     G = screws.first
-    K_Cz = np.swapaxes(G, -1, -2) @ K_C @ G
+    K_Cz = _congruent(K_C, G)
     if screws.second is not None:
         torques = screws.joint_torques(load)
         K_Cz = K_Cz + screws.second.contracted(torques, G.shape[-1])
@@ -82,7 +82,7 @@ def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
     upper = np.triu(np.cross(gravity, screws.angular) @ np.swapaxes(screws.carried, -1, -2))
     K_g = upper + np.swapaxes(np.triu(upper, 1), -1, -2)
     G = screws.first
-    K_gz = np.swapaxes(G, -1, -2) @ K_g @ G
+    K_gz = _congruent(K_g, G)
     if screws.second is not None:
         K_gz = K_gz + screws.second.contracted(screws.carried @ gravity, G.shape[-1])
     return np.asarray(K_gz)
@@ -91,3 +91,14 @@ def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
 def symmetric_part(matrix: Array) -> Array:
     """(M + Mᵀ)/2, the part of a stiffness that leaves no work over on a closed path."""
     return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+
+
+def _congruent(K: Array, G: Array) -> Array:
+    """Gᵀ K G (..., n, n); where joints only stand in another order than coordinates, by index."""
+    if G.ndim == 2 and G.shape[0] == G.shape[1]:
+        there = G != 0.0
+        if (there.sum(axis=0) == 1).all() and (there.sum(axis=1) == 1).all():
+            row = there.argmax(axis=0)
+            by = G[row, np.arange(len(row))]
+            return np.asarray(K[..., row[:, None], row] * np.outer(by, by))
+    return np.asarray(np.swapaxes(G, -1, -2) @ K @ G)
