@@ -113,4 +113,4 @@ def _base(sheet: Sheet, what: str) -> np.ndarray:
     frame = sheet.force_frame if what == "force" else sheet.displacement_frame
     if frame == "base":
         return values
-    return np.asarray(np.einsum("nij,nj->ni", sheet.at.rotation, values))
+    return np.asarray(np.einsum("nij,nj->ni", sheet.at().rotation, values))

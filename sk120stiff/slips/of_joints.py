@@ -79,7 +79,8 @@ def floors(sheet: Sheet) -> Iterator[tuple[int, float, float]]:
     """Joint k that turns in one plane with the one before it, the sign of that and of its own."""
     names = list(sheet.robot.actuated)
     chain = list(sheet.robot.mechanism().chain.names)
-    axes = {name: sheet.at.axes[0, chain.index(name)] for name in names if name in chain}
+    turned = sheet.at().axes[0]
+    axes = {name: turned[chain.index(name)] for name in names if name in chain}
     for k in range(1, len(names)):
         one, two = axes.get(names[k - 1]), axes.get(names[k])
         turns = not (sheet.robot.prismatic[k - 1] or sheet.robot.prismatic[k])

@@ -32,6 +32,7 @@ DOUBTFUL = 0.97  # share below which several joints are tried at once
 NEXT_TO = 1.5  # times as much left by another correction that is told beside the best one
 STEPS = 3  # slips told of one file
 SPARE = 6  # numbers beyond the compliances that it takes to judge a fit
+CONVENTION = 8  # joints at most whose signs are tried together: 2ⁿ choices
 MANY = 300  # readings that suffice to rank many corrections at once
 
 
@@ -96,7 +97,7 @@ def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
     stated = measurements.noise.sigma
     start = as_it_stands(sheet)
     now, rival = _one_by_one(start, enough=(1.5 * stated) ** 2 if stated is not None else 0.0)
-    if now.found.share < DOUBTFUL:
+    if now.found.share < DOUBTFUL and robot.n <= CONVENTION:
         together = _joints_together(start)
         if together is not None and _clearly(now, together, CLEARER):
             now, rival = together, None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -62,7 +61,7 @@ class Sheet:
 
     def columns(self) -> Array:
         """(M, 3, k) see `unit_displacements`."""
-        at, wrench = self.at, self.wrench[self.kept]
+        at, wrench = self.at(), self.wrench[self.kept]
         if self.force_frame == "tool":
             turned = at.rotation @ wrench.reshape(-1, 2, 3).swapaxes(1, 2)
             wrench = turned.swapaxes(1, 2).reshape(-1, 6)
@@ -71,7 +70,6 @@ class Sheet:
             columns = at.rotation.swapaxes(1, 2) @ columns
         return np.asarray(columns)
 
-    @cached_property
     def at(self) -> Screws:
         """The M poses of the rows in use; each is worked out once, whatever its loads."""
         unique, row = np.unique(self.joints[self.kept], axis=0, return_inverse=True)

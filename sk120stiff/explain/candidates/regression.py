@@ -101,19 +101,6 @@ class Regression:
         """Number of groups."""
         return int(self.group.max()) + 1 if len(self.group) else 0
 
-    @cached_property
-    def by_pose(self) -> tuple[Array, Array, Array, Array]:
-        """For each pose XᵀX (g, P, P), Xᵀy (g, P), yᵀy (g,) and the number of rows (g,)."""
-        P = self.X.shape[1]
-        gram, moment = np.zeros((self.poses, P, P)), np.zeros((self.poses, P))
-        square, count = np.zeros(self.poses), np.zeros(self.poses)
-        for g in range(self.poses):
-            rows = self.group == g
-            part = self.X[rows]
-            gram[g], moment[g] = part.T @ part, part.T @ self.y[rows]
-            square[g], count[g] = self.y[rows] @ self.y[rows], rows.sum()
-        return gram, moment, square, count
-
     def sums(self, weights: Array | None = None) -> Sums:
         """Sums over poses, each counted `weights` (g,) times, or all of them once."""
         return self._all if weights is None else self._weighted(weights)
@@ -123,8 +110,10 @@ class Regression:
         return self._weighted(np.ones(self.poses))
 
     def _weighted(self, w: Array) -> Sums:
-        gram, moment, square, count = self.by_pose
-        return Sums(np.tensordot(w, gram, axes=1), w @ moment, float(w @ square), float(w @ count))
+        by = w[self.group]
+        weighted = (self.X * by[:, None]).T
+        y = self.y
+        return Sums(weighted @ self.X, weighted @ y, float(by @ y**2), float(by.sum()))
 
 
 @dataclass(frozen=True, eq=False)

@@ -72,7 +72,6 @@ def _held_out_gain(
     regression: Regression, model: tuple[int, ...], effect: int, rng: np.random.Generator
 ) -> tuple[Array, Array, float]:
     """Fall of the held-out misfit by fold and by pose, and the number of reading axes."""
-    gram, moment, square, count = regression.by_pose
     fold = drawn_parts(regression.poses, FOLDS, rng)
     smaller = tuple(e for e in model if e != effect)
     pose_gain = np.zeros(regression.poses)
@@ -83,13 +82,11 @@ def _held_out_gain(
             solved = score_set(regression, train, effects).solved
             v = np.zeros(regression.X.shape[1])
             v[solved.columns] = solved.values
-            test = np.flatnonzero(fold == k)
-            misfit.append(
-                square[test] - 2.0 * moment[test] @ v + np.einsum("i,gij,j->g", v, gram[test], v)
-            )
+            rest = regression.y - regression.X @ v
+            misfit.append(np.bincount(regression.group, rest**2, regression.poses)[fold == k])
         pose_gain[fold == k] = misfit[0] - misfit[1]
     fold_gain = np.array([pose_gain[fold == k].sum() for k in range(int(fold.max(initial=0)) + 1)])
-    return fold_gain, pose_gain, float(count.sum())
+    return fold_gain, pose_gain, float(regression.rows)
 
 
 def _resampled(regression: Regression, rng: np.random.Generator) -> Sums:
