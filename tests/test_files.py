@@ -9,6 +9,7 @@ import pytest
 from sk120stiff.errors import InputError
 from sk120stiff.files import (
     note_read,
+    read_bytes,
     read_text,
     running,
     together,
@@ -118,3 +119,8 @@ def test_a_library_call_may_rewrite_what_it_has_read(tmp_path: Path) -> None:
     read_text(file)
     write_atomically(file, "y")
     assert file.read_text() == "y"
+
+
+def test_a_device_without_end_is_refused() -> None:
+    with pytest.raises(InputError, match="larger than 250 MB"):
+        read_bytes("/dev/zero")

@@ -117,4 +117,6 @@ OutFolderOption = Annotated[
         "--out", metavar="DIR", help="Folder that the results are written to.", show_default=False
     ),
 ]
-SeedOption = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the random numbers.")]
+SeedOption = Annotated[
+    int, typer.Option("--seed", min=0, metavar="N", help="Seed of the random numbers.")
+]

@@ -8,17 +8,21 @@ from pathlib import Path
 from sk120stiff.errors import InputError
 from sk120stiff.files.ledger import note_read
 
+LARGEST = 250_000_000  # bytes of one file; a device has no end at all
+
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
     """Content of a file.
 
     Raises:
-        InputError: The file is missing, a folder or unreadable, or this run is going to write it.
+        InputError: The file is missing, a folder, unreadable or too large, or this run is going to
+            write it.
     """
     source = Path(path)
     note_read(source)
     try:
-        return source.read_bytes()
+        with source.open("rb") as stream:
+            data = stream.read(LARGEST + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(
@@ -26,6 +30,13 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
             where=str(source),
             remedy="Check the path and its permissions.",
         ) from error
+    if len(data) > LARGEST:
+        raise InputError(
+            f"this file is larger than {LARGEST / 1e6:.0f} MB",
+            where=str(source),
+            remedy="Check that it is the right one, or split it.",
+        )
+    return data
 
 
 def read_text(path: str | os.PathLike[str]) -> str:

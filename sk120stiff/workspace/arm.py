@@ -183,7 +183,7 @@ def elastic_arm(
     Raises
     ------
     InputError
-        Nothing in the model yields, or there is no such frame.
+        Nothing in the model yields or moves the frame, or there is no such frame.
     """
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     if at.shape != (3,) or not np.isfinite(at).all():
@@ -196,6 +196,12 @@ def elastic_arm(
     probes[~robot.closes(probes)] = 0.0
     compliance, sag, shift = _compliances(physical, probes)
     mechanism = physical.assembly.mechanism
+    if not mechanism.chain.names:
+        raise InputError(
+            "no joint moves this frame, so nothing yields there",
+            where=robot.tool_frame,
+            remedy="Name a frame farther out.",
+        )
     springs = springs_of(compliance[0], robot.name)
     followed = (
         isinstance(mechanism.elastic or mechanism.coupling, LinearCoupling)

@@ -21,11 +21,24 @@ LOST = ("Internal error", "Traceback", "Exception ignored", "RuntimeWarning", "S
 
 @dataclass(frozen=True)
 class Verdict:
-    """One attack: what was done, what came of it (empty: it held), processor time [s]."""
+    """One attack.
+
+    Attributes
+    ----------
+    attack
+        What was done.
+    loss
+        What came of it; empty where it held.
+    seconds
+        Processor time.
+    told
+        What is worth printing even where it held.
+    """
 
     attack: str
     loss: str
     seconds: float = 0.0
+    told: str = ""
 
 
 def judged(
@@ -63,21 +76,37 @@ def _time_limit() -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
 
 
-def here(attack: str, *arguments: str, codes: Sequence[int] = ANSWERS) -> Verdict:
+@dataclass(frozen=True)
+class Heard(Verdict):
+    """A verdict with what was said, on both streams."""
+
+    code: int = -1
+    said: str = ""
+
+
+def heard(attack: str, *arguments: str, codes: Sequence[int] = ANSWERS) -> Heard:
     """Run a command in this process; thousands of runs are possible so."""
     from sk120stiff.cli.main import main
 
-    said = io.StringIO()
+    stream = io.StringIO()
     begin, code = time.process_time(), -1
     try:
-        quiet = contextlib.redirect_stdout(said)
-        with quiet, contextlib.redirect_stderr(said), _time_limit():
+        quiet = contextlib.redirect_stdout(stream)
+        with quiet, contextlib.redirect_stderr(stream), _time_limit():
             code = main(arguments)
     except _TooLong:
         code = 0  # the time says it
     except BaseException as error:  # noqa: BLE001 - nothing may come out of main
-        said.write(f"Traceback: {type(error).__name__}: {error}")
-    return judged(attack, code, said.getvalue(), time.process_time() - begin, codes)
+        stream.write(f"Traceback: {type(error).__name__}: {error}")
+    seconds, said = time.process_time() - begin, stream.getvalue()
+    found = judged(attack, code, said, seconds, codes)
+    return Heard(attack, found.loss, seconds, code=code, said=said)
+
+
+def here(attack: str, *arguments: str, codes: Sequence[int] = ANSWERS) -> Verdict:
+    """What came of a command that was run in this process."""
+    found = heard(attack, *arguments, codes=codes)
+    return Verdict(attack, found.loss, found.seconds)
 
 
 def apart(

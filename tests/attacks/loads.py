@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -53,7 +52,9 @@ def long_path(folder: Path, count: int) -> list[str]:
     angles = np.column_stack([30.0 * np.sin(way + k) for k in range(6)]) + [0, 10, -30, 0, -40, 0]
     load = np.column_stack([100.0 * np.cos(way), 50.0 * np.sin(way), -300.0 + 0.0 * way])
     head = ",".join([f"{name}[deg]" for name in model.robot.actuated] + ["fx[N]", "fy[N]", "fz[N]"])
-    np.savetxt(folder / "path.csv", np.hstack([angles, load]), "%.5f", ",", header=head, comments="")
+    np.savetxt(
+        folder / "path.csv", np.hstack([angles, load]), "%.5f", ",", header=head, comments=""
+    )
     return ["compensate", ROBOT, "path.csv", "--out", "commands.csv"]
 
 
@@ -61,7 +62,7 @@ def many_joints(folder: Path, count: int) -> list[str]:
     """`explain` of an arm with that many joints."""
     (folder / "chain.urdf").write_text(long_chain(count), encoding="utf-8")
     robot = load_robot(folder / "chain.urdf")
-    data: Measurements = drawn(robot, 3, poses=2 * count).readings
+    data: Measurements = drawn(robot, 3, poses=count).readings
     write_measurements(replace(data, robot="chain.urdf"), folder / "chain.csv")
     return ["explain", "chain.csv", "--out", "answer"]
 
@@ -81,7 +82,7 @@ def load_sizes(folder: Path, share: float = 1.0) -> Iterator[Verdict]:
         yield measured(f"{int(share * count)} {what}", words, folder)
 
 
-def measured(attack: str, words: list[str], folder: Path) -> Verdict:
+def measured(attack: str, words: list[str], folder: Path, memory: float = MEMORY) -> Verdict:
     """Run in a process of its own; the peak of its memory counts too."""
     said = folder / "said.txt"
     with said.open("wb") as stream:
@@ -90,6 +91,6 @@ def measured(attack: str, words: list[str], folder: Path) -> Verdict:
     told = re.search(r"peak (\d+)", text)
     peak = 1024.0 * int(told[1]) if told else np.inf
     loss = found.loss and f"{found.loss} {text[-300:]}"
-    if not loss and peak > MEMORY:
+    if not loss and peak > memory:
         loss = f"{peak / 1e9:.2f} GB of memory"
-    return Verdict(f"{attack}: {found.seconds:.1f} s, {peak / 1e9:.2f} GB", loss, found.seconds)
+    return Verdict(attack, loss, found.seconds, f"{found.seconds:.1f} s, {peak / 1e9:.2f} GB")

@@ -14,14 +14,12 @@ from collections.abc import Awaitable, Callable
 import numpy as np
 import pytest
 from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
-from tornado.websocket import websocket_connect
 
 from sk120stiff.errors import InputError
 from sk120stiff.show.live import LiveServer
 from sk120stiff.show.live.handlers import FLOOD, MAX_PAGES, PATIENCE
+from tests.attacks.pages import REQUEST, ask, page
 from tests.show.scenes import DATA, ROOT, sk120, sk120_scene
-
-REQUEST = {"a": [0.1] * 6, "wrench": [100, 0, -50, 0, 0, 0], "point": [0, 0, 0], "exaggeration": 50}
 
 
 def with_server(visit: Callable[[LiveServer], Awaitable[None]]) -> None:
@@ -42,17 +40,6 @@ def with_server(visit: Callable[[LiveServer], Awaitable[None]]) -> None:
             await running.close_all_connections()
 
     asyncio.run(both())
-
-
-async def page(server: LiveServer, **headers: str):
-    return await websocket_connect(
-        HTTPRequest(f"ws://127.0.0.1:{server.port}/socket", headers=headers)
-    )
-
-
-async def ask(connection, number: int = 1, **changes: object) -> dict:
-    await connection.write_message(json.dumps({"id": number, **REQUEST, **changes}))
-    return json.loads(await connection.read_message())
 
 
 def test_a_picture_takes_less_than_fifty_milliseconds() -> None:

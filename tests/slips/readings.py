@@ -79,6 +79,22 @@ def ur5() -> Arm:
 ARMS: dict[str, Callable[[], Arm]] = {"sk120": sk120, "ur5": ur5}
 
 
+# Factor by which the arm seems to yield more, and the likeliest slip behind it.
+SCALES = (
+    (4.448, "forces in lbf labelled N"),
+    (9.807, "forces in kgf labelled N"),
+    (1 / 4.448, "forces in N labelled lbf"),
+    (25.4, "displacements in mm labelled inch"),
+    (0.1, "displacements in cm labelled mm"),
+    (1 / 25.4, "displacements in inch labelled mm"),
+)
+
+
+def loads_as_if(data: Measurements, factor: float) -> Measurements:
+    """All springs together, the loads and the readings are one number: the loads are changed."""
+    return replace(data, wrench=data.wrench / factor)
+
+
 def joints_times(data: Measurements, k: int, factor: float) -> Measurements:
     by = np.ones(data.joints.shape[1])
     by[k] = factor

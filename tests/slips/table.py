@@ -71,13 +71,13 @@ def spoilt_readings(seeds: Sequence[int], arms: Sequence[str]) -> Iterator[Outco
         for seed in seeds if name != "sk120" else seeds[:1]:
             arm = sk120() if name == "sk120" else _arm(name, seed)
             for slip, words in SLIPS:
-                if slip == "floor" and not _has_a_floor(arm):
+                if slip == "floor" and not has_a_floor(arm):
                     continue
                 said = _said(arm, slip)
                 yield Outcome(slip, name, words in said, said)
 
 
-def _has_a_floor(arm: Arm) -> bool:
+def has_a_floor(arm: Arm) -> bool:
     """Do the second and the third joint turn in one plane? On arms of seven axes they do not."""
     sheet = sheet_of(arm.robot, arm.readings)
     return sheet is not None and any(k == 2 for k, _, _ in floors(sheet))

@@ -63,10 +63,9 @@ def many(count: int) -> Measurements:
     rows = np.resize(np.arange(known.readings.n_readings), count)
     data = replace(known.readings.select(rows), order=None, zero_order=None, zero="separate")
     nudge = np.random.default_rng(0).uniform(-1e-4, 1e-4, data.joints.shape)
-    data = replace(
+    return replace(
         data,
         pose=tuple(str(k) for k in range(count)),
         joints=data.joints + nudge,
         zero_group=np.arange(count),
     )
-    return data

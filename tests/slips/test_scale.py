@@ -1,25 +1,13 @@
 """Units of everything at once: told where the springs that follow are implausible, no finding."""
 
-from dataclasses import replace
-
 import pytest
 
-from sk120stiff.measurements import Measurements
 from sk120stiff.slips import find_slip, look
 from sk120stiff.slips.scale import USUAL, usual_stiffness
-from tests.slips.readings import ARMS
+from tests.slips.readings import ARMS, SCALES, loads_as_if
 
 
-def loads_as_if(data: Measurements, factor: float) -> Measurements:
-    return replace(data, wrench=data.wrench / factor)
-
-
-@pytest.mark.parametrize(
-    ("factor", "unit"),
-    [(4.448, "forces in lbf labelled N"), (9.807, "forces in kgf labelled N"),
-     (1 / 4.448, "forces in N labelled lbf"), (25.4, "displacements in mm labelled inch"),
-     (0.1, "displacements in cm labelled mm"), (1 / 25.4, "displacements in inch labelled mm")],
-)  # fmt: skip
+@pytest.mark.parametrize(("factor", "unit"), SCALES)
 def test_a_scale_beyond_the_known_springs_is_told_as_a_doubt(factor: float, unit: str) -> None:
     known = ARMS["sk120"]()
     data = loads_as_if(known.readings, factor)

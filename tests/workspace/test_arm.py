@@ -156,6 +156,8 @@ def _times(arm: ElasticArm, factor: float) -> Weight:
 def test_what_does_not_yield_is_refused() -> None:
     with pytest.raises(InputError, match="yields"):
         elastic_arm(Model(load_robot("motoman_sk120")))
+    with pytest.raises(InputError, match="base_link: no joint moves this frame"):
+        elastic_arm(sk120_with(), frame="base_link")
     with pytest.raises(InputError, match="no_such"):
         elastic_arm(sk120_with(), frame="no_such")
     with pytest.raises(InputError, match="three finite"):

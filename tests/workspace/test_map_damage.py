@@ -20,6 +20,7 @@ from sk120stiff.workspace import (
     write_map,
 )
 from sk120stiff.workspace.lock import only_writer
+from tests.attacks.maps import HARMS, flip, remove
 from tests.workspace.arms import joint_job
 from tests.workspace.test_map import SMALL, contents
 
@@ -32,27 +33,6 @@ def small_map(path: Path) -> MapReport:
 
 def job() -> MapJob:
     return joint_job(9, 8, 7, with_directions=True)
-
-
-def flip(path: Path) -> None:
-    data = bytearray(path.read_bytes())
-    data[len(data) // 2] ^= 1
-    path.write_bytes(data)
-
-
-def cut(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[:-1])
-
-
-def empty(path: Path) -> None:
-    path.write_bytes(b"")
-
-
-def remove(path: Path) -> None:
-    path.unlink()
-
-
-HARMS = (flip, cut, empty, remove)
 
 
 def test_damage_to_any_file_is_told(tmp_path: Path) -> None:
