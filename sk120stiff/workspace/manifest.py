@@ -47,20 +47,21 @@ def write_manifest(folder: Path, version: int, manifest: Manifest) -> None:
         "describing": dict(sorted(manifest.describing.items())),
         "results": dict(sorted(manifest.results.items())),
     }
-    text = json.dumps({**told, "own_sha256": _own(told)}, indent=0)
-    write_atomically(folder / MANIFEST, text)
+    write_atomically(folder / MANIFEST, _text(told))
 
 
 def read_manifest(folder: Path) -> Manifest | None:
     """The digests of a folder's files; None where the manifest is missing or not as written."""
     try:
-        told = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-        own = told.pop("own_sha256")
+        text = (folder / MANIFEST).read_text(encoding="utf-8")
+        told = json.loads(text)
+        del told["own_sha256"]
         manifest = Manifest(told["describing"], told["results"])
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
-    return manifest if own == _own(told) else None
+    return manifest if text == _text(told) else None
 
 
-def _own(told: Mapping[str, object]) -> str:
-    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+def _text(told: Mapping[str, object]) -> str:
+    own = hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+    return json.dumps({**told, "own_sha256": own}, indent=0)

@@ -6,7 +6,7 @@ import pytest
 
 from tests.attacks.loads import SIZES, measured
 
-SHARE = {"readings": (10_000, 12.0), "path points": (5_000, 12.0), "joints": (10, 40.0)}
+SHARE = {"readings": (10_000, 12.0), "path points": (5_000, 12.0), "joints": (8, 40.0)}
 
 
 @pytest.mark.parametrize("what", SIZES)
