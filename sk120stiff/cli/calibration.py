@@ -11,8 +11,7 @@ from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
-from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
-from sk120stiff.identify.uncertainty.known_model import known_estimates
+from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, write_model
 
@@ -57,14 +56,6 @@ def calibration_answer(
     if out is not None:
         parts.append(f"Written to {out}.")
     return Answer(document, parts)
-
-
-def known_calibration(found: Calibration) -> Model:
-    """The fitted model with its uncertainty, as it is written to a file."""
-    fit = found.fit
-    sigma = fit.problem.noise.sigma if fit.sigma_known else fit.rms
-    source = f"{found.problem.situation.count} readings of positions"
-    return fit.model.known(known_estimates(fit, sigma, source))
 
 
 def _mean(found: Calibration) -> float | None:

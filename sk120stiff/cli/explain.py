@@ -17,8 +17,10 @@ from sk120stiff.cli.explain_output import (
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_data, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, SeedOption
+from sk120stiff.cli.positions import positions_answer
 from sk120stiff.cli.tables import progress_bar
 from sk120stiff.explain import Options, explain
+from sk120stiff.model import Model
 
 
 def command(
@@ -76,6 +78,9 @@ def command(
         alpha=alpha,
         seed=seed,
     )
+    if readings.absolute is not None:
+        base = Model(robot) if model is None else start_model(robot, model)
+        return positions_answer(base, readings, others, options, data, out, report=not no_report)
     inputs = [data, data.with_suffix(".yaml"), *(file for file in (holdout, model) if file)]
     with progress_bar("explain") as report:
         answer = explain(

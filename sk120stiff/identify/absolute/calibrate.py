@@ -267,7 +267,7 @@ def _fitted(
 
 def fitted(problem: PoseProblem) -> Fit:
     """Least squares from the problem's start."""
-    return as_fit(problem, settle(problem.evaluate, problem.start, problem.bounds, problem.span))
+    return as_fit(problem, settle(problem.evaluate, problem.start, problem.bounds, problem.prior))
 
 
 def extended(found: Fit, effects: Sequence[Effect]) -> Fit:
@@ -355,3 +355,12 @@ def with_values_of(model: Model, other: Model) -> Model:
             replace(p, internal=known.get(p.name, p.internal)) for p in model.parameters
         ),
     )
+
+
+def refined(base: Calibration, effects: Sequence[Effect], readings: Measurements) -> Calibration:
+    """A calibration with further effects, fitted exactly; what cannot be told of them is frozen."""
+    model = base.fit.model
+    for effect in effects:
+        model = model + effect
+    found, frozen, wild = _fitted(model, readings, base.wild)
+    return replace(base, fit=found, frozen=frozen, wild=wild)

@@ -11,6 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.effects.marker_shift import MarkerShift
+from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Channels
@@ -101,6 +102,20 @@ class PoseProblem(Problem):
             rough = self.said.fit_point and isinstance(parameter.effect, ToolOffset | MarkerShift)
             sizes.append(ROUGH if rough else parameter.spec.plausible)
         return np.array(sizes) / self.scale
+
+    @cached_property
+    def prior(self) -> Array:
+        """(P_free,) widths in scaled units within which values are sought.
+
+        Waves over a short range of a joint are much alike; of those that fit, the small ones.
+        """
+        usual = self.span.copy()
+        for j, k in enumerate(self.free):
+            parameter = self.model.parameters[k]
+            if isinstance(parameter.effect, TransmissionError):
+                usual[j] = np.sqrt(parameter.spec.typical * parameter.spec.plausible)
+                usual[j] /= self.scale[j]
+        return usual
 
     def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction."""

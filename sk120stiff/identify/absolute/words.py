@@ -8,12 +8,22 @@ import numpy as np
 
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.solve.polish import FAINTEST
+from sk120stiff.identify.uncertainty.known_model import known_estimates
 from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
 
 SHOWN = 12  # frozen parameters and rows that are told one by one
 
 NO_TORQUE = "neither weight nor payload nor load puts a torque on it that shows"
 SHARED = "these positions tell it together with errors of geometry only"
+
+
+def known_calibration(found: Calibration) -> Model:
+    """The fitted model with its uncertainty, as it is written to a file."""
+    fit = found.fit
+    sigma = fit.problem.noise.sigma if fit.sigma_known else fit.rms
+    source = f"{found.problem.situation.count} readings of positions"
+    return fit.model.known(known_estimates(fit, sigma, source))
 
 
 def gap_sentence(found: Calibration) -> str:

@@ -1,0 +1,121 @@
+"""What `explain` answers where readings say where markers stand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sk120stiff.cli.explain_output import page_or_warning
+from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.opening import provenance
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.effects import Elastic
+from sk120stiff.errors import InputError
+from sk120stiff.explain import Options
+from sk120stiff.explain.absolute.document import save_positions
+from sk120stiff.explain.absolute.run import Explained, explain_positions, heldout_on
+from sk120stiff.files import write_atomically
+from sk120stiff.identify.absolute.words import findings
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model, base_model
+
+SAID = {
+    "none": "Model and data agree: nothing is missing that these positions show.",
+    "named": "Something was missing, and it has names.",
+    "ambiguous": "Something is missing; these positions cannot tell which of several names.",
+    "outside": "Something is missing that no effect of the catalogue explains.",
+}
+
+
+def positions_answer(
+    model: Model,
+    readings: Measurements,
+    others: Measurements | None,
+    options: Options,
+    data: Path,
+    out: Path,
+    *,
+    report: bool,
+) -> Answer:
+    """Explain positions, write the folder, and say what was found."""
+    if others is not None and others.absolute is None:
+        raise InputError(
+            "the held-out readings are no positions", remedy="Hold out readings of the same kind."
+        )
+    with progress_bar("explain") as tell:
+        answer = explain_positions(
+            model,
+            readings,
+            options=options,
+            progress=lambda _, share: tell(round(85 * share), 100),
+        )
+        document = save_positions(answer, readings, out, provenance(data, readings))
+        pages = _pages(answer, readings, data, out) if report else {}
+        tell(100, 100)
+    parts = _parts(answer, readings, out)
+    held: dict[str, float] | None = None
+    if others is not None:
+        rms, distance = heldout_on(answer.final, others)
+        held = {"rms_um": rms * 1e6, "mean_distance_um": distance * 1e6}
+        parts.append(
+            f"Held-out file: {1e6 * rms:.3g} µm rms per axis, {1e6 * distance:.3g} µm mean "
+            "distance."
+        )
+    document = {**document, "holdout": held, "out": out, "model": out / "model.yaml", **pages}
+    return Answer(document, parts)
+
+
+def _pages(answer: Explained, readings: Measurements, data: Path, out: Path) -> dict[str, Path]:
+    """Scene and report, each where it can be made."""
+    from sk120stiff.show import reproducibility, scene_html
+    from sk120stiff.show.building import scene_of_model
+    from sk120stiff.show.stories import positions_report
+
+    model = answer.final.fit.model
+    if not any(isinstance(effect, Elastic) for effect in model.effects):
+        model = base_model(model.robot)  # a scene needs something that yields
+    scene = page_or_warning(
+        "scene.html", lambda: scene_html(scene_of_model(model, title=model.robot.name))
+    )
+    written = {} if scene is None else {"scene": write_atomically(out / "scene.html", scene)}
+    command = provenance(data, readings)["command"]
+    page = page_or_warning(
+        "report.html",
+        lambda: positions_report(
+            answer,
+            readings,
+            data=data.name,
+            reproducibility=reproducibility(command, [data, data.with_suffix(".yaml")]),
+        ).html(),
+    )
+    if page is not None:
+        written["report"] = write_atomically(out / "report.html", page)
+    return written
+
+
+def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]:
+    shown: list[object] = [SAID[answer.verdict]]
+    for item in answer.named:
+        shown.append(
+            f"{item.effect.sentence()} [{item.effect.id}] (P = {item.probability:.2f}, takes off "
+            f"{100 * item.gain.share:.1f} %)"
+        )
+        shown += [f"  or {other} (not told apart here)" for other in item.alternatives]
+    rows = [
+        (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)
+        for s in answer.steps
+    ]
+    columns = ["model", "fitted", "held out", "mean distance"]
+    shown.append(table("Gap [µm], rms per axis and mean distance held out", columns, rows))
+    if answer.families:
+        told = ", ".join(f"{name} {1e6 * share:.3g}" for name, share in answer.families.items())
+        shown.append(f"What each takes off beside the others [µm]: {told}.")
+    if answer.springs is not None:
+        shown.append(
+            f"Springs in all joints under the arm's weight would take {100 * answer.springs:.2g} % "
+            "more off the gap at poses left out: they are not named."
+        )
+    shown += findings(answer.final, readings)
+    shown += answer.dropped
+    shown += answer.where
+    shown.append(f"Results are in {out}.")
+    return shown

@@ -1,0 +1,148 @@
+"""Which causes positions ask for: in and out one by one by evidence, confirmed at other poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.explain.absolute.linear import Linear
+
+CLEAR = 3.0  # logarithm of odds beyond those of one among all candidates
+RIVAL = 3.0  # loss of evidence at which another cause explains as much
+SHARE = 0.003  # of the held-out gap that a cause must take off to be named on top of others
+SURE = 2.5  # standard errors of the held-out gain over poses
+MOST = 40
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A set of candidates and how it came about.
+
+    Attributes
+    ----------
+    order
+        Candidates in the order in which they joined.
+    dropped
+        Candidate → why it fitted and is not named.
+    """
+
+    order: tuple[int, ...]
+    dropped: dict[int, str]
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What a cause takes off the held-out squares beside the others, per pose.
+
+    Attributes
+    ----------
+    share
+        Relative fall of the rms gap.
+    errors
+        The gain in its standard errors over poses.
+    folds
+        Parts in which the gap falls.
+    """
+
+    share: float
+    errors: float
+    folds: int
+
+
+def choose(linear: Linear, *, most: int = MOST) -> Chosen:
+    """Forward by evidence, backward as the picture changes, then confirmed at poses left out."""
+    chosen: tuple[int, ...] = ()
+    dropped: dict[int, str] = {}
+    threshold = CLEAR + float(np.log(max(len(linear.candidates), 1)))
+    seen: set[frozenset[int]] = set()
+    while len(chosen) < most:
+        noise = linear.noise(chosen)
+        now = linear.score(chosen, noise)
+        tried = {
+            e: linear.score((*chosen, e), noise) - now
+            for e in range(len(linear.candidates))
+            if e not in chosen and e not in dropped
+        }
+        if not tried:
+            break
+        best = max(tried, key=lambda e: tried[e])
+        if tried[best] < threshold:
+            break
+        chosen = _backward(linear, (*chosen, best), threshold)
+        if frozenset(chosen) in seen:
+            break
+        seen.add(frozenset(chosen))
+        gained = gain(linear, chosen, best) if best in chosen else None
+        if gained is not None and not _confirmed(gained, linear):
+            dropped[best] = (
+                f"{linear.candidates[best].id} fits, but at poses left out it takes off no more "
+                f"than {100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard errors)."
+            )
+            chosen = tuple(e for e in chosen if e != best)
+    for e in list(chosen):
+        gained = gain(linear, chosen, e)
+        if not _confirmed(gained, linear):
+            chosen = tuple(c for c in chosen if c != e)
+            dropped[e] = f"{linear.candidates[e].id} is not confirmed by poses left out."
+    return Chosen(chosen, dropped)
+
+
+def _confirmed(gained: Gain, linear: Linear) -> bool:
+    return gained.share > SHARE and gained.errors > SURE and gained.folds >= min(4, linear.folds)
+
+
+def _backward(linear: Linear, chosen: tuple[int, ...], threshold: float) -> tuple[int, ...]:
+    """Without what the others make needless, and without parts that had to be rigid."""
+    while len(chosen) > 1:
+        noise = linear.noise(chosen)
+        whole = linear.score(chosen, noise)
+        lost = {e: whole - linear.score(_less(chosen, e), noise) for e in chosen}
+        weakest = min(lost, key=lambda e: lost[e])
+        if lost[weakest] >= threshold:
+            return chosen
+        chosen = _less(chosen, weakest)
+    return chosen
+
+
+def _less(chosen: tuple[int, ...], e: int) -> tuple[int, ...]:
+    return tuple(c for c in chosen if c != e)
+
+
+def gain(linear: Linear, chosen: tuple[int, ...], e: int) -> Gain:
+    """What one of the chosen takes off at poses left out."""
+    noise = linear.noise(chosen)
+    before = linear.gap(_less(chosen, e), noise, held_out=True) ** 2
+    after = linear.gap(chosen, noise, held_out=True) ** 2
+    rows = int(linear.row.max()) + 1
+    saved = np.bincount(linear.row, before - after, minlength=rows)
+    error = float(saved.std() * np.sqrt(rows))
+    per_fold = [float((before - after)[linear.fold == f].sum()) for f in range(linear.folds)]
+    return Gain(
+        share=1.0 - float(np.sqrt(after.sum() / before.sum())),
+        errors=float(saved.sum()) / max(error, 1e-300),
+        folds=sum(saved_there > 0.0 for saved_there in per_fold),
+    )
+
+
+def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple[int, ...], float]:
+    """Candidates that explain as much in the place of one of the chosen, and its probability."""
+    noise = linear.noise(chosen)
+    rest = _less(chosen, e)
+    nothing = linear.score(rest, noise)
+    own = linear.score(chosen, noise)
+    others = {
+        c: linear.score((*rest, c), noise) for c in range(len(linear.candidates)) if c not in chosen
+    }
+    rivals = tuple(c for c, score in others.items() if score > own - RIVAL and score > nothing)
+    scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
+    weight = np.exp(scores - scores.max())
+    return rivals, float(weight[:-1].sum() / weight.sum())
+
+
+def lengths(gap: Array, linear: Linear, sigma: Array, whole: Array) -> Array:
+    """(K,) distances [m] of rows whose three coordinates were read, from a whitened gap."""
+    square = np.bincount(linear.row[whole], (gap * sigma)[whole] ** 2)
+    count = np.bincount(linear.row[whole])
+    return np.asarray(np.sqrt(square[count == 3]))

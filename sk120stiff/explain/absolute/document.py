@@ -1,0 +1,165 @@
+"""Positions explained, as the files that callers rely on: verdict, model, gaps."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sk120stiff.effects import situation_of
+from sk120stiff.explain.absolute.run import Explained, Named
+from sk120stiff.explain.answer.saving import VERDICT, replacing_results
+from sk120stiff.files import guarded_cell, write_atomically
+from sk120stiff.files.json_text import SCHEMA, as_json_text
+from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model, Parameter, write_model
+from sk120stiff.model.pose_reading import read_poses
+
+SURE = 1.0 - 1e-9
+
+
+def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str, Any]:
+    """The content of `verdict.json`."""
+    final = answer.final
+    stated = final.problem.noise.sigma if final.fit.sigma_known else None
+    reasons = unseen(final)
+    return {
+        "schema": SCHEMA,
+        "verdict": answer.verdict,
+        "effects": [_effect(answer, item, reasons) for item in answer.named],
+        "parameters": [_parameter(p, reasons) for p in final.fit.model.parameters if p.free],
+        "gap": {
+            "unit": "um",
+            "noise_floor": None if stated is None else stated * 1e6,
+            "p": answer.chance,
+            "steps": [
+                {
+                    "model": step.label,
+                    "fit_rms": step.fit_rms * 1e6,
+                    "heldout_rms": step.heldout_rms * 1e6,
+                    "heldout_mean_distance": _um(step.heldout_distance),
+                }
+                for step in answer.steps
+            ],
+        },
+        "families": [
+            {"name": name, "share_um": share * 1e6} for name, share in answer.families.items()
+        ],
+        "springs_share": answer.springs,
+        "remainder": {
+            "rms_um": None if answer.remainder is None else _um(answer.remainder[0]),
+            "interval_95": [_um(end) for end in (answer.remainder or (None,) * 3)[1:]],
+            "p": answer.chance,
+            "significant": bool(answer.chance is not None and answer.chance < 0.01),
+            "where": list(answer.where),
+        },
+        "probabilities": [
+            {"name": item.effect.id, "probability": min(item.probability, SURE)}
+            for item in answer.named
+        ],
+        "where": list(answer.where),
+        "not_named": list(answer.dropped),
+        "not_observable": list(answer.hidden),
+        "frozen": [item.name for item in final.frozen],
+        "weak_directions": [item.sentence() for item in final.frozen],
+        "smallest_detectable": [],
+        "noise": {
+            "model": gap_sentence(final),
+            "source": "stated" if stated is not None else "unknown",
+            "sigma_um": _um(stated),
+            "set_aside": [
+                {"pose": readings.pose[row], "line": int(readings.line[row])}
+                for row in np.flatnonzero(final.wild)
+            ],
+        },
+        "said": findings(final, readings),
+        "next_poses": None,
+    }
+
+
+def save_positions(
+    answer: Explained, readings: Measurements, out: Path, provenance: Mapping[str, str]
+) -> dict[str, Any]:
+    """Write verdict, model and gaps, all in one moment; the content of verdict.json."""
+    document = verdict_of_positions(answer, readings)
+    fitted = replace(known_calibration(answer.final), provenance=dict(provenance))
+    with replacing_results(out):
+        write_model(fitted, out / "model.yaml")
+        write_atomically(out / "gaps.csv", gaps_text(fitted, readings, answer.final.wild))
+        write_atomically(out / VERDICT, as_json_text(document) + "\n")
+    return document
+
+
+def gaps_text(model: Model, readings: Measurements, wild: np.ndarray | None = None) -> str:
+    """Predicted position, measured one and gap of every row, in axes of the instrument."""
+    import pandas as pd
+
+    seen = read_poses(model, situation_of(model.robot, readings))
+    columns: dict[str, object] = {"pose": [guarded_cell(label) for label in readings.pose]}
+    for k, axis in enumerate("xyz"):
+        columns[f"predicted_{axis}[mm]"] = seen.position[:, k] * 1e3
+    said = readings.absolute
+    if said is not None and said.channels.position is not None:
+        x = said.channels.position
+        for k, axis in enumerate("xyz"):
+            columns[f"{axis}[mm]"] = x[:, k] * 1e3
+        for k, axis in enumerate("xyz"):
+            columns[f"gap_{axis}[um]"] = (x - seen.position)[:, k] * 1e6
+    used = readings.use if wild is None else readings.use & ~wild
+    columns["use"] = used.astype(int)
+    text = io.StringIO()
+    pd.DataFrame(columns).to_csv(text, index=False)
+    return text.getvalue()
+
+
+def _um(metres: float | None) -> float | None:
+    return None if metres is None or not np.isfinite(metres) else metres * 1e6
+
+
+def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[str, Any]:
+    own = [p for p in answer.final.fit.model.parameters if p.effect == item.effect]
+    share = None
+    for before, step in pairwise(answer.steps):
+        if step.label == f"+ {item.effect.id}":
+            share = before.heldout_rms - step.heldout_rms
+    return {
+        "name": item.effect.name,
+        "where": item.effect.where,
+        "alternatives": list(item.alternatives),
+        "exact_aliases": [],
+        "probability": min(item.probability, SURE),
+        "share_um": _um(share),
+        "parameters": [_parameter(p, reasons) for p in own],
+        "sentence": item.effect.sentence(),
+        "equation": item.effect.equation,
+        "axes": item.effect.axes,
+        "evidence": {
+            "folds_improved": item.gain.folds,
+            "folds": answer.linear.folds,
+            "heldout_gain": item.gain.share,
+            "heldout_gain_errors": item.gain.errors,
+        },
+    }
+
+
+def _parameter(p: Parameter, reasons: Mapping[str, str]) -> dict[str, Any]:
+    reason = reasons.get(p.name) or (None if p.free else "counted in others, see weak_directions")
+    shown = reason is None
+    return {
+        "name": p.name,
+        "value": p.value if shown else None,
+        "std": p.std if shown else None,
+        "unit": p.spec.unit,
+        "meaning": p.spec.meaning,
+        "internal_value": p.internal if shown else None,
+        "internal_std": p.internal_std if shown else None,
+        "internal_unit": p.spec.internal_unit,
+        "plausible": abs(p.internal) <= p.spec.plausible,
+        "reason": reason or p.note or None,
+    }

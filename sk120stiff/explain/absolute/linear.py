@@ -1,0 +1,139 @@
+"""Positions to first order in everything that may be missing, and models chosen among it.
+
+Small errors enter nearly linearly, so one derivative by every candidate at a registered, rigid arm
+serves all models. With Gaussian priors of the usual sizes the evidence of each is exact. All of it
+works on sums over the readings of a part, so cross-validation costs no more than a fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.effects import Effect
+
+FAINT = 1e-9  # share of a column left beside the base below which it is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """M whitened numbers, columns of the base and of every candidate.
+
+    Attributes
+    ----------
+    residual
+        (M,) gap of the base model in units of its noise.
+    base
+        (M, P) orthonormal columns that span the base model.
+    columns
+        (M, K) further columns per usual size of their parameter, what the base does taken out.
+    positive
+        (K,) parameters that cannot be negative.
+    candidates
+        The effects that the columns belong to.
+    slices
+        The part of the columns of each candidate.
+    row
+        (M,) reading that each number belongs to.
+    fold
+        (M,) part that it is left out with.
+    stated
+        The size of the noise was stated.
+    """
+
+    residual: Array
+    base: Array
+    columns: Array
+    positive: Mask
+    candidates: tuple[Effect, ...]
+    slices: tuple[slice, ...]
+    row: Index
+    fold: Index
+    stated: bool
+
+    @cached_property
+    def sums(self) -> Array:
+        """(F, P + K + 1, P + K + 1) products of all columns and the gap, part by part."""
+        A = np.column_stack([self.base, self.columns, self.residual])
+        return np.array([A[self.fold == f].T @ A[self.fold == f] for f in range(self.folds)])
+
+    @cached_property
+    def whole(self) -> Array:
+        """(P + K + 1, P + K + 1) the same of all parts together."""
+        return np.asarray(self.sums.sum(axis=0))
+
+    @property
+    def folds(self) -> int:
+        """Number of parts."""
+        return int(self.fold.max()) + 1
+
+    def picked(self, chosen: tuple[int, ...]) -> Index:
+        """Columns of the chosen candidates, numbered behind those of the base."""
+        P = self.base.shape[1]
+        parts = [np.arange(self.slices[e].start, self.slices[e].stop) + P for e in chosen]
+        return np.concatenate([np.arange(P), *parts]).astype(np.intp)
+
+    def solved(self, chosen: tuple[int, ...], noise: float, without: int | None = None) -> Solved:
+        """The chosen model fitted to all parts, or to all but one.
+
+        `noise` is the variance of the whitened numbers, against which the priors count.
+        """
+        pick = self.picked(chosen)
+        G = self.whole if without is None else self.whole - self.sums[without]
+        P = self.base.shape[1]
+        while True:
+            inner = G[np.ix_(pick, pick)].copy()
+            prior = np.where(pick < P, 0.0, noise)
+            inner[np.diag_indices(len(pick))] += prior + 1e-12
+            x = np.linalg.solve(inner, G[pick, -1])
+            wrong = (pick >= P) & (x < 0.0)
+            wrong[wrong] = self.positive[pick[wrong] - P]
+            if not wrong.any():
+                break
+            pick = pick[~wrong]  # a part that would have to be softer than rigid is rigid
+        square = float(G[-1, -1] - G[pick, -1] @ x)
+        sign, size = np.linalg.slogdet(inner[P:, P:] / noise)
+        del sign
+        return Solved(pick, x, max(square, 1e-12), float(size))
+
+    def score(self, chosen: tuple[int, ...], noise: float) -> float:
+        """Logarithm of the evidence, up to a constant of all models."""
+        found = self.solved(chosen, noise)
+        count = len(self.residual) - self.base.shape[1]
+        if self.stated and noise <= 1.0:
+            return -0.5 * (found.square + found.volume)
+        return float(-0.5 * (count * np.log(found.square / count) + found.volume))
+
+    def noise(self, chosen: tuple[int, ...]) -> float:
+        """Variance of what a model leaves, at least the stated one."""
+        left = 1.0
+        for _ in range(3):
+            spent = len(self.picked(chosen))
+            left = self.solved(chosen, left).square / max(len(self.residual) - spent, 1)
+        return max(left, 1.0) if self.stated else left
+
+    def gap(self, chosen: tuple[int, ...], noise: float, *, held_out: bool) -> Array:
+        """(M,) whitened gap of a model, fitted, or at the parts left out one by one."""
+        A = np.column_stack([self.base, self.columns])
+        if not held_out:
+            found = self.solved(chosen, noise)
+            return np.asarray(self.residual - A[:, found.pick] @ found.x)
+        gap = np.empty_like(self.residual)
+        for f in range(self.folds):
+            found = self.solved(chosen, noise, f)
+            rows = self.fold == f
+            gap[rows] = self.residual[rows] - A[np.ix_(rows, found.pick)] @ found.x
+        return gap
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A linear model fitted: columns that took part, their factors, what is left, prior volume."""
+
+    pick: Index
+    x: Array
+    square: float
+    volume: float

@@ -1,0 +1,284 @@
+"""Positions explained: register, choose among all that may be missing, fit exactly, say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import stats
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect
+from sk120stiff.errors import InputError
+from sk120stiff.explain.absolute.candidates import family, linear_at
+from sk120stiff.explain.absolute.choose import (
+    Chosen,
+    Gain,
+    alternatives,
+    choose,
+    gain,
+    lengths,
+)
+from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.options import Options
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, refined
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+
+FEWEST = 10  # poses below which no other pose can confirm a name
+LEVEL = 0.01
+LARGEST = 5  # places told
+
+
+@dataclass(frozen=True)
+class Named:
+    """One named cause: the effect, what cannot be told from it, its probability and gain."""
+
+    effect: Effect
+    alternatives: tuple[str, ...]
+    probability: float
+    gain: Gain
+
+
+@dataclass(frozen=True)
+class GapStep:
+    """The gap with one cause more: rms per axis, fitted and held out, and mean distance [m]."""
+
+    label: str
+    fit_rms: float
+    heldout_rms: float
+    heldout_distance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Explained:
+    """What is missing where positions were read.
+
+    Attributes
+    ----------
+    verdict
+        none, named, ambiguous or outside.
+    named
+        Causes in the order in which they joined.
+    base, final
+        Calibrations without them and with them.
+    linear
+        The positions linearised at the base.
+    steps
+        The gap step by step.
+    families
+        Family → rms per axis that its causes take off the held-out gap together [m].
+    springs
+        What springs in all joints would take off the held-out gap beside the named causes, as a
+        share of it; None where they are named, or nothing bends the arm.
+    dropped
+        What fitted and is not named, in sentences.
+    hidden
+        Candidates that do not show in these positions at all.
+    remainder
+        Rms per axis that is left beyond the stated noise, and its 95 % interval [m]; None: no
+        noise is stated.
+    chance
+        Probability of as large a misfit if the noise were all; None where none is stated.
+    where
+        Where what is left lives, in sentences.
+    """
+
+    verdict: str
+    named: tuple[Named, ...]
+    base: Calibration
+    final: Calibration
+    linear: Linear
+    steps: tuple[GapStep, ...]
+    families: dict[str, float]
+    springs: float | None
+    dropped: tuple[str, ...]
+    hidden: tuple[str, ...]
+    remainder: tuple[float, float, float] | None
+    chance: float | None
+    where: tuple[str, ...]
+
+
+def explain_positions(
+    model: Model,
+    readings: Measurements,
+    *,
+    options: Options | None = None,
+    catalogue: Catalogue = CATALOGUE,
+    progress: Callable[[str, float], None] | None = None,
+) -> Explained:
+    """Find what is missing where readings say where markers stand.
+
+    Parameters
+    ----------
+    model
+        Effects that are taken for granted; a rigid arm otherwise.
+    readings
+        Rows of positions and what goes with them.
+    options
+        How the search is steered.
+    catalogue
+        The effects that may be missing.
+    progress
+        Called with a phrase and a share of the work done.
+
+    Raises
+    ------
+    InputError
+        No such robot gave these positions, or too few poses.
+    Refusal
+        The fit did not converge.
+    """
+    wish = options or Options()
+    tell = progress or (lambda _phrase, _share: None)
+    if len(readings.masked().poses) < FEWEST:
+        raise InputError(
+            f"{len(readings.masked().poses)} poses: no other pose can confirm a name",
+            where=str(readings.path or "measurements"),
+            remedy=f"Measure at {FEWEST} poses or more; geometry alone comes from "
+            "'sk120stiff identify'.",
+        )
+    tell("registering the tracker", 0.05)
+    base = calibrate(model, readings, geometry=False, waves=False, catalogue=catalogue)
+    tell("searching the catalogue", 0.2)
+    linear, hidden = linear_at(base, wish, catalogue)
+    found = choose(linear)
+    tell("fitting exactly", 0.6)
+    final = refined(base, [linear.candidates[e] for e in found.order], readings)
+    tell("what is left", 0.85)
+    noise = linear.noise(found.order)
+    named = tuple(_named(linear, found, e) for e in found.order)
+    gap = linear.gap(found.order, noise, held_out=True)
+    sigma = base.problem.of_channels.sigma
+    remainder = chance = None
+    if final.fit.sigma_known and final.fit.misfit is not None:
+        chance = final.fit.misfit[2]
+        remainder = _beyond(final)
+    lacking = chance is not None and chance < LEVEL
+    verdict = "outside" if lacking else "none"
+    if named:
+        verdict = "ambiguous" if any(item.alternatives for item in named) else "named"
+    return Explained(
+        verdict=verdict,
+        named=named,
+        base=base,
+        final=final,
+        linear=linear,
+        steps=_steps(linear, found, base),
+        families=_families(linear, found, sigma),
+        springs=_springs(linear, found),
+        dropped=tuple(found.dropped.values()),
+        hidden=tuple(effect.id for effect in hidden),
+        remainder=remainder,
+        chance=chance,
+        where=_where(linear, gap * sigma, base, readings),
+    )
+
+
+def _named(linear: Linear, found: Chosen, e: int) -> Named:
+    rivals, probability = alternatives(linear, found.order, e)
+    return Named(
+        linear.candidates[e],
+        tuple(linear.candidates[c].id for c in rivals),
+        probability,
+        gain(linear, found.order, e),
+    )
+
+
+def _whole(linear: Linear, base: Calibration) -> Array:
+    """(M,) numbers that are coordinates of positions."""
+    part = np.zeros(len(linear.residual), dtype=bool)
+    for kind, own in zip(base.problem.channels.present, base.problem.channels.kinds, strict=True):
+        part[own] = kind == "position"
+    return part
+
+
+def _steps(linear: Linear, found: Chosen, base: Calibration) -> tuple[GapStep, ...]:
+    sigma, whole = base.problem.of_channels.sigma, _whole(linear, base)
+    first = " + ".join(effect.id for effect in base.fit.model.effects) or "rigid"
+    labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
+    steps = []
+    for k, label in enumerate(labels):
+        chosen = found.order[:k]
+        noise = linear.noise(chosen)
+        fitted = linear.gap(chosen, noise, held_out=False)
+        held = linear.gap(chosen, noise, held_out=True)
+        distance = lengths(held, linear, sigma, whole)
+        inside = base.problem.lengths
+        steps.append(
+            GapStep(
+                label,
+                _rms((fitted * sigma)[inside]),
+                _rms((held * sigma)[inside]),
+                float(distance.mean()) if len(distance) else np.nan,
+            )
+        )
+    return tuple(steps)
+
+
+def _families(linear: Linear, found: Chosen, sigma: Array) -> dict[str, float]:
+    groups: dict[str, list[int]] = {}
+    for e in found.order:
+        groups.setdefault(family(linear.candidates[e]), []).append(e)
+    noise = linear.noise(found.order)
+    left = _rms(linear.gap(found.order, noise, held_out=True) * sigma)
+    out = {}
+    for name, members in groups.items():
+        rest = tuple(e for e in found.order if e not in members)
+        out[name] = _rms(linear.gap(rest, noise, held_out=True) * sigma) - left
+    return out
+
+
+def _beyond(final: Calibration) -> tuple[float, float, float]:
+    """Rms per axis beyond the stated noise and its 95 % interval [m]."""
+    fit, sigma = final.fit, final.problem.noise.sigma
+    freedom = max(fit.degrees_of_freedom, 1)
+    shares = [freedom, *(float(stats.chi2.ppf(level, freedom)) for level in (0.975, 0.025))]
+    best, low, high = (sigma * max(fit.chi_square / s - 1.0, 0.0) ** 0.5 for s in shares)
+    return best, low, high
+
+
+def _springs(linear: Linear, found: Chosen) -> float | None:
+    springs = [e for e, effect in enumerate(linear.candidates) if effect.joint_spring]
+    if not springs or set(springs) & set(found.order):
+        return None
+    noise = linear.noise(found.order)
+    before = _rms(linear.gap(found.order, noise, held_out=True))
+    return 1.0 - _rms(linear.gap((*found.order, *springs), noise, held_out=True)) / before
+
+
+def _where(
+    linear: Linear, gap: Array, base: Calibration, readings: Measurements
+) -> tuple[str, ...]:
+    """Rows with the largest gaps left, and joints whose angle it goes with most."""
+    rows = np.flatnonzero(readings.use & ~base.wild)
+    size = np.sqrt(np.bincount(linear.row, gap**2, minlength=len(rows)))
+    worst = np.argsort(-size)[:LARGEST]
+    places = ", ".join(f"{readings.pose[rows[k]]} ({1e6 * size[k]:.0f} µm)" for k in worst)
+    said = [f"The largest gaps left at poses left out: {places}."]
+    a = readings.joints[rows]
+    strength = {}
+    for k, name in enumerate(readings.joint_names):
+        if np.ptp(a[:, k]) > 1e-3:
+            order = stats.spearmanr(np.abs(a[:, k] - np.median(a[:, k])), size)
+            strength[name] = abs(float(order.statistic))
+    if strength and max(strength.values()) > 4.0 / np.sqrt(len(rows)):
+        joint = max(strength, key=lambda name: strength[name])
+        said.append(f"What is left grows most as {joint} leaves the middle of its range.")
+    return tuple(said)
+
+
+def _rms(x: Array) -> float:
+    return float(np.sqrt(np.mean(x**2))) if len(x) else 0.0
+
+
+def heldout_on(final: Calibration, others: Measurements) -> tuple[float, float]:
+    """Rms per axis and mean distance [m] of a calibration at readings it never saw."""
+    problem = replace(final.problem, measurements=others.masked(), model=final.fit.model)
+    gap = problem.channel_gap(final.fit.model.values)[0]
+    held = problem.channels.held("position")
+    first = np.flatnonzero(held.all(axis=1))
+    full = np.full(held.shape, np.nan)
+    full[held] = gap[problem.channels.kinds[0]]
+    return _rms(gap[problem.lengths]), float(np.linalg.norm(full[first], axis=1).mean())

@@ -1,0 +1,59 @@
+"""What is missing is named from positions alone; what is not there is not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+import sk120stiff as sk
+from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.model import Model
+from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
+
+FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
+NOISE = "noise: {sigma: 20, unit: um}\n"
+
+
+def explained(tmp_path: Path, arm: Arm, a: Array, seed: int) -> Explained:
+    x = tracked(arm.stands(a)[0]) + 2e-5 * np.random.default_rng(seed).normal(size=(len(a), 3))
+    data = sk.read(write(tmp_path, a, x, FIT + NOISE))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    return explain_positions(Model(robot), data.with_joints(robot.actuated))
+
+
+def test_geometry_alone_gets_no_elastic_name(tmp_path: Path) -> None:
+    for seed in (1, 2):
+        arm = errors(seed)
+        arm.compliance = np.zeros(6)
+        found = explained(tmp_path, arm, poses(90, 30 + seed), seed)
+        families = set(found.families)
+        assert families == {"geometry"}, [item.effect.id for item in found.named]
+        assert found.chance > 1e-3
+        assert found.steps[-1].heldout_rms < 0.1 * found.steps[0].heldout_rms
+        assert found.steps[-1].heldout_rms < 2.6e-5
+
+
+def test_soft_joints_are_named_beside_geometry(tmp_path: Path) -> None:
+    found = explained(tmp_path, errors(4), poses(90, 41), 4)
+    named = {item.effect.id for item in found.named}
+    alternatives = {name for item in found.named for name in (item.effect.id, *item.alternatives)}
+    assert {"joint_springs:j2", "joint_springs:j3"} <= alternatives
+    assert any(name.startswith("joint_frame") for name in named)
+    assert found.chance > 1e-3 and found.remainder[0] < 1e-5
+    spring = found.final.fit.model.parameter("joint_springs:j2.stiffness")
+    assert abs(spring.internal - 1 / 8e5) < 4.0 * spring.internal_std
+
+
+def test_nothing_missing_is_nothing_named(tmp_path: Path) -> None:
+    found = explained(tmp_path, Arm(), poses(60, 50), 5)
+    assert found.verdict == "none" and not found.named
+
+
+def test_waves_are_named_with_their_joint(tmp_path: Path) -> None:
+    waves = np.zeros((6, 2))
+    waves[1] = 2e-4, -1.5e-4
+    found = explained(tmp_path, Arm(waves=waves), poses(90, 60), 6)
+    assert [item.effect.id for item in found.named] == ["transmission_error:j2"]
+    wave = found.final.fit.model.parameter("transmission_error:j2.sin_1")
+    assert abs(wave.internal - 2e-4) < 4.0 * wave.internal_std < 2e-4
