@@ -36,23 +36,38 @@ class Row:
     note: str = ""
 
 
+ROUNDS = 3  # of all roads in turns, so that what else the machine does falls on all of them
+
+
 def speed(seconds: float) -> Iterator[Row]:
-    """Every road on one core, and the kernel on all of them."""
+    """Every road on one core, and the kernel on all of them, in turns; the best round counts."""
     import bench_roads as roads
 
-    rates: dict[str, float] = {}
-    for name, (_, title) in roads.ROADS.items():
-        value, note = on_cores(name, seconds, 1)
-        if value is not None:
-            rates[name] = value
-            if name != "kernel" and "kernel" in rates:
-                note = f"the kernel is {rates['kernel'] / value:.0f} times as fast"
-        yield Row("speed, 6R, one core", title, value, "poses/s", note)
     cores = len(os.sched_getaffinity(0))
-    if cores > 1 and "kernel" in rates:
-        value, note = on_cores("kernel", seconds, cores)
-        if value is not None:
-            note = f"{value / rates['kernel']:.2f} times one core"
+    jobs = {name: (name, 1) for name in roads.ROADS}
+    if cores > 1:
+        jobs["all cores"] = ("kernel", cores)
+    rates: dict[str, float] = {}
+    notes: dict[str, str] = {}
+    for _ in range(ROUNDS):
+        for job, (road, many) in jobs.items():
+            if job in notes:
+                continue
+            value, note = on_cores(road, seconds / ROUNDS, many)
+            if value is None:
+                notes[job] = note
+            else:
+                rates[job] = max(rates.get(job, 0.0), value)
+    kernel = rates.get("kernel")
+    for name, (_, title) in roads.ROADS.items():
+        note = notes.get(name, "")
+        if kernel and name in rates and name != "kernel":
+            ratio = kernel / rates[name]
+            note = f"the kernel is {ratio:.{1 if ratio < 10 else 0}f} times as fast"
+        yield Row("speed, 6R, one core", title, rates.get(name), "poses/s", note)
+    if kernel and "all cores" in rates:
+        value = rates["all cores"]
+        note = f"{value / kernel:.2f} times one core"
         yield Row("speed, 6R, all cores", f"batch kernel on {cores} cores", value, "poses/s", note)
 
 
@@ -68,7 +83,7 @@ def on_cores(road: str, seconds: float, cores: int) -> tuple[float | None, str]:
     )
     if done.returncode:
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        missing = "ModuleNotFoundError" in last
+        missing = "ModuleNotFoundError" in last or "ImportError" in last
         return None, f"absent: {last.split(': ', 1)[-1]}" if missing else f"failed: {last}"
     return float(done.stdout.split()[-1]), ""
 
@@ -104,9 +119,10 @@ def start(_seconds: float) -> Iterator[Row]:
         "load the bundled robot": "import sk120stiff; sk120stiff.load_robot('motoman_sk120')",
         "first batch, compiled code found": (
             "import sk120stiff as s, numpy as n\n"
-            "from sk120stiff.stiffness import stiffness_batch\n"
+            "from sk120stiff.stiffness import ConstantCompliance, under_load\n"
             "r = s.load_robot('motoman_sk120')\n"
-            "stiffness_batch(r, n.zeros((1, 6)), n.ones(6), n.zeros(6))"
+            "arm = ConstantCompliance.of_springs(r, n.ones(6))\n"
+            "under_load(arm, n.zeros((1, 6)), n.zeros(6))"
         ),
     }
     for what, program in commands.items():
@@ -169,7 +185,7 @@ def machine() -> dict[str, object]:
         named = [x for x in cpuinfo.read_text().splitlines() if x.startswith("model name")]
         model = named[0].split(":", 1)[1].strip() if named else model
     versions = {}
-    for name in ("numpy", "numba", "pin", "jax", "roboticstoolbox-python"):
+    for name in ("numpy", "numba", "pin", "jax", "frax", "roboticstoolbox-python"):
         try:
             versions[name] = importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:

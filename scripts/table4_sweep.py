@@ -24,7 +24,7 @@ from sk120stiff.files import write_atomically
 from sk120stiff.paper.printed import COMPONENT, LOWER, UPPER, printed_counts
 from sk120stiff.show.figures import definiteness_map
 from sk120stiff.show.saving import save_figure
-from sk120stiff.stiffness import CLASSES, stiffness_batch
+from sk120stiff.stiffness import CLASSES, ConstantCompliance, under_load
 
 SPRINGS = np.array([1.4098e6, 4.0076e5, 9.3528e5, np.inf, np.inf, np.inf])  # N·m/rad
 PIECE = 200_000  # postures at a time
@@ -33,6 +33,7 @@ PIECE = 200_000  # postures at a time
 def sweep(step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     """Classes (8, 5), counts of det K_C > 0 and of K_θ − K_C positive definite (8,), postures."""
     robot = load_robot("motoman_sk120")
+    arm = ConstantCompliance.of_springs(robot, SPRINGS)
     axes = [np.arange(low, high + 1e-9, step) for low, high in zip(LOWER, UPPER, strict=True)]
     shape = tuple(len(axis) for axis in axes)
     size = int(np.prod(shape))
@@ -48,7 +49,7 @@ def sweep(step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         a = np.zeros((len(where[0]), robot.n))
         for joint, (axis, index) in enumerate(zip(axes, where, strict=True)):
             a[:, joint] = axis[index]
-        found = stiffness_batch(robot, a, SPRINGS, loads, want=want)
+        found = under_load(arm, a, loads, want)
         K = found.of("K_C")
         det = K[..., 0, 0] * (K[..., 1, 1] * K[..., 2, 2] - K[..., 1, 2] * K[..., 2, 1])
         det -= K[..., 0, 1] * (K[..., 1, 0] * K[..., 2, 2] - K[..., 1, 2] * K[..., 2, 0])
@@ -67,6 +68,7 @@ def sweep(step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
 def picture(step: float, path: Path) -> None:
     """Classes over joints 2 and 3 with joint 1 at zero, one panel per load."""
     robot = load_robot("motoman_sk120")
+    arm = ConstantCompliance.of_springs(robot, SPRINGS)
     x, y = (np.arange(LOWER[k], UPPER[k] + 1e-9, step) for k in (1, 2))
     signs, _ = printed_counts()
     loads = np.zeros((len(signs), 1, 6))
@@ -74,7 +76,7 @@ def picture(step: float, path: Path) -> None:
     a = np.zeros((len(y), len(x), robot.n))
     a[..., 1], a[..., 2] = np.meshgrid(x, y)
     want = ("complementary_class",)
-    found = stiffness_batch(robot, a.reshape(-1, robot.n), SPRINGS, loads, want=want)
+    found = under_load(arm, a.reshape(-1, robot.n), loads, want)
     titles = ["".join("+" if sign > 0 else "−" for sign in row) for row in signs]
     figure = definiteness_map(
         x,

@@ -17,7 +17,7 @@ from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
-from sk120stiff.model import Model
+from sk120stiff.model import Model, seen_from
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     BestPosture,
@@ -31,7 +31,6 @@ from sk120stiff.workspace import (
     read_path,
     write_joints,
 )
-from sk120stiff.workspace.arm import seen_from
 
 _PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
 

@@ -1,6 +1,12 @@
 """Robot + effects with values: predict, differentiate, read, write."""
 
 from sk120stiff.model.assembly import Assembly, Solution
+from sk120stiff.model.compliance import (
+    ModelCompliance,
+    model_compliance,
+    probing_poses,
+    seen_from,
+)
 from sk120stiff.model.file import (
     base_model,
     model_from_text,
@@ -26,6 +32,7 @@ __all__ = [
     "LoadedStiffness",
     "LoadedUncertainty",
     "Model",
+    "ModelCompliance",
     "Parameter",
     "Predicted",
     "Remainder",
@@ -36,13 +43,16 @@ __all__ = [
     "joint_spring_model",
     "loaded_stiffness",
     "loaded_uncertainty",
+    "model_compliance",
     "model_from_text",
     "model_text",
     "parameter_frame",
     "predict",
     "predict_with_uncertainty",
+    "probing_poses",
     "read_model",
     "robot_of_model",
+    "seen_from",
     "typical_model",
     "typical_parameters",
     "warn_of_far_bend",

@@ -43,12 +43,9 @@ from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
 class Assembly:
     """Effects put together on a robot; values of their parameters are given at each call.
 
-    Attributes
-    ----------
-    robot
-        The rigid robot.
-    effects
-        The effects, in the order of their parameters in the vector of values.
+    Attributes:
+        robot: The rigid robot.
+        effects: The effects, in the order of their parameters in the vector of values.
     """
 
     robot: Robot
@@ -125,16 +122,14 @@ class Assembly:
     def stand(self, situation: Situation, values: Array) -> Standing:
         """Equilibrium under load and weight for N readings and parameter values (P,).
 
-        Raises
-        ------
-        Refusal
-            The springs cannot hold the load.
+        Raises:
+            Refusal: The springs cannot hold the load.
         """
         loads = misread(self.of(LoadError), situation, values, to_sensor(situation))
         wrench = rotate(situation.rotation, loads.value)
         z_0 = self.start(situation, values)
         onset = self.mechanism.screws(z_0, situation.force_point).torques(wrench)
-        law, springs = self._law(situation, values, onset)
+        law, springs = self.law(situation, values, onset)
         rest = equilibrium(
             self.mechanism,
             self._moved(z_0, situation, values),
@@ -142,7 +137,7 @@ class Assembly:
             law,
             point=situation.point,
             force_point=situation.force_point,
-            soft=self._soft(values),
+            soft=self.soft(values),
             weight=self._weight(springs),
         )
         return Standing(situation, wrench, loads, onset, rest)
@@ -150,17 +145,15 @@ class Assembly:
     def solve(self, situation: Situation, values: Array) -> Solution:
         """Equilibrium and displacement for N readings and parameter values (P,).
 
-        Raises
-        ------
-        Refusal
-            The springs cannot hold the load.
+        Raises:
+            Refusal: The springs cannot hold the load.
         """
         stood = self.stand(situation, values)
         z_0 = self.start(situation, values)
         if situation.zero_a is not None:  # encoders read a little otherwise without load
             z_0[:, : self.robot.n] += situation.zero_a - situation.a
-        weight = self._weight(self._law(situation, values, stood.onset)[1])
-        unloaded = self._sagging(z_0, situation, weight, self._soft(values))
+        weight = self._weight(self.law(situation, values, stood.onset)[1])
+        unloaded = self._sagging(z_0, situation, weight, self.soft(values))
         displacement = stood.rest.screws.position - unloaded.screws.position
         readings = misread(self.of(ReadingError), situation, values, displacement)
         return Solution(
@@ -190,12 +183,12 @@ class Assembly:
         pairs = zip(self.effects, self.slices, strict=True)
         return [(effect, part) for effect, part in pairs if isinstance(effect, kind)]
 
-    def _soft(self, values: Array) -> Index:
+    def soft(self, values: Array) -> Index:
         """Coordinates that yield at all: the equilibrium is sought in these alone."""
         found = [index for _, part, index in self._elastic if values[part].any()]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.intp)
 
-    def _law(self, situation: Situation, values: Array, onset: Array) -> tuple[ElasticLaw, Array]:
+    def law(self, situation: Situation, values: Array, onset: Array) -> tuple[ElasticLaw, Array]:
         """Elongation of all coordinates under the load, and the compliance of what is linear.
 
         What does not change with the coordinates is evaluated only once.
@@ -244,7 +237,7 @@ class Assembly:
         By the parameters of the arm itself: those of load and reading errors have no part in it.
         """
         rest = solution.rest
-        adjoint = _adjoint(rest, self._soft(values), rest.screws.linear_jacobian)
+        adjoint = _adjoint(rest, self.soft(values), rest.screws.linear_jacobian)
         return self._standing(solution, values, adjoint)
 
     def _standing(self, solution: Standing, values: Array, adjoint: Array) -> Array:
@@ -265,7 +258,7 @@ class Assembly:
 
     def pose_sensitivities(self, stood: Standing, values: Array) -> Array:
         """(N, 6, P) exact derivative of where the point stands and how it is turned, base axes."""
-        adjoint = _adjoint(stood.rest, self._soft(values), stood.rest.screws.jacobian)
+        adjoint = _adjoint(stood.rest, self.soft(values), stood.rest.screws.jacobian)
         out = self._standing(stood, values, adjoint)
         self._add_loads(out, stood, adjoint)
         return out
@@ -273,7 +266,7 @@ class Assembly:
     def sensitivities(self, solution: Solution, values: Array) -> Array:
         """(N, 3, P) exact derivative of the readings by the internal parameter values."""
         situation, rest, before = solution.situation, solution.rest, solution.unloaded
-        soft = self._soft(values)
+        soft = self.soft(values)
         adjoint = _adjoint(rest, soft, rest.screws.linear_jacobian)  # (N, 3, n_z) = J N⁻¹
         weighs = self.mechanism.chain.weighs
         J_0 = before.screws.linear_jacobian
@@ -313,18 +306,13 @@ class Assembly:
 class Standing:
     """Where the loaded arm stands.
 
-    Attributes
-    ----------
-    situation
-        The readings.
-    wrench
-        (N, 6) true load, base axes [N, N·m].
-    loads
-        What the force sensor made of the load.
-    onset
-        (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or N].
-    rest
-        Equilibrium under load and weight.
+    Attributes:
+        situation: The readings.
+        wrench: (N, 6) true load, base axes [N, N·m].
+        loads: What the force sensor made of the load.
+        onset: (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or
+            N].
+        rest: Equilibrium under load and weight.
     """
 
     situation: Situation
@@ -338,12 +326,9 @@ class Standing:
 class Solution(Standing):
     """A solved set of displacements; what `Assembly.sensitivities` builds on.
 
-    Attributes
-    ----------
-    unloaded
-        Equilibrium before the load, under the arm's own weight.
-    readings
-        What the instrument made of the displacement.
+    Attributes:
+        unloaded: Equilibrium before the load, under the arm's own weight.
+        readings: What the instrument made of the displacement.
     """
 
     unloaded: Equilibrium

@@ -16,11 +16,12 @@ from scipy import stats
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import Refusal
-from sk120stiff.model.loaded import LoadedStiffness, seen_from
+from sk120stiff.model.compliance import ModelCompliance, seen_from
+from sk120stiff.model.loaded import LoadedStiffness
 from sk120stiff.model.model import Model
 from sk120stiff.model.predicted import Predicted, blamed, predict_with_uncertainty
 from sk120stiff.model.uncertainty import spread
-from sk120stiff.stiffness import complementary_stiffness, symmetric_part
+from sk120stiff.stiffness import symmetric_part, under_load
 
 STEP = 1e-3  # of a usual size; compliances enter linearly, so it does not matter
 SLIGHT = 0.01  # share of a stiffness that nobody asks about
@@ -31,18 +32,14 @@ DRAWS, SEED = 4000, 1  # of parameters; the same question has the same answer
 class LoadedUncertainty:
     """± of principal stiffness and deflection at one pose under one load.
 
-    Attributes
-    ----------
-    principal
-        (3,) standard uncertainty of the principal stiffness [N/m]; infinite where a value counts
-        that the readings of the fit do not show.
-    principal_interval
-        (3, 2) 95 % intervals [N/m]. They are made of compliances and turned over: so one that
-        reaches to a compliance of zero is open upwards.
-    deflection
-        Of the point at exact equilibrium, base axes (one reading); None where there is none.
-    blame
-        Parameters that make a ± infinite.
+    Attributes:
+        principal: (3,) standard uncertainty of the principal stiffness [N/m]; infinite where a
+            value counts that the readings of the fit do not show.
+        principal_interval: (3, 2) 95 % intervals [N/m]. They are made of compliances and turned
+            over: so one that reaches to a compliance of zero is open upwards.
+        deflection: Of the point at exact equilibrium, base axes (one reading); None where there is
+            none.
+        blame: Parameters that make a ± infinite.
     """
 
     principal: Array
@@ -65,7 +62,7 @@ def loaded_uncertainty(
     known = model.uncertainty
     if known is None:
         return None
-    model, point = seen_from(model.physical(), frame or model.robot.tool_frame)
+    model, point = seen_from(model.physical(), frame or model.robot.tool_frame, np.zeros(3))
     load = np.asarray(wrench, dtype=float)
     C = _compliance(model, model.values, a, load, point)
     change = np.stack(_derivative(model, a, load, point), axis=-1)  # (3, 3, P)
@@ -105,14 +102,9 @@ def _deflection(model: Model, a: ArrayLike, load: Array, point: Array) -> Predic
 
 
 def _compliance(model: Model, values: Array, a: ArrayLike, load: Array, point: Array) -> Array:
-    """(3, 3) J (I − C K_C)⁻¹ C Jᵀ of the point for other parameter values, without the load."""
-    situation = situation_of_load(model.robot, a, np.zeros(6), point=point)
-    rest = model.solve(situation, values).rest
-    C_theta = np.asarray(rest.compliance[0])
-    screws = model.assembly.mechanism.screws(rest.z[0], point)
-    newton = np.eye(len(C_theta)) - C_theta @ complementary_stiffness(screws, load)
-    J = screws.jacobian[:3]
-    return np.asarray(J @ np.linalg.solve(newton, C_theta @ J.T))
+    """(3, 3) compliance of the point under the load for other parameter values."""
+    arm = ModelCompliance(model.with_values(values), point)
+    return under_load(arm, model.robot.coordinates(a), load, ("compliance",)).of("compliance")
 
 
 def _derivative(model: Model, a: ArrayLike, load: Array, point: Array) -> list[Array]:

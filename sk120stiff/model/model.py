@@ -36,17 +36,12 @@ SQUARES = 1_000_000  # numbers in one square matrix for each of them: 8 MB, of w
 class Model:
     """A robot with named effects; immutable, every change makes a new one.
 
-    Attributes
-    ----------
-    robot
-        The rigid robot.
-    parameters
-        All parameters, effect by effect.
-    provenance
-        Where the whole came from: data hash, command, date.
-    uncertainty
-        How well the parameters are known, where a fit said so; a change of a value, or of what is
-        in the model, ends it.
+    Attributes:
+        robot: The rigid robot.
+        parameters: All parameters, effect by effect.
+        provenance: Where the whole came from: data hash, command, date.
+        uncertainty: How well the parameters are known, where a fit said so; a change of a value, or
+            of what is in the model, ends it.
     """
 
     robot: Robot
@@ -103,10 +98,8 @@ class Model:
     def parameter(self, name: str) -> Parameter:
         """The parameter of that full name.
 
-        Raises
-        ------
-        InputError
-            There is none.
+        Raises:
+            InputError: There is none.
         """
         if name not in self.names:
             raise InputError(
@@ -118,10 +111,8 @@ class Model:
     def __add__(self, other: Effect | Iterable[Parameter]) -> Model:
         """The model with one effect more, absent yet (all its parameters internally zero).
 
-        Raises
-        ------
-        InputError
-            The effect is already in the model at that place.
+        Raises:
+            InputError: The effect is already in the model at that place.
         """
         if isinstance(other, Effect):
             added = tuple(Parameter(other, spec) for spec in other.parameters)
@@ -139,10 +130,8 @@ class Model:
     def without(self, effect_id: str) -> Model:
         """The model without one effect (``name:where``).
 
-        Raises
-        ------
-        InputError
-            It is not in the model.
+        Raises:
+            InputError: It is not in the model.
         """
         kept = tuple(p for p in self.parameters if p.effect.id != effect_id)
         if len(kept) == len(self.parameters):
@@ -182,10 +171,8 @@ class Model:
     def known(self, uncertainty: Uncertainty) -> Model:
         """The model with what is known of its parameters.
 
-        Raises
-        ------
-        InputError
-            It is about a parameter that the model does not have.
+        Raises:
+            InputError: It is about a parameter that the model does not have.
         """
         for name in uncertainty.names:
             self.parameter(name)
@@ -198,10 +185,8 @@ class Model:
     def predict(self, situation: Situation, values: Array | None = None) -> Array:
         """(N, 3) predicted readings in the axes of the measurements [m].
 
-        Raises
-        ------
-        Refusal
-            The springs cannot hold a load.
+        Raises:
+            Refusal: The springs cannot hold a load.
         """
         given = self.values if values is None else values
         return np.concatenate(
@@ -264,13 +249,10 @@ class Model:
 def joint_spring_model(robot: Robot, stiffness: ArrayLike | None = None) -> Model:
     """The base model: one linear spring in every actuated joint.
 
-    Parameters
-    ----------
-    robot
-        The rigid robot.
-    stiffness
-        (n,) [N·m/rad or N/m]; an infinite one is left out. Default: all joints, at a stiffness that
-        is typical of large arms and only a start for identification.
+    Args:
+        robot: The rigid robot.
+        stiffness: (n,) [N·m/rad or N/m]; an infinite one is left out. Default: all joints, at a
+            stiffness that is typical of large arms and only a start for identification.
 
     Examples
     --------

@@ -81,8 +81,8 @@ def _table2(found: Findings) -> list[Claim]:
     others = [v for v in table.variants if v != table.variants[0]]
     gap = table.gap
     share = rms(gap) / rms(table.displacement)
-    without = rms(table.displacement - table.ours.conventional)
-    with_K_C = rms(table.displacement - table.ours.enhanced)
+    without = rms(table.displacement - table.ours["conventional"])
+    with_K_C = rms(table.displacement - table.ours["enhanced"])
     best = min(enhanced.values()), max(enhanced.values()), max(exact.values())
     return [
         Claim(

@@ -57,7 +57,7 @@ def _table2(table: Table2) -> dict[str, object]:
             joints=table.measured.joints,
             force=table.measured.wrench[:, :3],
             calculated_theirs=table.calculated,
-            **{f"calculated_{name}": getattr(table.ours, name) for name in FORMULAS},
+            **{f"calculated_{name}": table.ours[name] for name in FORMULAS},
             measured=table.displacement,
         ),
     }

@@ -17,8 +17,9 @@ from sk120stiff.paper.setting import (
     wrench_of,
 )
 from sk120stiff.robot import Screws
-from sk120stiff.stiffness import complementary_stiffness, critical_load, deflection
+from sk120stiff.stiffness import complementary_stiffness, under_load
 
+EXACT = "deflection_equilibrium"
 QUANTILES = (0.0, 0.01, 0.05, 0.25, 0.5)
 
 
@@ -120,13 +121,12 @@ def critical(setting: Setting, *, directions: int = 200) -> Critical:
     poses = np.stack(np.meshgrid([0.0], second, third, indexing="ij"), axis=-1).reshape(-1, 3)
     screws, springs = setting.arm(poses), setting.arm_springs
     units = even_directions(directions)
-    forces = np.stack(
-        [critical_load(screws, springs, wrench_of(unit)) for unit in units], axis=1
-    )  # (poses, directions)
+    arm, at = setting.elastic(), straight(poses)
+    forces = under_load(arm, at, wrench_of(units)[:, None], ("critical",)).of("critical").T
     worst, direction = _worst(setting, screws, units[np.argmin(forces, axis=1)])
     k = int(np.argmin(worst))
     loads = wrench_of(CLAIMED_CRITICAL_FORCE * direction)
-    moved = deflection(setting.mechanism, straight(poses), loads, setting.springs).equilibrium
+    moved = under_load(arm, at, loads, (EXACT,)).of(EXACT)
     size = np.linalg.norm(parts_at(setting, motion_grid()), axis=-1)  # (G, 3) |∂C_ii/∂F|
     return Critical(
         smallest=float(worst[k]),

@@ -14,7 +14,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import DEADWEIGHTS, FIGURE_POSES, PrintedLoads
 from sk120stiff.paper.setting import Setting, motion_grid, straight, wrench_of
 from sk120stiff.robot import STANDARD_GRAVITY
-from sk120stiff.stiffness import cartesian_compliance, deflection, principal_stiffness
+from sk120stiff.stiffness import cartesian_compliance, principal_stiffness, under_load
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,13 +79,13 @@ def pulls(setting: Setting, springs: dict[str, Array]) -> tuple[Pull, ...]:
     force, rigid = STANDARD_GRAVITY * DEADWEIGHTS, np.full(3, np.inf)
     found = []
     for figure, joints in FIGURE_POSES.items():
-        pose = straight(joints[:3])
+        pose, exact = straight(joints[:3]), "deflection_equilibrium"
         for axis, along in zip("xyz", np.eye(3), strict=True):
             wrench = wrench_of(force[:, None] * along)
             moved = {
-                name: deflection(
-                    setting.mechanism, pose, wrench, np.append(values, rigid)
-                ).equilibrium
+                name: under_load(
+                    setting.elastic(springs=np.append(values, rigid)), pose, wrench, (exact,)
+                ).of(exact)
                 for name, values in springs.items()
             }
             found.append(Pull(figure, axis, force, moved))

@@ -13,7 +13,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.model import Model, base_model
 from sk120stiff.paper.printed import LOWER, STEP, UPPER
 from sk120stiff.robot import Mechanism, Robot, Screws, load_robot
-from sk120stiff.stiffness import spring_matrix
+from sk120stiff.stiffness import ConstantCompliance, spring_matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +42,13 @@ class Setting:
     def K_theta(self) -> Array:
         """(3, 3) joint stiffness [N·m/rad]."""
         return spring_matrix(self.arm_springs)
+
+    def elastic(
+        self, frame: str | None = None, point: Array | None = None, springs: Array | None = None
+    ) -> ConstantCompliance:
+        """The arm with springs (6,) [N·m/rad], the paper's by default, at a point of a frame."""
+        values = self.springs if springs is None else springs
+        return ConstantCompliance.of_springs(self.robot, values, frame=frame, point=point)
 
     def arm(self, joints: Array, frame: str | None = None) -> Screws:
         """Kinematics by the first three joints alone, at (..., 3 or 6) joint readings [rad]."""

@@ -17,9 +17,9 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements, read_measurements
 from sk120stiff.paper.printed import PrintedLoads, data_folder, printed_loads
 from sk120stiff.paper.setting import Setting, rms
-from sk120stiff.stiffness import Deflection, deflection
+from sk120stiff.stiffness import under_load
 
-#: The formulas of `Deflection`, from crude to exact.
+#: The formulas of `UnderLoad`, from crude to exact.
 FORMULAS = ("conventional", "enhanced", "second_order", "equilibrium")
 
 
@@ -44,13 +44,13 @@ class Table2:
     measured: Measurements
     calculated: Array
     displacement: Array
-    ours: Deflection
+    ours: dict[str, Array]
     variants: tuple[Variant, ...]
 
     @cached_property
     def gap(self) -> Array:
         """(N, 3) measured minus predicted at exact equilibrium [m]."""
-        return np.asarray(self.displacement - self.ours.equilibrium)
+        return np.asarray(self.displacement - self.ours["equilibrium"])
 
     @cached_property
     def negated(self) -> dict[str, tuple[str, ...]]:
@@ -75,16 +75,16 @@ class Table2:
 
     def calculated_rms(self, formula: str) -> dict[str, float]:
         """Ours minus the printed calculated column, by one of `FORMULAS`, per pose [m]."""
-        return self.per_pose(getattr(self.ours, formula) - self.calculated)
+        return self.per_pose(self.ours[formula] - self.calculated)
 
     def measured_rms(self, formula: str = "equilibrium") -> dict[str, float]:
         """Measured minus predicted with the paper's springs, per pose [m]."""
-        return self.per_pose(self.displacement - getattr(self.ours, formula))
+        return self.per_pose(self.displacement - self.ours[formula])
 
     @cached_property
     def effect_of_K_C(self) -> dict[str, float]:
         """Difference that K_C makes to the paper's formula, per pose [m]."""
-        return self.per_pose(self.ours.enhanced - self.ours.conventional)
+        return self.per_pose(self.ours["enhanced"] - self.ours["conventional"])
 
 
 _AXES = tuple(enumerate("xyz"))
@@ -99,12 +99,11 @@ def table2(setting: Setting) -> Table2:
     )
     if measured.displacement is None or calculated.displacement is None:
         raise InputError("Table II lacks displacements", remedy="Reinstall the package.")
-    variants = []
+    variants, exact = [], "deflection_equilibrium"
     for wrist, joints in (("straight", measured.joints), ("as printed", printed.joints)):
         for frame, point in (("tool0", "flange"), ("reflector", "reflector on the fixture")):
-            moved = deflection(
-                setting.robot.mechanism(frame), joints, measured.wrench, setting.springs
-            ).equilibrium
+            arm = setting.elastic(frame)
+            moved = under_load(arm, joints, measured.wrench, (exact,)).of(exact)
             variants.append(
                 Variant(
                     f"wrist {wrist}, load at the {point}",
@@ -112,13 +111,14 @@ def table2(setting: Setting) -> Table2:
                     1e6 * rms(moved - measured.displacement),
                 )
             )
+    wanted = [f"deflection_{name}" for name in FORMULAS]
+    arm = setting.elastic(point=measured.point)
+    found = under_load(arm, measured.joints, measured.wrench, wanted)
     return Table2(
         printed,
         measured,
         calculated.displacement,
         measured.displacement,
-        deflection(
-            setting.mechanism, measured.joints, measured.wrench, setting.springs, measured.point
-        ),
+        {name: found.of(f"deflection_{name}") for name in FORMULAS},
         tuple(variants),
     )

@@ -17,10 +17,10 @@ from sk120stiff.paper.setting import Setting, straight, wrench_of
 from sk120stiff.stiffness import (
     PaperWork,
     cartesian_compliance,
-    deflection,
     loading_balance,
     paper_work,
     principal_stiffness,
+    under_load,
 )
 
 
@@ -97,7 +97,8 @@ def table3(setting: Setting, *, seed: int = 0) -> Table3:
     """Recompute Table III at the flange with a straight wrist, as Table II comes out."""
     printed = printed_loads(3)
     wrench, joints = wrench_of(printed.force), straight(printed.joints[:, :3])
-    moved = deflection(setting.mechanism, joints, wrench, setting.springs).equilibrium
+    exact = "deflection_equilibrium"
+    moved = under_load(setting.elastic(), joints, wrench, (exact,)).of(exact)
     screws = setting.arm(joints)
     rng = np.random.default_rng(seed)
     drawn = rng.uniform(1e-4, 1e-3, moved.shape) * rng.choice([-1.0, 1.0], moved.shape)

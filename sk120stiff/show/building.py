@@ -34,35 +34,25 @@ def scene_of_model(
 ) -> Scene:
     """The scene of a modelled robot, with the poses of its data.
 
-    Parameters
-    ----------
-    model
-        What yields in the scene.
-    data
-        Readings to list, with arrows for what was measured and what was predicted; masked rows are
-        left out.
-    models
-        Name → model whose predictions are shown beside the measured displacements, before and
-        after an explanation for example; ``{"model": model}`` by default.
-    title, subtitle, label
-        Headings, and where the springs come from.
-    a, wrench
-        (n,) pose and (6,) load shown at first; the first reading's by default.
-    model_file
-        The model's file, for "copy as command".
+    Args:
+        model: What yields in the scene.
+        data: Readings to list, with arrows for what was measured and what was predicted; masked
+            rows are left out.
+        models: Name → model whose predictions are shown beside the measured displacements, before
+            and after an explanation for example; ``{"model": model}`` by default.
+        title, subtitle, label: Headings, and where the springs come from.
+        a, wrench: (n,) pose and (6,) load shown at first; the first reading's by default.
+        model_file: The model's file, for "copy as command".
 
-    Raises
-    ------
-    InputError
-        The data belong to another robot, or nothing in the model yields.
+    Raises:
+        InputError: The data belong to another robot, or nothing in the model yields.
     """
     robot = model.robot
     shown = {"model": model} if models is None else dict(models)
     poses = poses_of(robot, data, shown) if data is not None else ()
-    start = a if a is not None else (poses[0].a if poses else None)
     return Scene(
         robot=robot,
-        elastic=Elastic.of_model(model, at=start, label=label),
+        elastic=Elastic.of_model(model, label=label),
         poses=poses,
         title=title,
         subtitle=subtitle,
@@ -79,10 +69,8 @@ def poses_of(
 ) -> tuple[ScenePose, ...]:
     """The poses of measurements with their readings in base axes, and what models predict.
 
-    Raises
-    ------
-    InputError
-        The data belong to another robot.
+    Raises:
+        InputError: The data belong to another robot.
     """
     from sk120stiff.effects import situation_of
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.robot import Robot
+from sk120stiff.robot.kinematics.chain import Chain
 from sk120stiff.robot.rotations import joint_motion
 
 FIXED, REVOLUTE, PRISMATIC = 0, 1, 2
@@ -16,26 +18,17 @@ _KINDS = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
 
 @dataclass(frozen=True, eq=False)
 class LinkTree:
-    """Constants of all joints, one per link but the root, parents before children.
+    """Constants of all joints, one per link but the root, and of what is inserted behind them.
 
-    Attributes
-    ----------
-    names
-        (L,) link names; the root first.
-    joints
-        (L,) name of the joint that carries each link; empty for the root.
-    parents
-        (L,) index of the parent link, -1 for the root.
-    origins
-        (L, 4, 4) joint placement in the parent link [m].
-    axes
-        (L, 3) unit joint axis.
-    kinds
-        (L,) `FIXED`, `REVOLUTE` or `PRISMATIC`.
-    coordinates
-        (L,) index into the joint vector q, -1 for a fixed joint.
-    base
-        Index of the link that is the base frame.
+    Attributes:
+        names: (L,) link names; the root first.
+        joints: (L,) name of the joint that carries each node; empty for the root.
+        parents: (L,) index of the parent link, -1 for the root.
+        origins: (L, 4, 4) joint placement in the parent link [m].
+        axes: (L, 3) unit joint axis.
+        kinds: (L,) `FIXED`, `REVOLUTE` or `PRISMATIC`.
+        coordinates: (L,) index into the joint vector q, -1 for a fixed joint.
+        base: Index of the link that is the base frame.
     """
 
     names: tuple[str, ...]
@@ -48,9 +41,10 @@ class LinkTree:
     base: int
 
     def place(self, q: Array) -> Array:
-        """(L, 4, 4) T_base_link of every link for joint values q (m,) [rad or m]."""
-        T = np.empty((len(self.names), 4, 4))
-        for k, parent in enumerate(self.parents):
+        """(L, 4, 4) T_base_link of every node for joint values q [rad or m]."""
+        T = np.empty((len(self.parents), 4, 4))
+        for k in self.order:
+            parent = self.parents[k]
             if parent < 0:
                 T[k] = np.eye(4)
                 continue
@@ -61,14 +55,47 @@ class LinkTree:
                 )
         return np.asarray(np.linalg.inv(T[self.base]) @ T)
 
-    def anchors(self, chain_joints: tuple[str, ...]) -> Index:
-        """(L,) for each link the last joint of a chain that moves it, -1 where none does."""
-        index = {name: k for k, name in enumerate(chain_joints)}
-        found = np.full(len(self.names), -1, dtype=np.intp)
-        for k, parent in enumerate(self.parents):
-            if parent >= 0:
-                found[k] = index.get(self.joints[k], int(found[parent]))
+    @cached_property
+    def order(self) -> list[int]:
+        """All nodes, parents before children."""
+        children: dict[int, list[int]] = {}
+        for k, parent in enumerate(self.parents.tolist()):
+            children.setdefault(parent, []).append(k)
+        found = list(children[-1])
+        for k in found:
+            found.extend(children.get(k, []))
         return found
+
+    def riding(self, chain: Chain) -> LinkTree:
+        """The tree with the chain's virtual joints in it, as nodes behind the links.
+
+        What a chain joint carries rides on the virtual joints before it; a link that no joint of
+        the chain carries stays where it is.
+        """
+        joints = list(self.joints)
+        nodes = [*self.joints, *(name for name in chain.names if name not in self.joints)]
+        extra = len(nodes) - len(joints)
+        parents = np.append(self.parents, np.zeros(extra, dtype=np.intp))
+        origins = np.concatenate([self.origins, np.zeros((extra, 4, 4))])
+        axes = np.concatenate([self.axes, np.zeros((extra, 3))])
+        kinds = np.append(self.kinds, np.zeros(extra, dtype=np.intp))
+        coordinates = np.append(self.coordinates, np.zeros(extra, dtype=np.intp))
+        before = self.base
+        for k, name in enumerate(chain.names):
+            here = nodes.index(name)
+            parents[here], origins[here], axes[here] = before, chain.placements[k], chain.axes[k]
+            kinds[here] = REVOLUTE if chain.revolute[k] else PRISMATIC
+            coordinates[here] = chain.coordinates[k]
+            before = here
+        return replace(
+            self,
+            joints=tuple(nodes),
+            parents=parents,
+            origins=origins,
+            axes=axes,
+            kinds=kinds,
+            coordinates=coordinates,
+        )
 
 
 def link_tree(robot: Robot) -> LinkTree:

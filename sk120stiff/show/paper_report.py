@@ -153,7 +153,7 @@ def _cell(column: Column, row: int) -> object:
 def _table2(found: Reproduction) -> tuple[PaperFigure, ...]:
     table, fitted = found.table2, found.identified
     models = {
-        "paper's springs": table.ours.equilibrium,
+        "paper's springs": table.ours["equilibrium"],
         "identified": table.displacement - fitted.fit.gap,
     }
     curves = []

@@ -10,26 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
-from sk120stiff.robot import LinearCoupling
+from sk120stiff.errors import Refusal
 from sk120stiff.show import palette
 from sk120stiff.show.bodies import bodies_of
-from sk120stiff.show.frame import Frame, PrincipalAxes, Request, compute_frame
+from sk120stiff.show.frame import Frame, Request, compute_frame
+from sk120stiff.show.mechanism import HELD, follows_pose_and_load, serialised
 from sk120stiff.show.scene import Reading, Scene, ScenePose
 from sk120stiff.show.shapes import Body, Mesh, reach_of
+from sk120stiff.stiffness import CLASSES, POSITIONS, ROTATIONS, Principal, under_load
 
 SAMPLES = 64  # poses from which the scale of the ellipsoids is taken
 DEFAULT_LOAD = 1000.0  # N, upper end of the load sliders without data
 EXAGGERATION = (1.0, 10000.0)
+FORMULATIONS = ("conventional", "enhanced")
 
 
 def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
     """Everything the page needs, in plain containers; matrices are (16,), column by column.
 
-    Raises
-    ------
-    InputError
-        A page without a server is wanted for a robot whose joints are coupled nonlinearly.
+    Raises:
+        InputError: A page without a server is wanted for a robot whose joints are coupled
+            nonlinearly.
     """
     robot, elastic, tree = scene.robot, scene.elastic, scene.tree
     meshes: list[Mesh] = []
@@ -48,7 +49,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
         "links": list(tree.names),
         "bodies": bodies,
         "meshes": [_mesh(mesh) for mesh in meshes],
-        "kinematics": None if live else _kinematics(scene),
+        "kinematics": None if live else serialised(scene),
         "poses": [_pose(pose) for pose in scene.poses],
         "models": list(scene.models),
         "start": {
@@ -68,31 +69,42 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
 
 
 def _source(scene: Scene, *, live: bool) -> str:
-    if scene.elastic.model is None or live:
+    if live or follows_pose_and_load(scene.elastic.arm):
         return scene.elastic.label
-    return (
-        f"{scene.elastic.label}; effects that change with pose or load are held as they are at the "
-        "first pose, unloaded"
-    )
+    return f"{scene.elastic.label}; {HELD}"
 
 
 def frame_payload(frame: Frame) -> dict[str, Any]:
     """A computed frame in the form in which the page's own engine returns it."""
+    found, rest = frame.found, frame.at_rest
+    deflection = {
+        "conventional": found.deflection_conventional,
+        "enhanced": found.deflection_enhanced if found.stable else None,
+        "equilibrium": None if rest is None else rest.deflection_equilibrium,
+    }
+    critical = float(found.of("critical"))
+    stands = critical > 0.0  # else the arm is unstable before any load, and nothing has a share
+    K_C_class = CLASSES[int(found.of("complementary_class"))].value
     return {
         "links": _matrices(frame.links, 9),
         "deflected": None if frame.deflected is None else _matrices(frame.deflected, 9),
-        "position": _list(frame.position),
-        "rotation": _list(frame.rotation.T),
-        "translation": {name: _axes(axes) for name, axes in frame.translation.items()},
-        "rotationAxes": {name: _axes(axes) for name, axes in frame.rotation_axes.items()},
-        "deflection": {name: _list(value) for name, value in frame.deflection.items()},
-        "classes": {"K_C": frame.K_C_class, "stiffness": frame.stiffness_class},
-        "softening": frame.softening,
-        "stiffening": frame.stiffening,
+        "position": _list(found.of("position")),
+        "rotation": _list(found.of("rotation").T),
+        "translation": {name: _axes(found.axes(name, POSITIONS)) for name in FORMULATIONS},
+        "rotationAxes": {name: _axes(found.axes(name, ROTATIONS)) for name in FORMULATIONS},
+        "deflection": {
+            name: _list(value) for name, value in deflection.items() if value is not None
+        },
+        "classes": {
+            "K_C": K_C_class if found.of("K_C").any() else "zero",
+            "stiffness": CLASSES[int(found.of("stiffness_class"))].value,
+        },
+        "softening": 1.0 / critical if stands else None,
+        "stiffening": float(found.of("stiffening")) if stands else None,
     }
 
 
-def _axes(axes: PrincipalAxes) -> dict[str, Any]:
+def _axes(axes: Principal) -> dict[str, Any]:
     return {"values": _list(axes.values), "directions": [_list(row) for row in axes.directions]}
 
 
@@ -132,46 +144,6 @@ def _limits(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _kinematics(scene: Scene) -> dict[str, Any]:
-    robot, elastic, tree = scene.robot, scene.elastic, scene.tree
-    if not isinstance(robot.coupling, LinearCoupling):
-        raise InputError(
-            "the joints of this robot are coupled nonlinearly, which a page without a server "
-            "cannot follow",
-            where=robot.name,
-            remedy="Use the live view: sk120stiff view.",
-        )
-    chain = elastic.mechanism.chain
-    n = elastic.mechanism.n
-    b = elastic.joint_vector(np.zeros(n))
-    A = np.stack([elastic.joint_vector(unit) - b for unit in np.eye(n)], axis=1)
-    return {
-        "drives": robot.n,
-        "A": [_list(row) for row in A],
-        "b": _list(b),
-        "offset": _list(elastic.offset),
-        "compliance": [_list(row) for row in elastic.compliance],
-        "chain": {
-            "placements": _matrices(chain.placements),
-            "axes": [_list(axis) for axis in chain.axes],
-            "revolute": [bool(turns) for turns in chain.revolute],
-            "coordinates": [int(k) for k in chain.coordinates],
-            "carriers": [
-                tree.joints.index(name) if name in tree.joints else -1 for name in chain.names
-            ],
-        },
-        "tree": {
-            "parents": [int(k) for k in tree.parents],
-            "origins": _matrices(tree.origins),
-            "axes": [_list(axis) for axis in tree.axes],
-            "kinds": [int(k) for k in tree.kinds],
-            "coordinates": [int(k) for k in tree.coordinates],
-            "anchors": [int(k) for k in tree.anchors(chain.names)],
-            "base": tree.base,
-        },
-    }
-
-
 def _scale(scene: Scene) -> dict[str, Any]:
     """Sizes that stay put while the sliders move, so that a change of stiffness can be seen."""
     robot = scene.robot
@@ -183,16 +155,19 @@ def _scale(scene: Scene) -> dict[str, Any]:
     poses += list(generator.uniform(lower, upper, (SAMPLES, robot.n)))
     soft: dict[str, list[float]] = {"translation": [], "rotation": []}
     stiff: dict[str, list[float]] = {"translation": [], "rotation": []}
+    arm = scene.elastic.at(scene.point)
     for a in poses:
-        screws = scene.elastic.mechanism.screws(scene.elastic.coordinates(a), scene.point)
-        for name, J in (("translation", screws.jacobian[:3]), ("rotation", screws.jacobian[3:])):
-            values = np.linalg.eigvalsh(J @ scene.elastic.tangent(a) @ J.T)
-            values = np.sort(np.abs(values))  # negative where the arm is unstable
+        try:
+            found = under_load(arm, a, np.zeros(6), ("compliance_conventional",))
+        except Refusal:  # the arm falls under its own weight there
+            continue
+        for name, part in (("translation", POSITIONS), ("rotation", ROTATIONS)):
+            values = np.sort(np.abs(found.axes("conventional", part).values))
             soft[name].append(float(values[-1]))
             stiff[name].append(float(values[1]))  # the middle one: no singularity carries it away
     references = {}
     for name in ("translation", "rotation"):
-        compliance = float(np.median(soft[name])) or 1.0
+        compliance = float(np.median(soft[name] or [0.0])) or 1.0
         middle = [value for value in stiff[name] if value > 1e-9 * compliance]
         references[name] = {
             "compliance": compliance,
@@ -214,7 +189,7 @@ def _exaggeration(scene: Scene, reach: float) -> float:
     if not sizes:
         request = Request(scene.first_pose, scene.first_load, np.asarray(scene.point))
         frame = compute_frame(scene.tree, scene.elastic, request)
-        sizes = [float(np.linalg.norm(frame.deflection["conventional"]))]
+        sizes = [float(np.linalg.norm(frame.found.of("deflection_conventional")))]
     largest = max(sizes)
     if largest < 1e-12:
         return 100.0

@@ -1,6 +1,5 @@
 """A robot under load: pure functions on arrays, for one pose or for many."""
 
-from sk120stiff.stiffness.batch import StiffnessBatch, stiffness_batch
 from sk120stiff.stiffness.cartesian import (
     cartesian_compliance,
     cartesian_stiffness,
@@ -12,8 +11,7 @@ from sk120stiff.stiffness.complementary import (
     gravity_torques,
     symmetric_part,
 )
-from sk120stiff.stiffness.critical import critical_load
-from sk120stiff.stiffness.deflection import Deflection, deflection
+from sk120stiff.stiffness.elastic import Compliant, ConstantCompliance
 from sk120stiff.stiffness.energy import PaperWork, loading_balance, paper_work, quadratic
 from sk120stiff.stiffness.equilibrium import (
     ElasticLaw,
@@ -28,35 +26,44 @@ from sk120stiff.stiffness.principal import (
     Principal,
     definiteness,
     definiteness_of,
+    principal_compliance,
     principal_stiffness,
 )
+from sk120stiff.stiffness.quantities import BY_LOAD, BY_POSE, COMPILED, QUANTITIES
+from sk120stiff.stiffness.under_load import POSITIONS, ROTATIONS, UnderLoad, under_load
 
 __all__ = [
+    "BY_LOAD",
+    "BY_POSE",
     "CLASSES",
+    "COMPILED",
+    "POSITIONS",
+    "QUANTITIES",
+    "ROTATIONS",
+    "Compliant",
+    "ConstantCompliance",
     "Definiteness",
-    "Deflection",
     "ElasticLaw",
     "Equilibrium",
     "PaperWork",
     "Principal",
-    "StiffnessBatch",
+    "UnderLoad",
     "Weight",
     "cartesian_compliance",
     "cartesian_stiffness",
     "complementary_stiffness",
-    "critical_load",
     "definiteness",
     "definiteness_of",
-    "deflection",
     "equilibrium",
     "gravity_stiffness",
     "gravity_torques",
     "linear_springs",
     "loading_balance",
     "paper_work",
+    "principal_compliance",
     "principal_stiffness",
     "quadratic",
     "spring_matrix",
-    "stiffness_batch",
     "symmetric_part",
+    "under_load",
 ]

@@ -24,17 +24,13 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
 
         K_C,z = Gᵀ K_C G + Σ_k τ_k H_k.
 
-    Parameters
-    ----------
-    screws
-        Kinematics at the loaded point, batch shape (...).
-    wrench
-        (..., 6) force [N] and moment [N·m] at that point, base axes.
+    Args:
+        screws: Kinematics at the loaded point, batch shape (...).
+        wrench: (..., 6) force [N] and moment [N·m] at that point, base axes.
 
-    Returns
-    -------
-    (..., n, n) [N·m/rad]. The part of the force is symmetric, that of a moment is not: a moment
-    about fixed axes has no potential. Symmetrise before any statement about definiteness.
+    Returns:
+        (..., n, n) [N·m/rad]. The part of the force is symmetric, that of a moment is not: a moment
+        about fixed axes has no potential. Symmetrise before any statement about definiteness.
     """
     load = np.asarray(wrench, dtype=float)
     if not load.any():
@@ -59,12 +55,9 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
 def gravity_torques(screws: Screws, gravity: Array) -> Array:
     """(..., n) torques of the arm's own weight on the coordinates [N·m or N].
 
-    Parameters
-    ----------
-    screws
-        Kinematics of a chain that weighs.
-    gravity
-        (3,) acceleration in base axes [m/s²].
+    Args:
+        screws: Kinematics of a chain that weighs.
+        gravity: (3,) acceleration in base axes [m/s²].
     """
     if screws.carried is None:
         return np.zeros((*screws.position.shape[:-1], screws.first.shape[-1]))

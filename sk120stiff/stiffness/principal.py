@@ -36,33 +36,44 @@ CLASSES = tuple(Definiteness)
 class Principal:
     """Eigenvalues and directions of a 3×3 stiffness, softest first.
 
-    Attributes
-    ----------
-    values
-        (..., 3) principal stiffness [N/m]; a negative one is an unstable direction, an infinite
-        one a direction in which the arm cannot move at all.
-    directions
-        (..., 3, 3) unit directions in base axes, one per row.
+    Attributes:
+        values: (..., 3) principal stiffness [N/m] (or compliance, where it says so); a negative one
+            is an unstable direction, an infinite one a direction in which the arm cannot move at
+            all.
+        directions: (..., 3, 3) unit directions in base axes, one per row.
     """
 
     values: Array
     directions: Array
 
 
+def principal_compliance(compliance: Array) -> Principal:
+    """Principal compliances (..., 3) of a compliance (..., 3, 3), largest first, as `values`.
+
+    The load's moment part can make the compliance unsymmetric; its symmetric part is taken, which
+    is the one that stores energy. Negative ones (unstable directions) come last. NaN stays NaN.
+    """
+    lost = np.asarray(np.isnan(compliance).any(axis=(-2, -1)))[..., None]
+    values, vectors = np.linalg.eigh(
+        symmetric_part(np.where(lost[..., None], np.eye(compliance.shape[-1]), compliance))
+    )
+    directions = np.swapaxes(vectors[..., ::-1], -1, -2)
+    return Principal(
+        np.where(lost, np.nan, values[..., ::-1]), np.where(lost[..., None], np.nan, directions)
+    )
+
+
 def principal_stiffness(compliance: Array) -> Principal:
     """Principal stiffness from a compliance (..., 3, 3) [m/N], safe at singular poses.
 
-    The load's moment part can make the compliance unsymmetric; its symmetric part is taken, which
-    is the one that stores energy. Values are ordered from the largest compliance down; negative
-    compliances (unstable directions) come last.
+    See `principal_compliance` for the order; a direction that does not yield is infinitely stiff.
     """
-    compliances, vectors = np.linalg.eigh(symmetric_part(compliance))
-    compliances, vectors = compliances[..., ::-1], vectors[..., ::-1]
-    size = np.max(np.abs(compliances), axis=-1, keepdims=True)
-    rigid = np.abs(compliances) <= 1e-12 * size
+    found = principal_compliance(compliance)
+    size = np.max(np.abs(found.values), axis=-1, keepdims=True)
+    rigid = np.abs(found.values) <= 1e-12 * size
     with np.errstate(divide="ignore"):
-        values = np.where(rigid, np.inf, 1.0 / np.where(rigid, 1.0, compliances))
-    return Principal(values, np.swapaxes(vectors, -1, -2))
+        values = np.where(rigid, np.inf, 1.0 / np.where(rigid, 1.0, found.values))
+    return Principal(values, found.directions)
 
 
 def definiteness(matrix: Array, *, tolerance: float = 1e-12) -> Index:

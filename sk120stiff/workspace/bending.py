@@ -1,12 +1,13 @@
 """How far the points of a map bend under its loads, ± what the model knows of its own uncertainty.
 
 One step from the unloaded pose with the enhanced stiffness, as `deflection_enhanced` of
-`loaded_stiffness`: with the compliance C of the coordinates, N = I − C K_C and τ = JᵀW,
+`under_load`: with the compliance C of the coordinates, K what load and weight take from their
+stiffness, N = I − C K and τ = JᵀW,
 
-    d = J N⁻¹ C τ,        ∂d/∂p = J N⁻¹ (∂C/∂p) (τ + K_C N⁻¹ C τ).
+    d = J N⁻¹ C τ,        ∂d/∂p = J N⁻¹ (∂C/∂p) (τ + K N⁻¹ C τ).
 
 It lacks the curvature of the path, ½ δᵀ H δ: parts in a thousand at usual loads. Coordinates that
-the model holds rigid may yield within their uncertainty; K_C is left out in those alone.
+the model holds rigid may yield within their uncertainty; K is left out in those alone.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Integers, Mask
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import situation_of_load
 from sk120stiff.model import Model, Remainder
 from sk120stiff.model.uncertainty import spread
@@ -27,17 +28,12 @@ STEP = 1e-3  # of a usual size; compliances are linear in their parameters
 class Doubt:
     """The uncertainty of an arm, as arrays that can be sent anywhere.
 
-    Attributes
-    ----------
-    seen, unseen
-        (P, r) and (P, b) factors of `Uncertainty.factors`.
-    changes
-        (P, n_z, n_z) derivative of the compliance of the coordinates by the parameters, or
-        (P, N, n_z, n_z) where it changes with the pose.
-    noise
-        Of one reading [m].
-    remainder
-        What the model leaves unexplained; None: not known.
+    Attributes:
+        seen, unseen: (P, r) and (P, b) factors of `Uncertainty.factors`.
+        changes: (P, n_z, n_z) derivative of the compliance of the coordinates by the parameters, or
+            (P, N, n_z, n_z) where it changes with the pose.
+        noise: Of one reading [m].
+        remainder: What the model leaves unexplained; None: not known.
     """
 
     seen: Array
@@ -58,13 +54,10 @@ class Doubt:
 class Bending:
     """Deflection of N points under one load.
 
-    Attributes
-    ----------
-    deflection
-        (N, 3) base axes [m]; NaN where the arm is not stable under the load.
-    std_parameters, std_remainder
-        (N,) standard uncertainty of its length [m]; infinite: unknown, NaN: no deflection. None
-        where nothing is known.
+    Attributes:
+        deflection: (N, 3) base axes [m]; NaN where the arm is not stable under the load.
+        std_parameters, std_remainder: (N,) standard uncertainty of its length [m]; infinite:
+            unknown, NaN: no deflection. None where nothing is known.
     """
 
     deflection: Array
@@ -109,49 +102,39 @@ def _changes(model: Model, poses: Array) -> Array:
 def bending(
     jacobian: Array,
     C: Array,
-    K_C: Array,
-    soft: Integers,
-    stable: Mask,
+    K: Array,
+    soft: Index,
+    deflection: Array,
     wrench: Array,
     doubt: Doubt | None,
 ) -> Bending:
-    """Deflections at N poses under one wrench (6,), ± their uncertainty.
+    """± of deflections at N poses under one wrench (6,).
 
-    Parameters
-    ----------
-    jacobian
-        (N, 6, n_z) of the point by all coordinates, base axes.
-    C
-        (s, s) or (N, s, s) compliance of the soft coordinates.
-    K_C
-        (N, s, s) complementary stiffness of the load.
-    soft
-        (s,) indices of the soft coordinates.
-    stable
-        (N,) is K_θ − K_C positive definite?
-    wrench
-        Force [N] and moment [N·m] at the point.
-    doubt
-        What is uncertain; None: not known.
+    Args:
+        jacobian: (N, 6, n_z) of the point by all coordinates, base axes.
+        C: (s, s) or (N, s, s) compliance of the soft coordinates.
+        K: (N, s, s) complementary stiffness of the load and of the weight.
+        soft: (s,) indices of the soft coordinates.
+        deflection: (N, 3) enhanced deflection; NaN where the arm does not hold the load.
+        wrench: Force [N] and moment [N·m] at the point.
+        doubt: What is uncertain; None: not known.
     """
-    torque = np.einsum("nij,i->nj", jacobian, wrench)
-    J = jacobian[:, :3]
-    newton = np.eye(len(soft)) - C @ K_C
-    newton = np.where(stable[:, None, None], newton, np.eye(len(soft)))  # not looked at
-    z = np.linalg.solve(newton, (C @ torque[:, soft, None]))[..., 0]
-    d = np.einsum("nij,nj->ni", J[..., soft], z)
-    d[~stable] = np.nan
     if doubt is None:
-        return Bending(d, None, None)
-    length = np.linalg.norm(d, axis=1)
-    along = d / np.where(length > 0.0, length, 1.0)[:, None]
-    pull = np.einsum("ni,nij->nj", along, J)  # what the load of one along d does
+        return Bending(deflection, None, None)
+    torque = np.einsum("nij,i->nj", jacobian, wrench)
+    newton = np.eye(len(soft)) - C @ K
+    held = np.asarray(np.isfinite(deflection).all(axis=1))
+    newton = np.where(held[:, None, None], newton, np.eye(len(soft)))  # not looked at
+    z = np.linalg.solve(newton, (C @ torque[:, soft, None]))[..., 0]
+    length = np.linalg.norm(deflection, axis=1)
+    along = deflection / np.where(length > 0.0, length, 1.0)[:, None]
+    pull = np.einsum("ni,nij->nj", along, jacobian[:, :3])  # what the load of one along d does
     pull[:, soft] = np.linalg.solve(np.swapaxes(newton, -1, -2), pull[:, soft, None])[..., 0]
-    torque[:, soft] += np.einsum("nij,nj->ni", K_C, z)
+    torque[:, soft] += np.einsum("nij,nj->ni", K, z)
     changes = doubt.changes if doubt.changes.ndim == 4 else doubt.changes[:, None]
     by_parameter = ((pull[:, None] @ changes)[..., 0, :] * torque).sum(axis=-1).T  # (N, P)
     std = spread(by_parameter @ doubt.seen, by_parameter @ doubt.unseen, doubt.noise)
     left = None
     if doubt.remainder is not None:
         left = np.sqrt(np.einsum("ni,i->n", along**2, doubt.remainder.std(wrench) ** 2))
-    return Bending(d, np.where(stable, std, np.nan), left)
+    return Bending(deflection, np.where(held, std, np.nan), left)

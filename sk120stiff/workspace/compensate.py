@@ -16,10 +16,9 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.model import Model
+from sk120stiff.model import Model, seen_from
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
-from sk120stiff.workspace.arm import seen_from
 
 STEPS = 40
 REST = 1e-10  # rad or m: after a correction smaller than this nothing is left to correct
@@ -32,13 +31,10 @@ BLOCK = 1024  # points solved together
 class Standing:
     """Where the loaded tool stands.
 
-    Attributes
-    ----------
-    away
-        (N, 3) displacement of the point from its target, base axes [m]; NaN where the springs
-        cannot hold the load.
-    turned
-        (N, 3) rotation of the tool from its target, base axes [rad].
+    Attributes:
+        away: (N, 3) displacement of the point from its target, base axes [m]; NaN where the springs
+            cannot hold the load.
+        turned: (N, 3) rotation of the tool from its target, base axes [rad].
     """
 
     away: Array
@@ -59,14 +55,11 @@ class Standing:
 class Compensation:
     """Corrected commands for N points.
 
-    Attributes
-    ----------
-    a
-        (N, n) corrected joint coordinates; the given ones where no equilibrium exists [rad or m].
-    before, after
-        Where the loaded tool stands with the given and with the corrected commands.
-    reasons
-        (N,) why something remains; empty where nothing does.
+    Attributes:
+        a: (N, n) corrected joint coordinates; the given ones where no equilibrium exists [rad or
+            m].
+        before, after: Where the loaded tool stands with the given and with the corrected commands.
+        reasons: (N,) why something remains; empty where nothing does.
     """
 
     a: Array
@@ -88,29 +81,19 @@ def compensate(
 ) -> Compensation:
     """Correct joint commands for the deflection under load.
 
-    Parameters
-    ----------
-    model
-        Robot and effects. Instruments have no say; weight and wrong geometry do, and are corrected
-        too.
-    a
-        (N, n) commands for the rigid, unloaded robot [rad or m].
-    wrench
-        (N, 6) or (6,) load at the point, base axes [N, N·m].
-    frame, point
-        Where the load acts and what is to stand right: a point (3,) [m] of a frame; the origin of
-        the tool frame by default.
-    orientation
-        Restore the tool's orientation too.
-    movable
-        (n,) joints that may be corrected; all by default.
-    progress
-        Called with (points done, points in all).
+    Args:
+        model: Robot and effects. Instruments have no say; weight and wrong geometry do, and are
+            corrected too.
+        a: (N, n) commands for the rigid, unloaded robot [rad or m].
+        wrench: (N, 6) or (6,) load at the point, base axes [N, N·m].
+        frame, point: Where the load acts and what is to stand right: a point (3,) [m] of a frame;
+            the origin of the tool frame by default.
+        orientation: Restore the tool's orientation too.
+        movable: (n,) joints that may be corrected; all by default.
+        progress: Called with (points done, points in all).
 
-    Raises
-    ------
-    InputError
-        Shapes do not fit, or a number is not finite.
+    Raises:
+        InputError: Shapes do not fit, or a number is not finite.
 
     Examples
     --------

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.stiffness import CLASSES
-from sk120stiff.workspace.arm import ElasticArm
+from sk120stiff.workspace.arm import BENDING, ElasticArm
 from sk120stiff.workspace.bending import Bending
 from sk120stiff.workspace.grid import Grid
 from sk120stiff.workspace.inverse import Task, lead_straight, solve_inverse, starting_poses
@@ -35,18 +35,12 @@ UNKNOWN_CLASS = 255  # class of a point that was not reached
 class Variable:
     """One variable of a map.
 
-    Attributes
-    ----------
-    name, unit, meaning
-        For people.
-    per_load
-        One value for every load.
-    kind
-        NumPy type as it is stored.
-    extra
-        Further dimension and its labels.
-    labels
-        Meaning of the values of a whole number.
+    Attributes:
+        name, unit, meaning: For people.
+        per_load: One value for every load.
+        kind: NumPy type as it is stored.
+        extra: Further dimension and its labels.
+        labels: Meaning of the values of a whole number.
     """
 
     name: str
@@ -112,12 +106,9 @@ class Poses(Protocol):
 class JointGrid:
     """A grid whose axes are joints.
 
-    Attributes
-    ----------
-    grid
-        Its axes are named as the joints.
-    rest
-        (n,) coordinates of the joints that are no axis [rad or m].
+    Attributes:
+        grid: Its axes are named as the joints.
+        rest: (n,) coordinates of the joints that are no axis [rad or m].
     """
 
     grid: Grid
@@ -142,20 +133,13 @@ class PositionGrid:
     branch of the arm from point to point. With a start, the one to which it leads along a straight
     line counts.
 
-    Attributes
-    ----------
-    grid
-        Axes x, y, z.
-    rest
-        (n,) first start of the search, and where joints stay that may not move [rad or m].
-    axis, rotation
-        Wanted orientation of the tool, see `Task`.
-    movable
-        (n,) joints that may move.
-    starts
-        Number of poses from which postures are searched.
-    start
-        (n,) coordinates whose branch the arm stays in [rad or m].
+    Attributes:
+        grid: Axes x, y, z.
+        rest: (n,) first start of the search, and where joints stay that may not move [rad or m].
+        axis, rotation: Wanted orientation of the tool, see `Task`.
+        movable: (n,) joints that may move.
+        starts: Number of poses from which postures are searched.
+        start: (n,) coordinates whose branch the arm stays in [rad or m].
     """
 
     grid: Grid
@@ -231,16 +215,12 @@ class PositionGrid:
 class MapJob:
     """Everything that defines a map; it can be sent to another process.
 
-    Attributes
-    ----------
-    arm
-        The arm and its stiffness.
-    points
-        Grid, and how its points become joint coordinates.
-    loads
-        (Q, 6) forces [N] and moments [N·m] at the point, base axes.
-    with_directions, with_position
-        Store principal directions, and positions of a joint grid's points.
+    Attributes:
+        arm: The arm and its stiffness.
+        points: Grid, and how its points become joint coordinates.
+        loads: (Q, 6) forces [N] and moments [N·m] at the point, base axes.
+        with_directions, with_position: Store principal directions, and positions of a joint grid's
+            points.
     """
 
     arm: ElasticArm
@@ -291,7 +271,7 @@ class MapJob:
         want = ["values", "critical", "stiffness_class", "complementary_class", "condition"]
         want += ["directions"] if self.with_directions else []
         want += ["position"] if self.with_position else []
-        want += ["jacobian", "K_C"] if self.bends else []
+        want += BENDING if self.bends else []
         found = self.arm.batch(a, self.loads[:, None, :], want, threads=threads)
         values = found.of("values")
         with np.errstate(divide="ignore"):

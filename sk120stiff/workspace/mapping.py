@@ -27,20 +27,13 @@ ATTEMPTS = 10  # times that a chunk is handed out before its loss counts as its 
 class MapReport:
     """What `write_map` did.
 
-    Attributes
-    ----------
-    path
-        The map.
-    points
-        Points of the grid.
-    computed
-        Those that this run computed; the rest was there already.
-    seconds
-        How long this run took.
-    chunks
-        Number of chunks of the map.
-    mended
-        Files that were not as an earlier run had written them, and were made again.
+    Attributes:
+        path: The map.
+        points: Points of the grid.
+        computed: Those that this run computed; the rest was there already.
+        seconds: How long this run took.
+        chunks: Number of chunks of the map.
+        mended: Files that were not as an earlier run had written them, and were made again.
     """
 
     path: Path
@@ -67,32 +60,21 @@ def write_map(
     again with the same job and path; so is a finished map, of which whatever is not as it was
     written is made again.
 
-    Parameters
-    ----------
-    job
-        What to compute.
-    path
-        Folder of the map, by custom ``….zarr``.
-    scheduler
-        Address of a Dask scheduler (``tcp://host:8786``) whose workers see the same folder; without
-        it the map is computed here.
-    threads
-        Threads per process; one per available core by default.
-    chunk_points
-        Points that are computed, held in memory and written together; by default as many as make
-        about a second's work.
-    overwrite
-        Replace another map of that name.
-    progress
-        Called with (points done, points in all) after every chunk.
+    Args:
+        job: What to compute.
+        path: Folder of the map, by custom ``….zarr``.
+        scheduler: Address of a Dask scheduler (``tcp://host:8786``) whose workers see the same
+            folder; without it the map is computed here.
+        threads: Threads per process; one per available core by default.
+        chunk_points: Points that are computed, held in memory and written together; by default as
+            many as make about a second's work.
+        overwrite: Replace another map of that name.
+        progress: Called with (points done, points in all) after every chunk.
 
-    Raises
-    ------
-    InputError
-        The place is taken, another run writes there, the disk has not enough room, or there is no
-        such scheduler.
-    Refusal
-        The disk is full, or the cluster is gone; what is done is kept.
+    Raises:
+        InputError: The place is taken, another run writes there, the disk has not enough room, or
+            there is no such scheduler.
+        Refusal: The disk is full, or the cluster is gone; what is done is kept.
     """
     begin = time.perf_counter()
     store = MapStore(Path(path).resolve(), job, chunk_points or _chunk_points(job))
@@ -125,7 +107,7 @@ def write_map(
 
 
 def _chunk_points(job: MapJob) -> int:
-    if job.points.cartesian or job.arm.slow is not None:
+    if job.points.cartesian or not job.arm.compiled:
         return SLOW_POINTS
     return max(SLOW_POINTS, FAST_POINTS // len(job.loads))
 

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.robot.rotations import rotation_from_rpy
-from sk120stiff.stiffness import StiffnessBatch
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 
@@ -29,18 +28,12 @@ GROW, SHRINK = 1.6, 0.6
 class PathTask:
     """N points that the tool passes, with what acts on it there, in base axes.
 
-    Attributes
-    ----------
-    position
-        (N, 3) of the arm's point [m].
-    axis
-        (N, 3) or (3,) direction of the tool's z axis, rotation about it free; or None.
-    rotation
-        (N, 3, 3) or (3, 3) orientation of the tool; or None.
-    wrench
-        (N, 6) or (6,) load at the point [N, N·m].
-    direction
-        (N, 3) or (3,) unit direction that matters; None for all.
+    Attributes:
+        position: (N, 3) of the arm's point [m].
+        axis: (N, 3) or (3,) direction of the tool's z axis, rotation about it free; or None.
+        rotation: (N, 3, 3) or (3, 3) orientation of the tool; or None.
+        wrench: (N, 6) or (6,) load at the point [N, N·m].
+        direction: (N, 3) or (3,) unit direction that matters; None for all.
     """
 
     position: Array
@@ -74,13 +67,10 @@ class PathTask:
 class Placement:
     """How the part, and the path with it, may be moved.
 
-    Attributes
-    ----------
-    origin
-        (3,) point of the part about which it turns, base axes [m].
-    lower, upper
-        (6,) bounds of x, y, z [m] and roll, pitch, yaw [rad] by which it is moved; equal ones are
-        fixed.
+    Attributes:
+        origin: (3,) point of the part about which it turns, base axes [m].
+        lower, upper: (6,) bounds of x, y, z [m] and roll, pitch, yaw [rad] by which it is moved;
+            equal ones are fixed.
     """
 
     origin: Array
@@ -92,23 +82,16 @@ class Placement:
 class BestPosture:
     """The best posture that was found, and how much there was to gain.
 
-    Attributes
-    ----------
-    a
-        (N, n) joint coordinates along the path [rad or m].
-    placement
-        (6,) how the part was moved.
-    objective
-        The worst compliance [m/N] or deflection [m] along the path: the smaller the better.
-    per_point
-        (N,) the same at every point.
-    condition
-        (N,) smallest over largest singular value of the position Jacobian.
-    limit_margin
-        Smallest distance of any joint from its limits [rad or m].
-    admissible
-        (k,) objectives of the postures that were met at random in the beginning: what choosing
-        blindly would give.
+    Attributes:
+        a: (N, n) joint coordinates along the path [rad or m].
+        placement: (6,) how the part was moved.
+        objective: The worst compliance [m/N] or deflection [m] along the path: the smaller the
+            better.
+        per_point: (N,) the same at every point.
+        condition: (N,) smallest over largest singular value of the position Jacobian.
+        limit_margin: Smallest distance of any joint from its limits [rad or m].
+        admissible: (k,) objectives of the postures that were met at random in the beginning: what
+            choosing blindly would give.
     """
 
     a: Array
@@ -138,46 +121,29 @@ def best_posture(
 ) -> BestPosture:
     """Search the posture that serves a path best; the worst point of the path counts.
 
-    Parameters
-    ----------
-    arm
-        The arm and its stiffness.
-    path
-        Points, orientations, loads.
-    minimise
-        ``compliance``: displacement along `path.direction` per force along it (in the softest
-        direction if there is none), so the stiffness is maximised. ``deflection``: displacement
-        under `path.wrench`, along `path.direction` or its length.
-    placement
-        Where the part may be put; it stays where it is by default.
-    limit_margin
-        Distance that joints must keep from their limits [rad or m].
-    singularity_margin
-        Smallest allowed `condition`.
-    largest_step
-        Largest change of a joint from one point to the next [rad or m]; more is another branch.
-    starts, kept, children, rounds
-        Effort: random postures in the beginning, those that go on, steps of each in a round.
-    seed
-        Of the random numbers.
+    Args:
+        arm: The arm and its stiffness.
+        path: Points, orientations, loads.
+        minimise: ``compliance``: displacement along `path.direction` per force along it (in the
+            softest direction if there is none), so the stiffness is maximised. ``deflection``:
+            displacement under `path.wrench`, along `path.direction` or its length.
+        placement: Where the part may be put; it stays where it is by default.
+        limit_margin: Distance that joints must keep from their limits [rad or m].
+        singularity_margin: Smallest allowed `condition`.
+        largest_step: Largest change of a joint from one point to the next [rad or m]; more is
+            another branch.
+        starts, kept, children, rounds: Effort: random postures in the beginning, those that go on,
+            steps of each in a round.
+        seed: Of the random numbers.
 
-    Raises
-    ------
-    InputError
-        Nothing to minimise, or shapes that do not fit.
-    Refusal
-        No posture passes the path within limits and margins.
+    Raises:
+        InputError: Nothing to minimise, or shapes that do not fit.
+        Refusal: No posture passes the path within limits and margins.
     """
     if minimise not in ("compliance", "deflection"):
         raise InputError(f"{minimise!r} cannot be minimised", remedy="compliance or deflection.")
     if minimise == "deflection" and not np.any(path.wrench):
         raise InputError("nothing deflects without a load", remedy="Give a wrench.")
-    if arm.slow is not None and np.any(np.asarray(path.wrench)[..., 3:]):
-        raise InputError(
-            "moments are not followed for a model whose compliance changes with the pose",
-            where=arm.name,
-            remedy="Give a force alone.",
-        )
     judge = Judge(
         replace(arm, lower=arm.lower + limit_margin, upper=arm.upper - limit_margin),
         path.each(),
@@ -329,35 +295,22 @@ class Judge:
         """Compliance or deflection, and conditioning, of postures at one point of the path."""
         load = self.path.wrench[point]
         loads = np.concatenate([turn @ load[:3], turn @ load[3:]], axis=1)
-        want = ["condition", "stiffness_class", "compliance", "values"]
-        want += ["jacobian", "K_C"] if load[3:].any() else []
+        want = ["condition", "stiffness_class", "compliance", "values", "deflection_enhanced"]
         found = self.arm.batch(a, loads, want)
-        C = found.of("compliance")
         if self.minimise == "compliance":
             if self.path.direction is None:
                 cost = 1.0 / found.of("values")[:, 0]
             else:
                 d = turn @ self.path.direction[point]
-                cost = np.einsum("ki,kij,kj->k", d, C, d)
+                cost = np.einsum("ki,kij,kj->k", d, found.of("compliance"), d)
         else:
-            displaced = np.einsum("kij,kj->ki", C, loads[:, :3])
-            if load[3:].any():
-                displaced = displaced + self._turned_by_moment(found, loads[:, 3:])
+            displaced = found.of("deflection_enhanced")
             if self.path.direction is None:
                 cost = np.linalg.norm(displaced, axis=1)
             else:
                 d = turn @ self.path.direction[point]
                 cost = np.abs((d * displaced).sum(-1))
-        stable = found.of("stiffness_class") == 0
-        return np.where(stable, cost, np.inf), found.of("condition")
-
-    def _turned_by_moment(self, found: StiffnessBatch, moment: Array) -> Array:
-        """(k, 3) displacement of the point by the moment: J_v (K_θ − K_C)⁻¹ J_wᵀ M."""
-        soft = found.soft
-        J = found.of("jacobian")[..., soft]
-        K = self.arm.springs[np.ix_(soft, soft)] - found.of("K_C")
-        torque = np.swapaxes(J[:, 3:], -1, -2) @ moment[..., None]
-        return np.asarray((J[:, :3] @ np.linalg.solve(K, torque))[..., 0])
+        return np.where(found.stable, cost, np.inf), found.of("condition")
 
     def report(self, pool: Pool, admissible: Array) -> BestPosture:
         """The best of a pool, with what it gives at every point."""

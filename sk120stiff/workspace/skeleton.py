@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.errors import InputError, MissingPart
+from sk120stiff.model import ModelCompliance
 from sk120stiff.workspace.field import UNKNOWN_CLASS, MapJob, Numbers, Variable
 from sk120stiff.workspace.grid import Chunks
 
@@ -65,11 +66,14 @@ def identity_of(job: MapJob, chunks: Chunks) -> str:
     """A digest of everything that decides the numbers."""
     import pickle
 
-    arm, points = job.arm, job.points
-    chain = arm.mechanism.chain
-    motion = arm.mechanism.coupling.motion(points.rest)
+    arm, points, elastic = job.arm, job.points, job.arm.elastic
+    chain = elastic.mechanism.chain
+    motion = elastic.mechanism.coupling.motion(points.rest)
+    rest = points.rest[None]
+    weight = elastic.weight_at(rest)
     parts: list[object] = [
-        VERSION, arm.joints, arm.lower, arm.upper, arm.springs, arm.shift, arm.point,
+        VERSION, arm.joints, arm.lower, arm.upper, elastic.compliance_at(rest),
+        elastic.start(rest), elastic.point,
         chain.placements, chain.axes, chain.revolute, chain.coordinates,
         motion.q, motion.first,
         [(axis.name, axis.values) for axis in points.grid.axes], points.rest,
@@ -79,11 +83,9 @@ def identity_of(job: MapJob, chunks: Chunks) -> str:
         ),
         job.loads, [variable.name for variable in job.variables],
         chunks.chunk_shape,
-        arm.slow.values if arm.slow else None,
+        elastic.model.values if isinstance(elastic, ModelCompliance) else None,
         arm.doubt.identity if arm.doubt else None,
-        (arm.weight.gravity, arm.weight.compliance, chain.masses, chain.centres)
-        if arm.weight
-        else None,
+        None if weight is None else (weight.gravity, chain.masses, chain.centres),
     ]  # fmt: skip
     digest = hashlib.sha256()
     for part in parts:
@@ -152,7 +154,7 @@ def _attributes(job: MapJob) -> dict[str, Any]:
         "robot": arm.name,
         "joints": list(arm.joints),
         "frame": arm.frame,
-        "point": arm.point.tolist(),
+        "point": arm.elastic.point.tolist(),
         "rest": job.points.rest.tolist(),
         "convention": "stiffness of the unloaded pose under a small displacement, "
         "J (K_theta - K_C)^-1 J^T inverted, base axes, SI units",

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError
-from sk120stiff.model import Model
+from sk120stiff.model import Model, seen_from
 from sk120stiff.robot import LinearCoupling
-from sk120stiff.workspace.arm import seen_from, springs_of
+from sk120stiff.workspace.arm import springs_of
 
 _SMALL = 1e-12  # share of a row below which a number is a zero that was computed
 
@@ -27,24 +27,16 @@ _SMALL = 1e-12  # share of a row below which a number is a zero that was compute
 class Body:
     """One body and the joint that carries it.
 
-    Attributes
-    ----------
-    name
-        The joint.
-    placement
-        (4, 4) joint frame in the frame of the body before it, all joints at zero [m].
-    axis
-        (3,) unit axis in the joint frame.
-    slides
-        Translation along the axis rather than rotation about it.
-    reference
-        Value of the joint at the commanded pose without load [rad or m].
-    stiffness
-        Spring about `reference` [N·m/rad or N/m]; zero where another body's spring holds it.
-    limits
-        (2,) of the joint; infinite where unknown [rad or m].
-    mass, centre
-        Mass [kg] and its centre (3,) in the joint's moving frame [m].
+    Attributes:
+        name: The joint.
+        placement: (4, 4) joint frame in the frame of the body before it, all joints at zero [m].
+        axis: (3,) unit axis in the joint frame.
+        slides: Translation along the axis rather than rotation about it.
+        reference: Value of the joint at the commanded pose without load [rad or m].
+        stiffness: Spring about `reference` [N·m/rad or N/m]; zero where another body's spring holds
+            it.
+        limits: (2,) of the joint; infinite where unknown [rad or m].
+        mass, centre: Mass [kg] and its centre (3,) in the joint's moving frame [m].
     """
 
     name: str
@@ -62,14 +54,10 @@ class Body:
 class Sum:
     """A weighted sum of joint values: Σ weight · joint.
 
-    Attributes
-    ----------
-    weights
-        Joint → weight.
-    value
-        The sum's value at the commanded pose [rad or m].
-    stiffness
-        Spring of the sum [N·m/rad or N/m].
+    Attributes:
+        weights: Joint → weight.
+        value: The sum's value at the commanded pose [rad or m].
+        stiffness: Spring of the sum [N·m/rad or N/m].
     """
 
     weights: dict[str, float]
@@ -81,14 +69,10 @@ class Sum:
 class Follower:
     """A joint that follows others: joint = Σ factor · driver + offset.
 
-    Attributes
-    ----------
-    joint
-        The joint.
-    drivers
-        Driver → factor.
-    offset
-        [rad or m].
+    Attributes:
+        joint: The joint.
+        drivers: Driver → factor.
+        offset: [rad or m].
     """
 
     joint: str
@@ -100,22 +84,14 @@ class Follower:
 class SpringArm:
     """An arm held at a pose, ready for a simulator.
 
-    Attributes
-    ----------
-    name, frame
-        Robot, and frame at the end of the chain.
-    bodies
-        Base to tool.
-    tip
-        (4, 4) the frame seen from the last body [m].
-    springs
-        Springs between joints.
-    followers
-        Joints that follow.
-    held
-        Joints that nothing lets yield → value at which they are built in [rad or m].
-    gravity
-        (3,) base axes [m/s²]; zero where the robot states no mass.
+    Attributes:
+        name, frame: Robot, and frame at the end of the chain.
+        bodies: Base to tool.
+        tip: (4, 4) the frame seen from the last body [m].
+        springs: Springs between joints.
+        followers: Joints that follow.
+        held: Joints that nothing lets yield → value at which they are built in [rad or m].
+        gravity: (3,) base axes [m/s²]; zero where the robot states no mass.
     """
 
     name: str
@@ -131,20 +107,16 @@ class SpringArm:
 def spring_arm(model: Model, pose: ArrayLike, *, frame: str | None = None) -> SpringArm:
     """The arm that a model describes, commanded to a pose.
 
-    Parameters
-    ----------
-    model
-        Robot and effects. Laws that are not linear enter with their stiffness at zero load;
-        compliances that change with the pose with their value at this one. Instruments have no say.
-    pose
-        (n,) commanded coordinates [rad or m].
-    frame
-        End of the chain; the tool frame by default.
+    Args:
+        model: Robot and effects. Laws that are not linear enter with their stiffness at zero load;
+            compliances that change with the pose with their value at this one. Instruments have no
+            say.
+        pose: (n,) commanded coordinates [rad or m].
+        frame: End of the chain; the tool frame by default.
 
-    Raises
-    ------
-    InputError
-        A closed loop that is not linear, compliances no springs can make, or nothing that yields.
+    Raises:
+        InputError: A closed loop that is not linear, compliances no springs can make, or nothing
+            that yields.
     """
     name = frame or model.robot.tool_frame
     physical, point = seen_from(model.physical(), name, np.zeros(3))

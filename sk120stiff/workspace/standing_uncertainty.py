@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import Refusal
-from sk120stiff.model import Model, held_loads
+from sk120stiff.model import Model, held_loads, seen_from
 from sk120stiff.model.predicted import blamed
 from sk120stiff.model.uncertainty import spread
-from sk120stiff.workspace.arm import seen_from
 
 BLOCK = 1024  # points solved together
 
@@ -26,15 +25,12 @@ BLOCK = 1024  # points solved together
 class StandingUncertainty:
     """Standard distance of N loaded points from where a model says that they stand.
 
-    Attributes
-    ----------
-    std_parameters
-        (N,) root of the variances along x, y and z, from the parameters [m]; infinite where a value
-        counts that the readings of the fit do not show, NaN where no equilibrium exists.
-    std_remainder
-        (N,) the same from what the model leaves unexplained [m]; None: not known.
-    blame
-        Parameters that make it infinite.
+    Attributes:
+        std_parameters: (N,) root of the variances along x, y and z, from the parameters [m];
+            infinite where a value counts that the readings of the fit do not show, NaN where no
+            equilibrium exists.
+        std_remainder: (N,) the same from what the model leaves unexplained [m]; None: not known.
+        blame: Parameters that make it infinite.
     """
 
     std_parameters: Array

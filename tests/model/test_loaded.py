@@ -5,9 +5,10 @@ import pytest
 
 from sk120stiff.effects import effect
 from sk120stiff.errors import InputError
-from sk120stiff.model import Model, joint_spring_model, loaded_stiffness
+from sk120stiff.model import Model, joint_spring_model, loaded_stiffness, model_compliance
 from sk120stiff.robot import load_robot
-from sk120stiff.stiffness import Definiteness
+from sk120stiff.stiffness import Definiteness, under_load
+from tests.oracles.sample_urdfs import six_axis_arm
 
 POSE = np.deg2rad([10.0, 20.0, -30.0, 40.0, 50.0, 60.0])
 SPRINGS = np.array([1.4e6, 4.0e5, 9.4e5, 1.0e5, 8.0e4, 5.0e4])
@@ -46,6 +47,49 @@ def test_the_compliance_is_what_small_loads_show(
     found = loaded_stiffness(model, POSE, np.zeros(6), frame)
     seen = small_loads(model, frame, 1.0)
     np.testing.assert_allclose(found.compliance_conventional[:3], seen, rtol=1e-6, atol=1e-12)
+
+
+@pytest.mark.parametrize("stiffness", [5e4, 400.0], ids=["sags", "hangs"])
+def test_the_weight_of_the_arm_is_a_load_too(stiffness: float) -> None:
+    """Small loads on a heavy arm: exact equilibria give the enhanced compliance, not K_θ's own.
+
+    At 400 N·m/rad the weight more than doubles the stiffness of the arm, which hangs down.
+    """
+    model = joint_spring_model(load_robot(six_axis_arm()), np.full(6, stiffness))
+    hanging = np.array([0.3, 2.9, -0.1, 0.4, 0.2, -0.3])
+    point, load = np.array([0.1, -0.2, 0.1]), np.eye(6)
+    up, down = (model.deflect(np.tile(hanging, (6, 1)), s * load, point=point) for s in (1, -1))
+    seen = 0.5 * (up - down).T  # (3, 6)
+    arm = model_compliance(model, None, point)
+    want = ("compliance_enhanced", "compliance_conventional", "K_gravity", "critical")
+    found = under_load(arm, hanging, np.zeros(6), want)
+    size = np.abs(seen[:, :3]).max()
+    np.testing.assert_allclose(found.compliance_enhanced[:3], seen, rtol=1e-5, atol=1e-5 * size)
+    assert np.abs(found.compliance_conventional[:3] - seen).max() > 1e-3 * size
+    one = loaded_stiffness(model, hanging, np.zeros(6))
+    np.testing.assert_allclose(one.K_gravity, found.K_gravity, rtol=1e-12, atol=1e-9)
+
+
+def test_a_column_bears_less_by_its_own_weight() -> None:
+    """K = 1000 N·m/rad, 1 m, 20 kg half way up: K − m g L/2 over L is left for the load."""
+    text = (
+        '<robot name="column"><link name="ground"/><link name="bar"><inertial>'
+        '<origin xyz="0 0 0.5"/><mass value="20"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"'
+        ' iyz="0"/></inertial></link><link name="tip"/><joint name="hinge" type="revolute">'
+        '<parent link="ground"/><child link="bar"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" '
+        'effort="1" velocity="1"/></joint><joint name="end" type="fixed"><parent link="bar"/>'
+        '<child link="tip"/><origin xyz="0 0 1"/></joint></robot>'
+    )
+    model = joint_spring_model(load_robot(text), [1000.0])
+    found = loaded_stiffness(model, [0.0], [0.0, 0.0, -100.0, 0.0, 0.0, 0.0])
+    left = 1000.0 - 20.0 * 9.80665 * 0.5
+    assert found.critical_factor == pytest.approx(left / 100.0, rel=1e-9)
+    assert found.principal.values[0] == pytest.approx(left - 100.0, rel=1e-9)
+    many = under_load(
+        model_compliance(model), np.zeros((3, 1)), [0, 0, -100.0, 0, 0, 0], ("critical", "values")
+    )
+    np.testing.assert_allclose(many.critical, left / 100.0, rtol=1e-9)
+    np.testing.assert_allclose(many.values[:, 0], left - 100.0, rtol=1e-9)
 
 
 def test_stiffness_and_compliance_are_inverse(six_springs: Model, soft_tool: Model) -> None:

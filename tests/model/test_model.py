@@ -10,7 +10,7 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.model.model import BLOCK
 from sk120stiff.robot import load_robot
-from sk120stiff.stiffness import deflection
+from tests.stiffness.arms import deflection
 
 SPRINGS = np.array([1.4098e6, 4.0076e5, 9.3528e5, np.inf, np.inf, np.inf])
 POSE = np.radians([10.0, 20.0, -30.0, 40.0, 50.0, 60.0])

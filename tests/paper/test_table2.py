@@ -33,7 +33,7 @@ def test_formulas_at_these_loads(found):
     """The second-order formula is exact to nanometres, the paper's is not."""
     ours = found.table2.ours
     off = {
-        name: 1e6 * rms(getattr(ours, name) - ours.equilibrium)
+        name: 1e6 * rms(ours[name] - ours["equilibrium"])
         for name in ("conventional", "enhanced", "second_order")
     }
     assert off["second_order"] < 0.0003
@@ -84,7 +84,10 @@ def test_identified_springs_are_those_of_linear_least_squares(found):
 def test_identification(found):
     fitted = found.identified
     assert (
-        fitted.fit.rms < 18e-6 < 26e-6 < rms(found.table2.displacement - found.table2.ours.enhanced)
+        fitted.fit.rms
+        < 18e-6
+        < 26e-6
+        < rms(found.table2.displacement - found.table2.ours["enhanced"])
     )
     assert fitted.equal_weights.rms < fitted.fit.rms
     assert np.max(np.abs(fitted.springs / (SPRINGS / 1e3) - 1)) < 0.06

@@ -10,7 +10,7 @@ from sk120stiff.errors import ToolkitWarning
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import load_robot
 from sk120stiff.robot.kinematics.coupling import Curvature
-from sk120stiff.stiffness import complementary_stiffness, deflection
+from sk120stiff.stiffness import complementary_stiffness
 from tests.oracles.mujoco_four_bar import closed_angles, four_bar_statics
 from tests.oracles.numpy_kinematics import UrdfTree
 from tests.robot.loop_arms import (
@@ -23,6 +23,7 @@ from tests.robot.loop_arms import (
     urdf,
     write_robot,
 )
+from tests.stiffness.arms import deflection
 
 SPRINGS = np.array([1.4e6, 4.0e5, 9.4e5, 3e5, 2e5, 1e5])
 WRENCH = np.array([300.0, -400.0, 500.0, 80.0, -60.0, 40.0])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from sk120stiff.robot import load_robot
-from sk120stiff.stiffness import deflection
 from tests.oracles.mujoco_serial import deflect_urdf
 from tests.oracles.numpy_kinematics import UrdfTree
 from tests.oracles.sample_urdfs import six_axis_arm
+from tests.stiffness.arms import deflection
 
 STIFFNESS = np.array([1e6, 5e5, 4e5, 1e5, 1e5, 5e4])
 WRENCH = np.array([300, -400, 500, 80, -60, 40.0])

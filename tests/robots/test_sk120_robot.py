@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from sk120stiff.robot import load_robot
-from sk120stiff.stiffness import complementary_stiffness, deflection
+from sk120stiff.stiffness import complementary_stiffness
 from tests.oracles.mujoco_sk120 import PAPER_SPRINGS, REFLECTOR, deflect_sk120
 from tests.oracles.numpy_kinematics import UrdfTree
 from tests.oracles.table2_reference import ROBOT
+from tests.stiffness.arms import deflection
 
 SK120 = load_robot("motoman_sk120")
 TREE = UrdfTree(ROBOT / "sk120.urdf")

@@ -14,6 +14,7 @@ from sk120stiff.model import base_model
 from sk120stiff.show import Elastic, Report, Scene, SceneFrame, Section, static_scene
 from sk120stiff.show.frame import Request, compute_frame
 from sk120stiff.show.payload import frame_payload
+from sk120stiff.stiffness import POSITIONS
 from tests.show.browser import DESKTOP, PHONE, Page, browser, changed, colours
 from tests.show.scenes import TWO_SLIDES, random_pose, sk120, sk120_scene
 from tests.show.test_frame import with_effect
@@ -159,7 +160,7 @@ def test_the_drawn_ellipsoid_is_the_compliance(page: Page, files) -> None:
     page.ready()
     scene = sk120_scene()
     request = Request(scene.first_pose, scene.first_load, scene.point)
-    axes = compute_frame(scene.tree, scene.elastic, request).translation["enhanced"]
+    axes = compute_frame(scene.tree, scene.elastic, request).found.axes("enhanced", POSITIONS)
     matrix = np.array(page.js(ELLIPSOID)).reshape(4, 4).T
     drawn = np.linalg.svd(matrix[:3, :3], compute_uv=False)
     np.testing.assert_allclose(drawn / drawn[0], axes.values / axes.values[0], rtol=1e-6)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import load_robot
-from sk120stiff.robot import Robot
+from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.show.links import link_tree
 from tests.show.scenes import TWO_SLIDES, random_pose, sk120
 
@@ -36,12 +36,18 @@ def test_the_five_bar_stays_closed() -> None:
         np.testing.assert_allclose(placed[rod, :3, 3], placed[lever, :3, 3], atol=1e-12)
 
 
-def test_a_link_is_anchored_to_the_last_chain_joint_that_moves_it() -> None:
+def test_a_link_rides_on_the_virtual_joints_before_it_and_on_no_other() -> None:
     robot = sk120()
+    T = np.eye(4)
+    T[:3, 3] = 0.1, 0.2, 0.3
+    slide = VirtualJoint("slide", 1, T, np.array([1.0, 0.0, 0.0]), revolute=False)
+    mechanism = robot.mechanism().with_virtual_joints([slide])
     tree = link_tree(robot)
-    chain = robot.mechanism().chain
-    anchors = dict(zip(tree.names, tree.anchors(chain.names), strict=True))
-    assert anchors["base_link"] == -1
-    assert chain.names[anchors["crank"]] == "joint_1_s"
-    assert chain.names[anchors["rod"]] == "joint_1_s"
-    assert chain.names[anchors["reflector"]] == "joint_6_t"
+    z = np.zeros(7)
+    z[6] = 0.01
+    q = mechanism.elastic.motion(z).q
+    placed = tree.riding(mechanism.chain).place(q)[: len(tree.names)]
+    moved = np.linalg.norm((placed - tree.place(q))[:, :3, 3], axis=1)
+    by_name = dict(zip(tree.names, moved, strict=True))
+    for name, distance in {"link_2_l": 0.0, "crank": 0.0, "tool0": 0.01, "reflector": 0.01}.items():
+        assert by_name[name] == pytest.approx(distance, abs=1e-12), name

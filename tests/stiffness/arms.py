@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from sk120stiff.robot import Mechanism, Robot, load_robot
+from sk120stiff.robot import Mechanism, Robot, Screws, load_robot
+from sk120stiff.stiffness import ConstantCompliance, complementary_stiffness, under_load
 from tests.oracles.numpy_kinematics import UrdfTree
 from tests.oracles.table2_reference import ROBOT
 
 Array = NDArray[np.float64]
 PAPER_SPRINGS = np.array([1.4098e6, 4.0076e5, 9.3528e5])  # [N·m/rad]
 SK120_SPRINGS = np.array([*PAPER_SPRINGS, np.inf, np.inf, np.inf])
+FORMULAS = ("conventional", "enhanced", "second_order", "equilibrium")
 POINT = np.array([0.1, -0.2, 0.3])
 
 
@@ -58,6 +61,30 @@ class Arm:
 
     def poses(self, count: int, seed: int) -> Array:
         return np.random.default_rng(seed).uniform(-1.5, 1.5, (count, self.n))
+
+
+def deflection(
+    mechanism: Mechanism,
+    a: ArrayLike,
+    wrench: ArrayLike,
+    springs: ArrayLike,
+    point: ArrayLike | None = None,
+) -> SimpleNamespace:
+    """The deflections of `under_load`, by formula."""
+    arm = ConstantCompliance.of_springs(mechanism, springs, point=point)
+    names = {name: f"deflection_{name}" for name in FORMULAS}
+    found = under_load(arm, a, wrench, names.values())
+    return SimpleNamespace(**{name: found.of(key) for name, key in names.items()})
+
+
+def critical_load(screws: Screws, springs: Array, wrench: ArrayLike) -> Array:
+    """(...,) factor on a wrench: one over the largest eigenvalue of K_θ^(-1/2) K_C K_θ^(-1/2)."""
+    root = 1.0 / np.sqrt(springs)
+    K_C = complementary_stiffness(screws, wrench)
+    K_C = 0.5 * (K_C + np.swapaxes(K_C, -1, -2))
+    values = np.linalg.eigvalsh(root[:, None] * K_C * root)
+    softens = values[..., -1] > 1e-12 * np.abs(values).max(axis=-1)
+    return np.where(softens, 1.0 / np.where(softens, values[..., -1], 1.0), np.inf)
 
 
 def mixed_urdf(seed: int) -> str:

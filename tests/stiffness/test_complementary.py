@@ -9,8 +9,16 @@ from hypothesis import strategies as st
 
 from sk120stiff.robot import LinearCoupling, Mechanism, load_robot
 from sk120stiff.robot.kinematics.coupling import Curvature, JointMotion
-from sk120stiff.stiffness import complementary_stiffness, critical_load, symmetric_part
-from tests.stiffness.arms import POINT, mixed_arm, mixed_urdf, sk120, sk120_poses, uncoupled
+from sk120stiff.stiffness import complementary_stiffness, symmetric_part
+from tests.stiffness.arms import (
+    POINT,
+    critical_load,
+    mixed_arm,
+    mixed_urdf,
+    sk120,
+    sk120_poses,
+    uncoupled,
+)
 
 FORCE = np.array([300, -400, 500, 0, 0, 0.0])
 MOMENT = np.array([0, 0, 0, 80, -60, 140.0])

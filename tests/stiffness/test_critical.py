@@ -7,11 +7,17 @@ from hypothesis import strategies as st
 from scipy.optimize import bisect
 
 from sk120stiff.stiffness import (
+    ConstantCompliance,
     complementary_stiffness,
-    critical_load,
     symmetric_part,
+    under_load,
 )
 from tests.stiffness.arms import PAPER_SPRINGS, mixed_arm, sk120, sk120_poses
+
+
+def critical_load(arm, a, direction):
+    elastic = ConstantCompliance.of_springs(arm.robot, arm.springs)
+    return under_load(elastic, a, direction, ("critical",)).critical
 
 
 def smallest(arm, screws, load):
@@ -45,7 +51,7 @@ def test_definiteness_is_lost_at_the_critical_load(arm, seed, moment):
     rng = np.random.default_rng(seed)
     (a,) = arm.poses(1, seed)
     direction = rng.normal(size=6) * ([1, 1, 1] + [float(moment)] * 3)
-    found = float(critical_load(arm.robot.screws(a), arm.springs, direction))
+    found = float(critical_load(arm, a, direction))
     assert found == pytest.approx(by_bisection(arm, a, direction), rel=1e-9)
     if np.isfinite(found):
         screws = arm.robot.screws(a)
@@ -57,23 +63,22 @@ def test_it_scales_with_the_direction_and_takes_batches():
     arm, poses = sk120(), sk120_poses(5, 1)
     rng = np.random.default_rng(2)
     directions = np.concatenate([rng.normal(size=(5, 3)), np.zeros((5, 3))], axis=1)
-    screws = arm.robot.screws(poses)
-    whole = critical_load(screws, arm.springs, directions)
+    whole = critical_load(arm, poses, directions)
     assert whole.shape == (5,)
     for k in range(5):
-        one = critical_load(arm.robot.screws(poses[k]), arm.springs, directions[k])
+        one = critical_load(arm, poses[k], directions[k])
         assert whole[k] == pytest.approx(float(one), rel=1e-12)
-    assert np.allclose(critical_load(screws, arm.springs, 10 * directions), whole / 10, rtol=1e-12)
+    assert np.allclose(critical_load(arm, poses, 10 * directions), whole / 10, rtol=1e-12)
 
 
 def test_no_load_is_critical_without_a_direction():
     arm = sk120()
-    assert critical_load(arm.robot.screws(np.zeros(6)), arm.springs, np.zeros(6)) == np.inf
+    assert critical_load(arm, np.zeros(6), np.zeros(6)) == np.inf
 
 
 def test_the_upright_sk120_buckles_at_spring_over_arm_length():
     """Upper arm upright, pressed straight down at the flange: joint 2 gives way at K2 / 1100 mm."""
     arm = sk120()
-    screws = arm.robot.screws(np.radians([0, 0, -82.5, 0, 0, 0]))
+    a = np.radians([0, 0, -82.5, 0, 0, 0])
     press = np.array([0, 0, -1.0, 0, 0, 0])
-    assert critical_load(screws, arm.springs, press) == pytest.approx(PAPER_SPRINGS[1] / 1.1)
+    assert critical_load(arm, a, press) == pytest.approx(PAPER_SPRINGS[1] / 1.1)

@@ -4,12 +4,21 @@ import numpy as np
 import pytest
 
 from sk120stiff.errors import Refusal
+from sk120stiff.model import joint_spring_model, loaded_stiffness
 from sk120stiff.robot import load_robot
-from sk120stiff.stiffness import deflection, equilibrium, linear_springs
+from sk120stiff.stiffness import ConstantCompliance, equilibrium, linear_springs, under_load
 from tests.oracles.mujoco_serial import deflect_urdf
 from tests.oracles.mujoco_sk120 import deflect_sk120
 from tests.oracles.numpy_kinematics import UrdfTree
-from tests.stiffness.arms import POINT, mixed_arm, mixed_urdf, sk120, sk120_poses, uncoupled
+from tests.stiffness.arms import (
+    POINT,
+    deflection,
+    mixed_arm,
+    mixed_urdf,
+    sk120,
+    sk120_poses,
+    uncoupled,
+)
 
 FORMULAS = ("conventional", "enhanced", "second_order")
 
@@ -155,7 +164,13 @@ def test_an_exactly_critical_load_is_refused():
         '<origin xyz="0 0 1"/></joint></robot>'
     )
     mechanism = load_robot(text, base="ground", tool="tip").mechanism()
+    arm = ConstantCompliance.of_springs(mechanism, [1000.0])
+    press = [0, 0, -1000.0, 0, 0, 0]
+    found = under_load(arm, [0.0], press, ("compliance", "deflection_enhanced", "critical"))
+    assert np.isnan(found.compliance).all() and np.isnan(found.deflection_enhanced).all()
+    assert found.critical == pytest.approx(1.0)
+    model = joint_spring_model(load_robot(text, base="ground", tool="tip"), [1000.0])
     with pytest.raises(Refusal, match="exactly critical"):
-        deflection(mechanism, [0.0], [0, 0, -1000.0, 0, 0, 0], [1000.0])
+        loaded_stiffness(model, [0.0], press)
     below = deflection(mechanism, [0.0], [1.0, 0, -999.0, 0, 0, 0], [1000.0])
     assert below.enhanced[0] == pytest.approx(1.0)  # a thousand times the 1 mm of the spring alone

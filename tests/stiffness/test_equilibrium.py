@@ -7,13 +7,20 @@ from sk120stiff.errors import Refusal
 from sk120stiff.robot import load_robot
 from sk120stiff.stiffness import (
     complementary_stiffness,
-    critical_load,
     equilibrium,
     linear_springs,
 )
 from tests.oracles.mujoco_serial import deflect_urdf
 from tests.oracles.numpy_kinematics import UrdfTree
-from tests.stiffness.arms import POINT, mixed_arm, mixed_urdf, sk120, sk120_poses, uncoupled
+from tests.stiffness.arms import (
+    POINT,
+    critical_load,
+    mixed_arm,
+    mixed_urdf,
+    sk120,
+    sk120_poses,
+    uncoupled,
+)
 
 LOAD = np.array([2000.0, 1500.0, -1000.0, 300.0, -200.0, 100.0])
 ELSEWHERE = np.array([-0.3, 0.1, 0.2])

@@ -21,15 +21,13 @@ from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.robot import Mechanism, Robot, VirtualJoint, load_robot
 from sk120stiff.stiffness import (
     CLASSES,
-    batch,
-    cartesian_compliance,
-    complementary_stiffness,
-    critical_load,
-    definiteness,
-    principal_stiffness,
-    spring_matrix,
+    COMPILED,
+    ConstantCompliance,
+    under_load,
 )
-from sk120stiff.stiffness.batch import QUANTITIES, announced, stiffness_batch
+from sk120stiff.stiffness.kernel import run
+from sk120stiff.stiffness.kernel.run import announced
+from sk120stiff.stiffness.on_arrays import on_arrays
 from tests.oracles.sample_urdfs import mimic_tree, six_axis_arm
 
 Array = NDArray[np.float64]
@@ -54,6 +52,15 @@ def robot(request: pytest.FixtureRequest) -> Robot:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ToolkitWarning)
         return load_robot(ROBOTS[request.param]())
+
+
+DEFAULT = ("position", "compliance", "values", "stiffness_class")
+
+
+def stiffness_batch(robot, a, springs, wrench, *, want=DEFAULT, threads=None, **arm):
+    """`under_load` of springs at many poses, which go through the kernel."""
+    elastic = ConstantCompliance.of_springs(robot, springs, **arm)
+    return under_load(elastic, a, wrench, want, threads=threads)
 
 
 def poses(robot: Robot, count: int, seed: int = 1) -> Array:
@@ -84,7 +91,7 @@ def test_agrees_with_pinocchio(robot: Robot, wrench: Array) -> None:
     point = np.array([0.05, -0.11, 0.2])
     springs = np.linspace(3e5, 6e5, robot.n)
     a = poses(robot, 70)
-    found = stiffness_batch(robot, a, springs, wrench, point=point, want=QUANTITIES)
+    found = stiffness_batch(robot, a, springs, wrench, point=point, want=COMPILED)
     for k in range(len(a)):
         J, K_C = K_C_by_loops(robot, a[k], wrench, point)
         compliance = J[:3] @ np.linalg.solve(np.diag(springs) - K_C, J[:3].T)
@@ -94,71 +101,6 @@ def test_agrees_with_pinocchio(robot: Robot, wrench: Array) -> None:
             (found.compliance[k], compliance),
         ):
             assert np.abs(ours - theirs).max() <= 1e-12 * np.abs(theirs).max()
-
-
-@pytest.mark.parametrize("wrench", [FORCE, WRENCH], ids=["force", "force and moment"])
-@pytest.mark.parametrize("size", [1.0, 3e3], ids=["stable", "unstable"])
-def test_agrees_with_numpy(robot: Robot, wrench: Array, size: float) -> None:
-    springs = np.linspace(3e5, 6e5, robot.n)
-    a, load = poses(robot, 203), wrench * size
-    found = stiffness_batch(robot, a, springs, load, want=QUANTITIES)
-    screws = robot.screws(a)
-    K_C = complementary_stiffness(screws, load)
-    K = spring_matrix(springs) - K_C
-    compliance = cartesian_compliance(screws.linear_jacobian, K)
-    principal = principal_stiffness(compliance)
-    np.testing.assert_allclose(found.position, screws.position, atol=1e-12)
-    np.testing.assert_allclose(found.rotation, screws.rotation, atol=1e-12)
-    per_pose = np.abs(compliance).max(axis=(1, 2), keepdims=True)
-    inverse = np.linalg.cond(K)[:, None, None]
-    assert (np.abs(found.compliance - compliance) <= 1e-15 * (100 + inverse) * per_pose).all()
-    np.testing.assert_array_equal(found.stiffness_class, definiteness(K))
-    np.testing.assert_array_equal(found.complementary_class, definiteness(K_C))
-    np.testing.assert_allclose(found.critical, critical_load(screws, springs, load), rtol=1e-9)
-    singular = np.zeros((len(a), 3))
-    singular[:, : min(3, robot.n)] = np.linalg.svd(screws.linear_jacobian, compute_uv=False)
-    np.testing.assert_allclose(found.condition, singular[:, 2] / singular[:, 0], atol=3e-8)
-    finite = np.isfinite(principal.values)
-    assert (np.isfinite(found.values) == finite).all()
-    c, ours = 1.0 / principal.values, 1.0 / found.values
-    assert (np.abs(c - ours) <= 1e-14 * (100 + inverse[..., 0]) * per_pose[..., 0]).all()
-    if size == 1.0:
-        gaps = -np.diff(c, axis=1) / per_pose[..., 0]
-        clear = (gaps > 1e-3).all(axis=1)
-        along = np.abs((found.directions * principal.directions).sum(-1))[clear]
-        assert clear.any()
-        np.testing.assert_allclose(along, 1.0, atol=1e-9)
-        assert (found.stiffness_class == CLASSES.index("positive definite")).all()
-    else:
-        assert (found.stiffness_class == CLASSES.index("indefinite")).any()
-
-
-def test_rigid_joints_and_many_loads(robot: Robot) -> None:
-    springs = np.full(robot.n, np.inf)
-    springs[: max(1, robot.n // 2)] = 4e5
-    soft = np.isfinite(springs)
-    loads = np.array([[FORCE], [WRENCH], [np.zeros(6)]])
-    a = poses(robot, 130)
-    found = stiffness_batch(robot, a, springs, loads, want=("compliance", "position"))
-    assert found.compliance.shape == (3, 130, 3, 3)
-    assert found.position.shape == (130, 3)
-    screws = robot.screws(a)
-    for load, ours in zip(loads[:, 0], found.compliance, strict=True):
-        K = spring_matrix(springs[soft]) - complementary_stiffness(screws, load)[:, soft][..., soft]
-        theirs = cartesian_compliance(screws.linear_jacobian[..., soft], K)
-        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-12 * np.abs(theirs).max())
-
-
-def test_one_load_for_each_pose_and_threads(robot: Robot) -> None:
-    count = 40_000  # more than one piece, so that threads do share
-    a = poses(robot, count)
-    loads = np.random.default_rng(3).normal(size=(count, 6)) * 100.0
-    springs = np.full(robot.n, 4e5)
-    one = stiffness_batch(robot, a, springs, loads, threads=1)
-    two = stiffness_batch(robot, a, springs, loads, threads=3)
-    np.testing.assert_array_equal(one.compliance, two.compliance)
-    alone = stiffness_batch(robot, a[-7:], springs, loads[-7:])
-    np.testing.assert_allclose(one.compliance[-7:], alone.compliance, rtol=1e-13, atol=1e-20)
 
 
 def with_virtual_joints(robot: Robot) -> Mechanism:
@@ -175,21 +117,81 @@ def with_virtual_joints(robot: Robot) -> Mechanism:
     )
 
 
-def test_virtual_joints_and_springs_that_are_coupled(robot: Robot) -> None:
+def arms(robot: Robot) -> dict[str, ConstantCompliance]:
+    """Springs, some of them rigid, ones that tie coordinates together, and the robot's weight."""
+    some = np.full(robot.n, np.inf)
+    some[: max(1, robot.n // 2)] = 4e5
     mechanism = with_virtual_joints(robot)
-    rng = np.random.default_rng(5)
-    root = rng.normal(size=(mechanism.n, mechanism.n))
-    K_theta = 1e5 * (root @ root.T + 5.0 * np.eye(mechanism.n))
-    a = poses(robot, 90)
-    v = np.array([0.03, -0.02, 0.05, 0.01])
-    want = ("jacobian", "compliance", "K_C")
-    found = stiffness_batch(mechanism, a, K_theta, WRENCH, virtual=v, want=want)
-    screws = mechanism.screws(np.concatenate([a, np.broadcast_to(v, (90, 4))], axis=1))
-    K_C = complementary_stiffness(screws, WRENCH)
-    theirs = cartesian_compliance(screws.linear_jacobian, K_theta - K_C)
-    np.testing.assert_allclose(found.jacobian, screws.jacobian, atol=1e-12)
-    np.testing.assert_allclose(found.K_C, K_C, atol=1e-12 * np.abs(K_C).max())
-    np.testing.assert_allclose(found.compliance, theirs, atol=1e-12 * np.abs(theirs).max())
+    root = np.random.default_rng(5).normal(size=(mechanism.n, mechanism.n))
+    tied = 1e5 * (root @ root.T + 5.0 * np.eye(mechanism.n))
+    of = ConstantCompliance.of_springs
+    point, v, g = np.array([0.05, -0.11, 0.2]), [0.03, -0.02, 0.05, 0.01], robot.gravity_in_base
+    return {
+        "springs": of(robot, np.linspace(3e5, 6e5, robot.n), point=point),
+        "rigid joints": of(robot, some),
+        "tied virtual joints": of(mechanism, tied, virtual=v, point=point),
+        "heavy": of(robot, np.linspace(3e4, 6e4, robot.n), gravity=g),
+        "heavy, tied": of(mechanism, 0.2 * tied, virtual=v, point=point, gravity=g),
+    }
+
+
+@pytest.mark.parametrize("kind", ["springs", "rigid joints", "tied virtual joints", "heavy",
+                                  "heavy, tied"])  # fmt: skip
+def test_the_kernel_gives_what_the_formulas_on_arrays_give(robot: Robot, kind: str) -> None:
+    """All that it computes, for loads that the arm holds, loads beyond, and none."""
+    arm, a = arms(robot)[kind], poses(robot, 203)
+    loads = np.array([[FORCE], [WRENCH], [3e3 * FORCE], [3e3 * WRENCH], [np.zeros(6)]])
+    assert arm.fold is not None
+    found, expected = under_load(arm, a, loads, COMPILED), on_arrays(arm, a, loads, COMPILED)
+    soft = arm.soft
+    K_theta = np.linalg.inv(arm.compliance[np.ix_(soft, soft)])
+    K = K_theta - expected["K_gravity"] - expected["K_C"]
+    reach = np.linalg.norm(expected["jacobian"][:, :3], axis=(-2, -1))
+    inverse = np.linalg.norm(np.linalg.inv(K), axis=(-2, -1))
+    parts = np.linalg.norm(K_theta) + np.linalg.norm(K - K_theta, axis=(-2, -1))
+    rounding = 1e-15 * (100.0 + parts * inverse) * reach**2 * inverse  # (Q, N) of a compliance
+    force = np.abs(loads).max(axis=-1)
+    for name, value in expected.items():
+        ours = found.of(name)
+        assert ours.shape == value.shape
+        if name.endswith("_class"):
+            np.testing.assert_array_equal(ours, value)
+        elif name in ("compliance", "deflection_enhanced"):
+            np.testing.assert_array_equal(np.isnan(ours), np.isnan(value))
+            off = np.abs(ours - value).max(axis=(-2, -1) if name == "compliance" else -1)
+            bound = rounding if name == "compliance" else rounding * force
+            assert (off <= bound)[~np.isnan(off)].all(), name
+        elif name == "values":
+            clear = np.abs(1.0 / value) > 1e3 * rounding[..., None]
+            off = np.abs(1.0 / ours - 1.0 / value)
+            assert (off <= 10.0 * rounding[..., None])[clear].all()
+        elif name == "directions":
+            gaps = -np.diff(1.0 / expected["values"], axis=-1)
+            clear = (gaps > 1e10 * rounding[..., None]).all(axis=-1)
+            along = np.abs((ours * value).sum(-1))[clear]
+            np.testing.assert_allclose(along, 1.0, atol=1e-9)
+        elif name == "critical":
+            np.testing.assert_allclose(ours, value, rtol=1e-9)
+        else:
+            share = 3e-8 if name == "condition" else 1e-12
+            np.testing.assert_allclose(ours, value, atol=share * max(1.0, np.abs(value).max()))
+    if kind == "springs":
+        assert (found.of("stiffness_class")[:2] == 0).all()
+        assert (found.of("stiffness_class")[2] == CLASSES.index("indefinite")).any()
+    if kind == "heavy" and robot.total_mass > 0.0 and robot.name != "motoman_sk120":
+        assert found.of("K_gravity").any()
+
+
+def test_one_load_for_each_pose_and_threads(robot: Robot) -> None:
+    count = 40_000  # more than one piece, so that threads do share
+    a = poses(robot, count)
+    loads = np.random.default_rng(3).normal(size=(count, 6)) * 100.0
+    springs = np.full(robot.n, 4e5)
+    one = stiffness_batch(robot, a, springs, loads, threads=1)
+    two = stiffness_batch(robot, a, springs, loads, threads=3)
+    np.testing.assert_array_equal(one.compliance, two.compliance)
+    alone = stiffness_batch(robot, a[-7:], springs, loads[-7:])
+    np.testing.assert_allclose(one.compliance[-7:], alone.compliance, rtol=1e-13, atol=1e-20)
 
 
 def test_singular_poses_are_rigid_in_the_lost_direction() -> None:
@@ -287,7 +289,7 @@ def test_no_poses_give_empty_arrays() -> None:
 def test_a_long_start_is_announced(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "PATIENCE", 0.01)
+    monkeypatch.setattr(run, "PATIENCE", 0.01)
     with caplog.at_level(logging.INFO, logger="sk120stiff"), announced():
         time.sleep(0.2)
     assert "Preparing" in caplog.text
@@ -297,7 +299,7 @@ def test_compiled_code_is_kept_where_the_package_is_read_only(tmp_path: Path) ->
     package = tmp_path / "site"
     shutil.copytree(Path(sk120stiff.__file__).parent, package / "sk120stiff")
     cache = tmp_path / "cache"
-    program = "from sk120stiff.stiffness.lanes.block import work; print(work._cache.cache_path)"
+    program = "from sk120stiff.stiffness.kernel.block import work; print(work._cache.cache_path)"
     environment = {**os.environ, "PYTHONPATH": str(package), "NUMBA_CACHE_DIR": str(cache)}
     done = subprocess.run(
         [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True

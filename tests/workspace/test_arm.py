@@ -10,9 +10,8 @@ from sk120stiff.effects import effect, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model, base_model, joint_spring_model, loaded_stiffness
 from sk120stiff.robot import load_robot
-from sk120stiff.stiffness import CLASSES, Weight
-from sk120stiff.stiffness.batch import QUANTITIES
-from sk120stiff.workspace import STATUS, Axis, ElasticArm, Grid, JointGrid, MapJob, elastic_arm
+from sk120stiff.stiffness import CLASSES, COMPILED, ConstantCompliance
+from sk120stiff.workspace import STATUS, Axis, Grid, JointGrid, MapJob, elastic_arm
 from tests.oracles.sample_urdfs import six_axis_arm
 from tests.robot.loop_arms import four_bar
 from tests.workspace.arms import LOADS
@@ -54,7 +53,7 @@ MODELS = {
 def test_stiffness_is_that_of_the_model(names: tuple[str, ...], frame: str | None) -> None:
     model = sk120_with(*names)
     arm = elastic_arm(model, frame=frame)
-    found = arm.batch(POSES, LOADS[:, None], QUANTITIES)
+    found = arm.batch(POSES, LOADS[:, None], COMPILED)
     for number, load in enumerate(LOADS):
         for k, a in enumerate(POSES):
             one = loaded_stiffness(model, a, load, frame)
@@ -67,7 +66,7 @@ def test_stiffness_is_that_of_the_model(names: tuple[str, ...], frame: str | Non
             K_class = CLASSES[found.of("stiffness_class")[number, k]]
             assert K_class == one.definiteness_of_K_theta_minus_K_C
             assert found.of("critical")[number, k] == pytest.approx(one.critical_factor, rel=1e-6)
-    offset = arm.shift[: arm.n]
+    offset = arm.elastic.start(np.zeros((1, arm.n)))[0, : arm.n]
     where = model.robot.placement(POSES + offset, frame)
     there = arm.kinematics(POSES)
     np.testing.assert_allclose(there.position, where[:, :3, 3], atol=1e-12)
@@ -76,8 +75,8 @@ def test_stiffness_is_that_of_the_model(names: tuple[str, ...], frame: str | Non
 
 
 def test_a_rod_makes_the_compliance_change_with_the_pose() -> None:
-    assert elastic_arm(sk120_with("closure_rod:rod")).slow is not None
-    assert elastic_arm(sk120_with("link_bending:link_2_l")).slow is None
+    assert not elastic_arm(sk120_with("closure_rod:rod")).compiled
+    assert elastic_arm(sk120_with("link_bending:link_2_l")).compiled
 
 
 def test_a_point_of_a_frame() -> None:
@@ -122,8 +121,8 @@ def test_a_heavy_arm_sags_before_the_load_comes(extra: tuple[str, ...]) -> None:
     for name in extra:
         model = with_effect(model, name)
     arm = elastic_arm(model)
-    assert arm.slow is None
-    assert arm.weight is not None
+    assert arm.compiled
+    assert isinstance(arm.elastic, ConstantCompliance) and arm.elastic.gravity is not None
     found = arm.batch(POSES, LOADS[:, None], ("compliance", "position"))
     straight = arm.kinematics(POSES)
     np.testing.assert_allclose(straight.position, robot.placement(POSES)[:, :3, 3], atol=1e-12)
@@ -138,19 +137,28 @@ def test_a_heavy_arm_sags_before_the_load_comes(extra: tuple[str, ...]) -> None:
     np.testing.assert_allclose(found.of("position"), rest, atol=1e-12)
 
 
+def test_an_arm_that_hangs_on_soft_springs_has_numbers_too() -> None:
+    """Its weight pulls it back harder than its springs do."""
+    model = joint_spring_model(load_robot(six_axis_arm()), np.full(6, 400.0))
+    arm, hanging = elastic_arm(model), np.array([[0.3, 2.9, -0.1, 0.4, 0.2, -0.3]])
+    found = arm.batch(hanging, LOADS[0], ("compliance", "critical", "K_gravity"))
+    expected = loaded_stiffness(model, hanging[0], LOADS[0])
+    assert arm.compiled
+    np.testing.assert_allclose(
+        found.of("compliance")[0], expected.compliance_enhanced[:3, :3], rtol=1e-8, atol=1e-9
+    )
+    assert found.of("critical")[0] == pytest.approx(expected.critical_factor, rel=1e-8)
+    assert np.linalg.eigvalsh(found.of("K_gravity")[0])[0] < -400.0
+
+
 def test_springs_too_soft_for_the_weight_give_no_numbers() -> None:
     robot = load_robot(six_axis_arm())
     arm = elastic_arm(joint_spring_model(robot, np.full(6, 5e4)))
-    soft = replace(arm, springs=np.diag(np.full(6, 30.0)), weight=_times(arm, 5e4 / 30.0))
+    soft = replace(arm, elastic=replace(arm.elastic, compliance=np.diag(np.full(6, 1.0 / 30.0))))
     found = soft.batch(POSES, LOADS[0], ("values", "stiffness_class"))
     lost = np.isnan(found.of("values")).all(axis=1)
     assert lost.any()
     assert (found.of("stiffness_class")[lost] == 255).all()
-
-
-def _times(arm: ElasticArm, factor: float) -> Weight:
-    assert arm.weight is not None
-    return Weight(arm.weight.gravity, factor * arm.weight.compliance)
 
 
 def test_what_does_not_yield_is_refused() -> None:

@@ -18,7 +18,6 @@ from sk120stiff.robot import load_robot
 from sk120stiff.stiffness import (
     cartesian_compliance,
     complementary_stiffness,
-    critical_load,
     definiteness,
     principal_stiffness,
     spring_matrix,
@@ -36,6 +35,7 @@ from sk120stiff.workspace import (
 )
 from sk120stiff.workspace import store as store_module
 from sk120stiff.workspace.store import MapStore
+from tests.stiffness.arms import critical_load
 from tests.workspace.arms import LOADS, joint_job, sk120
 
 SPRINGS = np.array([1.4098e6, 4.0076e5, 9.3528e5])

@@ -33,11 +33,18 @@ DOWN = np.array([0.0, 0.0, -1.0])
 def soft_wrist() -> ElasticArm:
     """An SK120 whose wrist yields, measured beside its axis: rotation about it matters."""
     rigid = sk120()
-    return replace(rigid, springs=np.diag(SPRINGS), point=np.array([0.15, 0.0, 0.2]))
+    return replace(
+        rigid,
+        elastic=replace(
+            rigid.elastic,
+            compliance=np.diag(1.0 / SPRINGS),
+            point=np.array([0.15, 0.0, 0.2]),
+        ),
+    )
 
 
 def compliances(arm: ElasticArm, a: np.ndarray, wrench: np.ndarray) -> np.ndarray:
-    screws = arm.mechanism.screws(a, arm.point)
+    screws = arm.elastic.mechanism.screws(a, arm.elastic.point)
     K = spring_matrix(SPRINGS) - complementary_stiffness(screws, wrench)
     return cartesian_compliance(screws.jacobian, K)
 
@@ -100,7 +107,7 @@ def test_no_exhaustive_search_finds_a_better_one(kind: str) -> None:
 
 
 def _linear(arm: ElasticArm, a: np.ndarray) -> np.ndarray:
-    return arm.mechanism.screws(a, arm.point).linear_jacobian
+    return arm.elastic.mechanism.screws(a, arm.elastic.point).linear_jacobian
 
 
 def test_the_part_is_put_where_it_serves_best() -> None:

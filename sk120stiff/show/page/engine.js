@@ -1,99 +1,127 @@
-// The physics of a page without a server: kinematics with the coupling q = A a + b, the Jacobian of
-// the point, K_C, compliance, loaded equilibrium. The same formulas as in Python (show/frame.py).
+// The physics of a page without a server: stiffness under load from one serialised mechanism
+// (show/mechanism.py), by the formulas of Python's stiffness/on_arrays.py.
 "use strict";
-SK.makeEngine = (constants, onState = () => {}) => {
+SK.makeEngine = (mechanism, onState = () => {}) => {
   const m = SK.algebra;
-  const { drives, A, b, offset, compliance: C, chain, tree } = constants;
-  const n = C.length;
-  // Principal compliances of the coordinates that are not zero, and their directions as rows.
-  const yielding = (() => {
-    const { values, directions } = m.eigen(m.symmetric(C));
-    const largest = Math.max(0, ...values.map(Math.abs));
-    const kept = values.map((value, k) => k).filter((k) => Math.abs(values[k]) > 1e-12 * largest);
-    return { c: kept.map((k) => values[k]), V: kept.map((k) => directions[k]) };
-  })();
+  const { drives, A, b, shift, gravity, chain, tree } = mechanism;
+  const n = shift.length, count = chain.nodes.length, none = [0, 0, 0];
+  const rate = chain.nodes.map((node) => A[tree.coordinates[node]]); // of a chain joint's value, by z
 
-  const jointValues = (z) => m.add(m.apply(A, z), b); // all joints, then the virtual ones
+  // Compliance of the coordinates: constant, and Fourier series of what changes with the pose.
+  function complianceAt(a) {
+    const C = mechanism.compliance.map((row) => row.slice());
+    for (const { at: [i, j], joints, orders, real, imaginary, inverse } of mechanism.terms) {
+      let total = 0;
+      orders.forEach((order, k) => {
+        const phase = m.dot(order, joints.map((joint) => a[joint]));
+        total += real[k] * Math.cos(phase) - imaginary[k] * Math.sin(phase);
+      });
+      const value = inverse ? 1 / total : total;
+      C[i][j] += value;
+      if (i !== j) C[j][i] += value;
+    }
+    return C;
+  }
 
-  // Derivative of the value of one chain joint by the coordinates z.
-  const rate = chain.coordinates.map((index) => A[index]);
-
-  function placeTree(q) {
-    const T = [];
-    tree.parents.forEach((parent, k) => {
-      let placement = parent < 0 ? m.identity4() : m.times4(T[parent], tree.origins[k]);
-      if (tree.kinds[k] !== 0)
-        placement = m.times4(placement, m.motion4(tree.axes[k], tree.kinds[k] === 1, q[tree.coordinates[k]]));
-      T.push(placement);
-    });
+  // Placement of every link and virtual joint in the base frame.
+  function place(z) {
+    const q = m.add(m.apply(A, z), b), T = [];
+    for (const k of tree.order) {
+      T[k] = tree.parents[k] < 0 ? m.identity4() : m.times4(T[tree.parents[k]], tree.origins[k]);
+      if (tree.kinds[k]) T[k] = m.times4(T[k], m.motion4(tree.axes[k], tree.kinds[k] === 1, q[tree.coordinates[k]]));
+    }
     const back = m.inverse4(T[tree.base]);
     return T.map((placement) => m.times4(back, placement));
   }
 
-  function sweep(values, point) {
-    let T = m.identity4();
-    const axes = [], origins = [], after = [];
-    chain.axes.forEach((axis, k) => {
-      T = m.times4(T, chain.placements[k]);
-      T = m.times4(T, m.motion4(axis, chain.revolute[k], values[chain.coordinates[k]]));
-      axes.push(m.turn4(T, axis));
-      origins.push(m.position4(T));
-      after.push(T);
-    });
-    const end = m.times4(T, chain.placements[chain.axes.length]);
-    const position = m.move4(end, point);
-    const linear = axes.map((axis, k) => (chain.revolute[k] ? m.cross(axis, m.minus(position, origins[k])) : axis));
-    const angular = axes.map((axis, k) => (chain.revolute[k] ? axis : [0, 0, 0]));
-    return { position, end, after, linear, angular };
+  // Unit twists of the chain's joints at the point, and what each joint carries.
+  function screwsAt(z, point) {
+    const T = place(z), turns = chain.nodes.map((node) => tree.kinds[node] === 1);
+    const end = m.times4(T[count ? chain.nodes[count - 1] : tree.base], chain.end), position = m.move4(end, point);
+    const axes = chain.nodes.map((node) => m.turn4(T[node], tree.axes[node]));
+    const origins = chain.nodes.map((node) => m.position4(T[node]));
+    const linear = axes.map((axis, k) => (turns[k] ? m.cross(axis, m.minus(position, origins[k])) : axis));
+    const angular = axes.map((axis, k) => (turns[k] ? axis : none));
+    const carried = [];
+    let mass = 0, moment = none;
+    for (let k = count - 1; k >= 0 && gravity; k--) {
+      mass += chain.masses[k];
+      moment = m.add(moment, m.scaled(m.move4(T[chain.nodes[k]], chain.centres[k]), chain.masses[k]));
+      carried[k] = turns[k] ? m.cross(axes[k], m.minus(moment, m.scaled(origins[k], mass))) : m.scaled(axes[k], mass);
+    }
+    return { T, end, position, linear, angular, carried };
   }
 
-  function jacobian(screws) {
-    const J = m.zeros(6, n);
-    screws.linear.forEach((v, k) => {
-      const w = screws.angular[k];
-      rate[k].forEach((factor, j) => {
-        if (factor !== 0)
-          for (let i = 0; i < 3; i++) { J[i][j] += factor * v[i]; J[i + 3][j] += factor * w[i]; }
-      });
-    });
-    return J;
-  }
+  const inCoordinates = (K) => m.times(m.transposed(rate), m.times(K, rate));
 
-  // K_C[i][j] = F·(w_min × v_max) + M·(w_j × w_i) [j < i], then into coordinates: Gᵀ K_C G.
-  function complementary(screws, wrench) {
-    const force = wrench.slice(0, 3), moment = wrench.slice(3), count = rate.length;
+  // K[i][j] = F·(w_min × v_max) + M·(w_j × w_i) [j < i]: of a load, or of the weight with v carried.
+  function complementary(angular, linear, force, moment) {
     const K = m.zeros(count, count);
     for (let i = 0; i < count; i++)
       for (let j = i; j < count; j++) {
-        K[i][j] = m.dot(force, m.cross(screws.angular[i], screws.linear[j]));
-        K[j][i] = K[i][j];
-        if (j > i) K[j][i] += m.dot(moment, m.cross(screws.angular[i], screws.angular[j]));
+        K[i][j] = K[j][i] = m.dot(force, m.cross(angular[i], linear[j]));
+        if (j > i) K[j][i] += m.dot(moment, m.cross(angular[i], angular[j]));
       }
-    return m.times(m.transposed(rate), m.times(K, rate));
+    return inCoordinates(K);
   }
 
-  const torquesOf = (J, wrench) => m.apply(m.transposed(J), wrench);
+  // Everything at coordinates z: J, K_C, K_g, torques of load and weight.
+  function stateAt(z, wrench, point) {
+    const screws = screwsAt(z, point), { linear, angular, carried } = screws;
+    const columns = linear.map((v, k) => v.concat(angular[k]));
+    const J = m.times(m.transposed(columns), rate);
+    const hanging = gravity ? m.apply(m.transposed(rate), carried.map((c) => m.dot(gravity, c))) : new Array(n).fill(0);
+    return {
+      ...screws, J, hanging, torques: m.apply(m.transposed(J), wrench),
+      K_C: complementary(angular, linear, wrench.slice(0, 3), wrench.slice(3)),
+      K_g: gravity ? complementary(angular, carried, gravity, none) : m.zeros(n, n),
+    };
+  }
 
-  // (K_θ − K_C)⁻¹ = (I − C K_C)⁻¹ C, rigid coordinates included; null at the critical load.
-  const loadedCompliance = (K_C) => m.solve(m.difference(m.identity(n), m.times(C, K_C)), C);
-
-  function equilibrium(start, wrench, point) {
+  // Exact equilibrium z = start + C (torques of load and weight), by Newton; null where none holds.
+  function equilibrium(start, C, wrench, point) {
     let z = start.slice();
     for (let step = 0; step < 60; step++) {
-      const screws = sweep(jointValues(z), point);
-      const J = jacobian(screws), K_C = complementary(screws, wrench);
-      const error = m.minus(m.minus(z, start), m.apply(C, torquesOf(J, wrench)));
-      const change = m.solve(m.difference(m.identity(n), m.times(C, K_C)), error.map((e) => [e]));
+      const state = stateAt(z, wrench, point), K = plus(state.K_C, state.K_g);
+      const error = m.minus(m.minus(z, start), m.apply(C, m.add(state.torques, state.hanging)));
+      const change = m.solve(m.difference(m.identity(n), m.times(C, K)), error.map((e) => [e]));
       if (!change || !change.every((row) => Number.isFinite(row[0]))) return null;
       const largest = Math.max(0, ...change.map((row) => Math.abs(row[0])));
-      if (largest <= 1e-12) return { z, position: screws.position };
-      const factor = Math.min(1, 0.5 / largest);
-      z = z.map((value, i) => value - factor * change[i][0]);
+      if (largest <= 1e-12) return holds(C, K) ? { ...state, z } : null;
+      z = z.map((value, i) => value - Math.min(1, 0.5 / largest) * change[i][0]);
     }
     return null;
   }
 
-  const axesOf = (J, compliance) => m.eigen(m.symmetric(m.times(J, m.times(compliance, m.transposed(J)))));
+  const plus = (X, Y) => X.map((row, i) => m.add(row, Y[i]));
+  const within = (V, K) => m.symmetric(m.times(V, m.times(K, m.transposed(V))));
+  const axesOf = (J, C) => m.eigen(m.symmetric(m.times(J, m.times(C, m.transposed(J)))));
+
+  // Principal compliances of what yields at all, and their directions as rows.
+  function yielding(C) {
+    const { values, directions } = m.eigen(m.symmetric(C));
+    const largest = Math.max(0, ...values.map(Math.abs));
+    const kept = values.map((value, k) => k).filter((k) => Math.abs(values[k]) > 1e-12 * largest);
+    return { c: kept.map((k) => values[k]), V: kept.map((k) => directions[k]) };
+  }
+
+  // √c K √c: what loads take from the springs, as a share of them.
+  const sharesOf = (c, K) => K.map((row, i) => row.map((value, j) => value * Math.sqrt(Math.abs(c[i] * c[j]))));
+
+  function holds(C, K) {
+    const { c, V } = yielding(C);
+    return c.some((value) => value < 0) || m.eigen(sharesOf(c, within(V, K))).values.every((share) => share < 1);
+  }
+
+  // Largest and smallest share of the load, in what springs and weight leave; null without balance.
+  function shares(c, K_C, K_g) {
+    const left = m.eigen(m.difference(m.identity(c.length), sharesOf(c, K_g)));
+    if (c.some((value) => value <= 0) || left.values.some((value) => value <= 1e-12)) return null;
+    const by = left.directions.map((row, k) => m.scaled(row, 1 / Math.sqrt(left.values[k])));
+    const { values } = m.eigen(within(by, sharesOf(c, K_C)));
+    const noise = 1e-12 * Math.max(0, ...values.map(Math.abs));
+    return [values[0] > noise ? values[0] : 0, Math.max(0, -values[values.length - 1])];
+  }
 
   function definiteness(matrix) {
     const { values } = m.eigen(m.symmetric(matrix));
@@ -105,51 +133,34 @@ SK.makeEngine = (constants, onState = () => {}) => {
     return zero || !positive ? "positive semi-definite" : "positive definite";
   }
 
-  // Links when virtual joints move too: each link rides on its joint of the chain.
-  function placeElastic(z, point) {
-    const values = jointValues(z), links = placeTree(values);
-    if (n === drives) return links;
-    const { after } = sweep(values, point);
-    return links.map((T, k) => {
-      const anchor = tree.anchors[k];
-      if (anchor < 0) return T;
-      return m.times4(m.times4(after[anchor], m.inverse4(links[chain.carriers[anchor]])), T);
-    });
-  }
-
-  function compute(request) {
-    const { wrench, point, exaggeration } = request;
-    const z = m.add(request.a.concat(new Array(n - drives).fill(0)), offset);
-    const values = jointValues(z), screws = sweep(values, point), J = jacobian(screws);
-    const K_C = complementary(screws, wrench), loaded = loadedCompliance(K_C);
-    const torques = torquesOf(J, wrench), top = J.slice(0, 3), bottom = J.slice(3);
+  function compute({ a, wrench, point, exaggeration }) {
+    const C = complianceAt(a), start = m.add(a.concat(new Array(n - drives).fill(0)), shift);
+    const still = gravity ? equilibrium(start, C, [...none, ...none], point) : { z: start };
+    if (!still) return null;
+    const { z } = still, { T, end, position, J, K_C, K_g, torques } = stateAt(z, wrench, point);
+    const loaded = m.solve(m.difference(m.identity(n), m.times(C, plus(K_C, K_g))), C); // K⁻¹
     if (!loaded) return null;
+    const top = J.slice(0, 3), bottom = J.slice(3), links = T.slice(0, tree.links);
     const deflection = { conventional: m.apply(top, m.apply(C, torques)) };
-    const rest = equilibrium(z, wrench, point);
-    if (rest) deflection.equilibrium = m.minus(rest.position, screws.position);
-    const { c, V } = yielding;
-    const K_Csoft = m.symmetric(m.times(V, m.times(K_C, m.transposed(V))));
-    // A negative spring: unstable before any load, and nothing has a share.
-    const shares = c.every((value) => value > 0)
-      ? m.eigen(K_Csoft.map((row, i) => row.map((value, j) => value * Math.sqrt(c[i] * c[j])))).values : null;
-    const K_theta = c.map((value, i) => c.map((_, j) => (i === j ? 1 / value : 0)));
-    const stable = definiteness(m.difference(K_theta, K_Csoft));
+    const rest = equilibrium(start, C, wrench, point);
+    if (rest) deflection.equilibrium = m.minus(rest.position, position);
+    const { c, V } = yielding(C), load = within(V, K_C), own = within(V, K_g);
+    const taken = shares(c, load, own);
+    const stable = definiteness(c.map((value, i) => c.map((_, j) => (i === j ? 1 / value : 0) - load[i][j] - own[i][j])));
     // Else one step leads to a balance that never is.
     if (stable === "positive definite") deflection.enhanced = m.apply(top, m.apply(loaded, torques));
+    const moved = rest && m.add(z, m.scaled(m.minus(rest.z, z), exaggeration));
     return {
-      links: placeElastic(z, point),
-      deflected: rest && placeElastic(m.add(z, m.scaled(m.minus(rest.z, z), exaggeration)), point),
-      position: screws.position,
-      rotation: [0, 1, 2, 4, 5, 6, 8, 9, 10].map((k) => screws.end[k]),
+      links,
+      deflected: rest && place(moved).slice(0, tree.links),
+      position,
+      rotation: [0, 1, 2, 4, 5, 6, 8, 9, 10].map((k) => end[k]),
       translation: { conventional: axesOf(top, C), enhanced: axesOf(top, loaded) },
       rotationAxes: { conventional: axesOf(bottom, C), enhanced: axesOf(bottom, loaded) },
       deflection,
-      classes: {
-        K_C: K_Csoft.some((row) => row.some((v) => v !== 0)) ? definiteness(K_Csoft) : "zero",
-        stiffness: stable,
-      },
-      softening: shares && Math.max(0, shares[0]),
-      stiffening: shares && Math.max(0, -shares[shares.length - 1]),
+      classes: { K_C: load.some((row) => row.some((v) => v !== 0)) ? definiteness(load) : "zero", stiffness: stable },
+      softening: taken && taken[0],
+      stiffening: taken && taken[1],
     };
   }
 
@@ -158,7 +169,7 @@ SK.makeEngine = (constants, onState = () => {}) => {
     request(state, done) {
       const frame = compute(state);
       if (frame) done(frame);
-      onState(...(frame ? ["open"] : ["refused", "this load is exactly critical"]));
+      onState(...(frame ? ["open"] : ["refused", "this load is exactly critical, or the arm falls under its own weight"]));
     },
   };
 };

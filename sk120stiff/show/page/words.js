@@ -34,7 +34,7 @@ SK.words = (() => {
   function principal(quantity, axes) {
     if (!quantity.inverse) return axes.values;
     const largest = Math.max(...axes.values.map(Math.abs));
-    return axes.values.map((c) => (Math.abs(c) <= 1e-9 * largest ? Infinity : 1 / c));
+    return axes.values.map((c) => (Math.abs(c) <= 1e-12 * largest ? Infinity : 1 / c));
   }
 
   const degrees = (value) => (value * 180) / Math.PI;

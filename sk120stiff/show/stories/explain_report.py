@@ -40,22 +40,15 @@ def explain_report(
 ) -> Report:
     """Tell an explanation as a report.
 
-    Parameters
-    ----------
-    answer
-        The explanation.
-    readings
-        The measurements that were explained.
-    data
-        What they are called.
-    heldout
-        What the held-out gap was taken on, in words.
-    scene
-        Text of the page of the 3-D scene, shown inside the report; empty for none.
-    scene_link, next_poses
-        Relative addresses of files that lie beside the report; empty where there are none.
-    reproducibility
-        Name → text, shown last.
+    Args:
+        answer: The explanation.
+        readings: The measurements that were explained.
+        data: What they are called.
+        heldout: What the held-out gap was taken on, in words.
+        scene: Text of the page of the 3-D scene, shown inside the report; empty for none.
+        scene_link, next_poses: Relative addresses of files that lie beside the report; empty where
+            there are none.
+        reproducibility: Name → text, shown last.
     """
     told: dict[str, Callable[[], Section | None]] = {
         "The answer": lambda: _answer(answer),

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from sk120stiff.stiffness.kernel import part
+from sk120stiff.stiffness.kernel.compiled import part
 
-LANES = 64
+BLOCK = 256
 
 ROTATION = 0  # 9 rows: columns of the rotation reached so far
 POSITION = 9  # 3 rows: and the position; at the end that of the point
@@ -20,10 +20,11 @@ SAFE = 48  # how far K_θ − K_C is from losing definiteness
 INVERSE = 49  # 1 / pivot
 FACTOR = 50
 CHANGE = 51  # of a coordinate in the last step
-FREE = 52  # rows whose number depends on the robot begin here
+DEFLECTION = 52  # 3 rows
+FREE = 55  # rows whose number depends on the robot begin here
 
 
 @part
 def at(row: int) -> int:
     """Where a row begins. The mask tells the compiler that this is never negative."""
-    return (row * LANES) & 0x7FFFFFFF
+    return (row * BLOCK) & 0x7FFFFFFF

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from sk120stiff.arrays import Array
-from sk120stiff.stiffness.kernel import part
-from sk120stiff.stiffness.lanes.layout import EIGENVALUE, EIGENVECTOR, LANES, TENSOR
+from sk120stiff.stiffness.kernel.compiled import part
+from sk120stiff.stiffness.kernel.layout import BLOCK, EIGENVALUE, EIGENVECTOR, TENSOR
 
 PD, PSD, ND, NSD, ID, UNKNOWN = 0, 1, 2, 3, 4, 255  # indices into `principal.CLASSES`
 ZERO = 1e-12  # share of the largest below which an eigenvalue counts as zero, as in `principal`
@@ -22,13 +22,13 @@ def eigen(x: Array) -> None:
     vector. So nearly equal eigenvalues lose nothing, unlike in the usual formula with an arc
     cosine.
     """
-    for k in range(LANES):
-        a01 = 0.5 * (x[(TENSOR + 1) * LANES + k] + x[(TENSOR + 3) * LANES + k])
-        a02 = 0.5 * (x[(TENSOR + 2) * LANES + k] + x[(TENSOR + 6) * LANES + k])
-        a12 = 0.5 * (x[(TENSOR + 5) * LANES + k] + x[(TENSOR + 7) * LANES + k])
-        a00 = x[TENSOR * LANES + k]
-        a11 = x[(TENSOR + 4) * LANES + k]
-        a22 = x[(TENSOR + 8) * LANES + k]
+    for k in range(BLOCK):
+        a01 = 0.5 * (x[(TENSOR + 1) * BLOCK + k] + x[(TENSOR + 3) * BLOCK + k])
+        a02 = 0.5 * (x[(TENSOR + 2) * BLOCK + k] + x[(TENSOR + 6) * BLOCK + k])
+        a12 = 0.5 * (x[(TENSOR + 5) * BLOCK + k] + x[(TENSOR + 7) * BLOCK + k])
+        a00 = x[TENSOR * BLOCK + k]
+        a11 = x[(TENSOR + 4) * BLOCK + k]
+        a22 = x[(TENSOR + 8) * BLOCK + k]
         q = (a00 + a11 + a22) * (1.0 / 3.0)
         a00, a11, a22 = a00 - q, a11 - q, a22 - q
         off = a01 * a01 + a02 * a02 + a12 * a12
@@ -77,18 +77,18 @@ def eigen(x: Array) -> None:
         hx, hy, hz = c * vx + s * wx, c * vy + s * wy, c * vz + s * wz
         lx, ly, lz = c * wx - s * vx, c * wy - s * vy, c * wz - s * vz
         top = side > 0.0
-        x[EIGENVALUE * LANES + k] = q + (far if top else mean + root)
-        x[(EIGENVALUE + 1) * LANES + k] = q + (mean + root if top else mean - root)
-        x[(EIGENVALUE + 2) * LANES + k] = q + (mean - root if top else far)
-        x[EIGENVECTOR * LANES + k] = ux if top else hx
-        x[(EIGENVECTOR + 1) * LANES + k] = uy if top else hy
-        x[(EIGENVECTOR + 2) * LANES + k] = uz if top else hz
-        x[(EIGENVECTOR + 3) * LANES + k] = hx if top else lx
-        x[(EIGENVECTOR + 4) * LANES + k] = hy if top else ly
-        x[(EIGENVECTOR + 5) * LANES + k] = hz if top else lz
-        x[(EIGENVECTOR + 6) * LANES + k] = lx if top else ux
-        x[(EIGENVECTOR + 7) * LANES + k] = ly if top else uy
-        x[(EIGENVECTOR + 8) * LANES + k] = lz if top else uz
+        x[EIGENVALUE * BLOCK + k] = q + (far if top else mean + root)
+        x[(EIGENVALUE + 1) * BLOCK + k] = q + (mean + root if top else mean - root)
+        x[(EIGENVALUE + 2) * BLOCK + k] = q + (mean - root if top else far)
+        x[EIGENVECTOR * BLOCK + k] = ux if top else hx
+        x[(EIGENVECTOR + 1) * BLOCK + k] = uy if top else hy
+        x[(EIGENVECTOR + 2) * BLOCK + k] = uz if top else hz
+        x[(EIGENVECTOR + 3) * BLOCK + k] = hx if top else lx
+        x[(EIGENVECTOR + 4) * BLOCK + k] = hy if top else ly
+        x[(EIGENVECTOR + 5) * BLOCK + k] = hz if top else lz
+        x[(EIGENVECTOR + 6) * BLOCK + k] = lx if top else ux
+        x[(EIGENVECTOR + 7) * BLOCK + k] = ly if top else uy
+        x[(EIGENVECTOR + 8) * BLOCK + k] = lz if top else uz
 
 
 @part

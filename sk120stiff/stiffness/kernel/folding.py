@@ -13,10 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sk120stiff.arrays import Array, Integers
-from sk120stiff.errors import InputError
 from sk120stiff.robot import LinearCoupling, Mechanism
-from sk120stiff.stiffness.equilibrium import Weight
-from sk120stiff.stiffness.lanes.pairs import contributions
+from sk120stiff.stiffness.kernel.pairs import contributions
 
 VARIABLE, CONSTANT, NONE = 0, 1, 2  # does the turn about a joint's z depend on the pose?
 
@@ -30,8 +28,8 @@ class Fold(NamedTuple):
         final: (3, 3) rotation from the axes after the last joint to the end frame.
         tilt: (m, 2) cosine and sine of the turn about x before each joint.
         pose_map, value: (m, n) and (m,): joint values q = pose_map z + value.
-        actuated, rest: Number of coordinates that motors drive, and (n,) where the others stand
-            [rad or m].
+        actuated: Number of coordinates that motors drive; the others stand at zero until the arm
+            sags.
         offset: (m,) constant angle beside each joint's value [rad].
         slides: (m,) 1 for a joint that slides, 0 for one that turns.
         kind, constant: (m,) VARIABLE, CONSTANT or NONE, and (m, 2) cosine and sine where constant.
@@ -39,8 +37,7 @@ class Fold(NamedTuple):
             joints, q = Σ factor · z.
         mass, centre: (m,) mass that each joint carries [kg], and (m, 3) its centre in the folded
             frame [m].
-        gravity, sag: (3,) acceleration [m/s²] and (s, s) compliance of the soft coordinates under
-            the weight; all zero where nothing weighs.
+        gravity: (3,) acceleration [m/s²]; zero where nothing weighs.
         soft: (s,) coordinates with a finite spring.
         springs: (s(s+1)/2,) lower triangle of their K_θ by rows.
         whitener: (s, s) L⁻¹ with L Lᵀ = K_θ.
@@ -58,7 +55,6 @@ class Fold(NamedTuple):
     pose_map: Array
     value: Array
     actuated: int
-    rest: Array
     offset: Array
     slides: Array
     kind: Integers
@@ -69,7 +65,6 @@ class Fold(NamedTuple):
     mass: Array
     centre: Array
     gravity: Array
-    sag: Array
     soft: Integers
     springs: Array
     whitener: Array
@@ -81,43 +76,34 @@ class Fold(NamedTuple):
 
 def fold(
     mechanism: Mechanism,
-    springs: Array,
+    soft: Integers,
+    K_theta: Array,
     point: Array,
-    virtual: Array,
-    weight: Weight | None = None,
+    shift: Array,
+    gravity: Array | None = None,
 ) -> Fold:
     """Fold a mechanism with springs for the kernel.
 
     Args:
-        mechanism: Chain and linear coupling, virtual joints allowed.
-        springs: (n,) spring of each coordinate [N·m/rad or N/m], or (n, n) their symmetric K_θ.
-            Infinite ones (on the diagonal) are rigid.
+        mechanism: Chain and coupling, which must be linear; virtual joints allowed.
+        soft, K_theta: (s,) coordinates that yield, and (s, s) their stiffness [N·m/rad or N/m],
+            positive definite.
         point: (3,) the point in the end frame [m].
-        virtual: (n_v,) where the virtual joints stand [rad or m].
-        weight: Lets the arm sag before the load comes; only soft coordinates do.
-
-    Raises:
-        InputError: The coupling is not linear, or the springs are no positive definite stiffness.
+        shift: (n,) by which the coordinates start from elsewhere than commanded [rad or m].
+        gravity: (3,) in base axes [m/s²]: lets the arm sag before the load comes.
     """
     coupling = mechanism.elastic or mechanism.coupling
     if not isinstance(coupling, LinearCoupling):
-        raise InputError(
-            "the batch kernel takes linear couplings q = A a + b only",
-            remedy="Use the functions of sk120stiff.stiffness, which take any coupling.",
-        )
+        raise ValueError("the kernel takes linear couplings q = A a + b only")
     chain = mechanism.chain
     n, n_a = mechanism.n, mechanism.coupling.n
-    soft, K_theta = _soft(springs, n)
-    to_joints, value = coupling.A[chain.coordinates], coupling.b[chain.coordinates]
-    rest = np.concatenate([np.zeros(n_a), virtual])
-    weighs = weight is not None and chain.weighs
-    sag, gravity = np.zeros((len(soft), len(soft))), np.zeros(3)
-    if weight is not None and weighs:
-        sag, gravity = weight.compliance[np.ix_(soft, soft)], weight.gravity
+    to_joints = coupling.A[chain.coordinates]
+    value = to_joints @ shift + coupling.b[chain.coordinates]
+    weighs = gravity is not None and chain.weighs
     varies = np.arange(n) < n_a
     varies[soft] |= weighs
     frames = _frames(mechanism, point)
-    moves = (to_joints[:, varies] != 0.0).any(axis=1) | (to_joints @ rest + value != 0.0)
+    moves = (to_joints[:, varies] != 0.0).any(axis=1) | (value != 0.0)
     kind = np.where(
         moves & chain.revolute, VARIABLE, np.where(frames.offset != 0.0, CONSTANT, NONE)
     )
@@ -131,7 +117,6 @@ def fold(
         pose_map=np.ascontiguousarray(to_joints),
         value=np.ascontiguousarray(value),
         actuated=n_a,
-        rest=rest,
         offset=frames.offset,
         slides=(~chain.revolute).astype(float),
         kind=kind.astype(np.int64),
@@ -141,9 +126,8 @@ def fold(
         column_factor=to_joints[joints, coordinates],
         mass=chain.masses if weighs else np.zeros(chain.m),
         centre=frames.centre,
-        gravity=np.asarray(gravity, dtype=float),
-        sag=np.ascontiguousarray(sag),
-        soft=soft,
+        gravity=np.asarray(gravity, dtype=float) if weighs else np.zeros(3),
+        soft=np.asarray(soft, dtype=np.int64),
         springs=K_theta[np.tril_indices(len(soft))],
         whitener=np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(K_theta))),
         pair=pair,
@@ -160,29 +144,6 @@ class _Frames(NamedTuple):
     tilt: Array
     offset: Array
     centre: Array
-
-
-def _soft(springs: Array, n: int) -> tuple[Integers, Array]:
-    """Integers of the coordinates with a finite spring, and their (s, s) K_θ."""
-    if springs.shape not in ((n,), (n, n)):
-        raise InputError(
-            f"springs of shape {springs.shape} given for {n} coordinates",
-            remedy=f"Give {n} spring values, infinite for a rigid joint.",
-        )
-    diagonal = springs if springs.ndim == 1 else np.diagonal(springs)
-    soft = np.flatnonzero(np.isfinite(diagonal)).astype(np.int64)
-    K_theta = np.diag(springs[soft]) if springs.ndim == 1 else springs[np.ix_(soft, soft)]
-    if np.isnan(diagonal).any() or not len(soft) or not np.isfinite(K_theta).all():
-        raise InputError(
-            "no joint has a finite spring" if not len(soft) else "a spring is not a number",
-            remedy="Give at least one finite spring in N·m/rad.",
-        )
-    if not np.allclose(K_theta, K_theta.T, rtol=1e-12) or np.linalg.eigvalsh(K_theta)[0] <= 0.0:
-        raise InputError(
-            "the springs are no positive definite stiffness",
-            remedy="Every spring must be greater than zero, and their matrix symmetric.",
-        )
-    return soft, K_theta
 
 
 def _frames(mechanism: Mechanism, point: Array) -> _Frames:

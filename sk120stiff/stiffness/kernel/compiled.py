@@ -1,4 +1,4 @@
-"""The door to numba: how functions of `lanes` become machine code. No other file imports it."""
+"""The door to numba: how functions of this folder become machine code. No other file imports it."""
 
 from __future__ import annotations
 
@@ -45,6 +45,6 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _digest() -> str:
-    folder = Path(__file__).parent / "lanes"
-    text = b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))
+    files = sorted(Path(__file__).parent.glob("*.py"))
+    text = b"".join(path.read_bytes() for path in files)
     return hashlib.sha256(text).hexdigest()[:12]

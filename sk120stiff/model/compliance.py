@@ -1,0 +1,140 @@
+"""A model as something that yields: what stiffness under load asks of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Situation, situation_of_load
+from sk120stiff.errors import InputError
+from sk120stiff.model.model import Model
+from sk120stiff.robot import Mechanism, Robot
+from sk120stiff.stiffness import ConstantCompliance, ElasticLaw, Weight, symmetric_part
+from sk120stiff.stiffness.kernel.folding import Fold
+
+PROBES = 16  # random poses at which the compliance is compared
+
+
+@dataclass(frozen=True, eq=False)
+class ModelCompliance:
+    """`Compliant` made of a model's effects, with every law that they have.
+
+    Attributes:
+        model: Robot and elastic or geometric effects, its tool frame that of the point.
+        point: (3,) in the tool frame [m].
+    """
+
+    model: Model
+    point: Array
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """See `Compliant`."""
+        return self.model.assembly.mechanism
+
+    @cached_property
+    def soft(self) -> NDArray[np.intp]:
+        """See `Compliant`."""
+        return self.model.assembly.soft(self.model.values)
+
+    @property
+    def fold(self) -> Fold | None:
+        """See `Compliant`."""
+        return None if self.constant is None else self.constant.fold
+
+    @cached_property
+    def constant(self) -> ConstantCompliance | None:
+        """The same with constant springs; None where they change with the pose.
+
+        Under small loads, that is: what a gear does beyond is not asked.
+        """
+        robot = self.model.robot
+        poses = probing_poses(robot)
+        C = self.compliance_at(poses)
+        weight = self.weight_at(poses)
+        alike = [C] if weight is None else [C, weight.compliance]
+        first = C.reshape(-1, *C.shape[-2:])[0]
+        if not all(np.allclose(each, first, rtol=1e-12, atol=0.0) for each in alike):
+            return None
+        shift = self.start(poses[:1])[0]
+        shift[: robot.n] -= poses[0]
+        gravity = None if weight is None else weight.gravity
+        return ConstantCompliance(self.mechanism, first, self.point, shift, gravity)
+
+    def start(self, a: Array) -> Array:
+        """See `Compliant`."""
+        return self.model.assembly.start(self._situation(a, np.zeros(6)), self.model.values)
+
+    def compliance_at(self, a: Array) -> Array:
+        """See `Compliant`."""
+        law, _ = self._laws(a, np.zeros(6))
+        return symmetric_part(law(np.zeros((len(a), self.mechanism.n)))[1])
+
+    def weight_at(self, a: Array) -> Weight | None:
+        """See `Compliant`."""
+        if not self.mechanism.chain.weighs:
+            return None
+        return Weight(self.model.robot.gravity_in_base, self._laws(a, np.zeros(6))[1])
+
+    def law(self, a: Array, wrench: Array) -> ElasticLaw:
+        """See `Compliant`."""
+        return self._laws(a, wrench)[0]
+
+    def _laws(self, a: Array, wrench: Array) -> tuple[ElasticLaw, Array]:
+        """The law, and the compliance of what is linear and yields to the weight."""
+        situation, values = self._situation(a, wrench), self.model.values
+        z_0 = self.model.assembly.start(situation, values)
+        onset = self.mechanism.screws(z_0, self.point).torques(situation.wrench)
+        return self.model.assembly.law(situation, values, onset)
+
+    def _situation(self, a: Array, wrench: Array) -> Situation:
+        return situation_of_load(self.model.robot, a, wrench, point=self.point)
+
+
+def model_compliance(
+    model: Model, frame: str | None = None, point: Array | None = None
+) -> ModelCompliance:
+    """The arm that a model describes, seen from a point of a frame; instruments have no say.
+
+    Args:
+        frame: Frame that carries the point; the tool frame by default.
+        point: (3,) in that frame [m]; its origin by default.
+
+    Raises:
+        InputError: Nothing in the model yields under load, or there is no such frame.
+    """
+    physical, at = seen_from(
+        model.physical(),
+        frame or model.robot.tool_frame,
+        np.zeros(3) if point is None else np.asarray(point, dtype=float),
+    )
+    arm = ModelCompliance(physical, at)
+    if not arm.compliance_at(physical.robot.rest[None]).any():
+        raise InputError(
+            "nothing in this model yields under load",
+            where=model.robot.name,
+            remedy="Give a model with joint_springs or another elastic effect.",
+        )
+    return arm
+
+
+def seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
+    """The model of the arm up to a frame, and a point of the frame in that arm's tool frame."""
+    robot = model.robot
+    if robot.mechanism(frame).chain.names == robot.mechanism().chain.names:
+        at = robot.placement(robot.rest, frame, point)
+        return model, (np.linalg.inv(robot.placement(robot.rest)) @ at)[:3, 3]
+    return replace(model, robot=replace(robot, tool_frame=frame)), point
+
+
+def probing_poses(robot: Robot) -> Array:
+    """(PROBES, n) random poses within the limits, all loops closed [rad or m]."""
+    lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
+    upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
+    poses = np.random.default_rng(0).uniform(lower, upper, (PROBES, robot.n))
+    poses[~robot.closes(poses)] = robot.rest
+    return poses

@@ -1,0 +1,349 @@
+"""One compiled function that works through a stretch of poses, block by block."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.arrays import Array
+from sk120stiff.stiffness.kernel.compiled import entry, part
+from sk120stiff.stiffness.kernel.compliance import (
+    complementary,
+    complementary_of_pose,
+    compliance,
+    deflect,
+    factorise,
+    solve_pose,
+    subtract_from_springs,
+    torques_of_pose,
+    whitener_of,
+)
+from sk120stiff.stiffness.kernel.eigen import PD, ZERO, classify, eigen, jacobi
+from sk120stiff.stiffness.kernel.folding import Fold
+from sk120stiff.stiffness.kernel.layout import (
+    BLOCK,
+    CHANGE,
+    DEFLECTION,
+    EIGENVALUE,
+    EIGENVECTOR,
+    FREE,
+    LOAD,
+    POSITION,
+    ROTATION,
+    SAFE,
+    TENSOR,
+    at,
+)
+from sk120stiff.stiffness.kernel.motion import (
+    carry,
+    columns_of_J,
+    place_joints,
+    sag,
+    turn_levers,
+)
+
+# Above this determinant (of K scaled to a unit diagonal) the factorisation without exchanges is
+# accurate, and definiteness is beyond doubt if the diagonal itself spans less than `SPAN`.
+SURE, SPAN = 1e-6, 1e-4
+BENDS, REST = 60, 1e-13  # steps of Newton under the weight, and where they end [rad or m]
+
+
+class Outputs(NamedTuple):
+    """Arrays to fill, for Q loads and N poses; one of size zero is left out.
+
+    See `UnderLoad` for what they are: (N, …), and (Q, N, …) where the load matters.
+    """
+
+    position: Array
+    rotation: Array
+    jacobian: Array
+    condition: Array
+    K_gravity: Array
+    compliance: Array
+    values: Array
+    directions: Array
+    K_C: Array
+    stiffness_class: NDArray[np.uint8]
+    complementary_class: NDArray[np.uint8]
+    critical: Array
+    deflection_enhanced: Array
+
+
+@entry
+def work(fold: Fold, a: Array, loads: Array, begin: int, end: int, out: Outputs) -> None:
+    """Fill rows begin…end of the outputs.
+
+    Args:
+        fold: Constants of the mechanism.
+        a: (N, n_a) coordinates.
+        loads: (Q, 1, 6) loads at every pose, or (1, N, 6) one for each.
+    """
+    m, n, s = fold.kind.shape[0], fold.pose_map.shape[1], fold.soft.shape[0]
+    weighs = fold.mass.max() > 0.0
+    axes, levers, carried = FREE, FREE + 3 * m, FREE + 6 * m
+    pose = carried + 3 * m * weighs
+    bent = pose + n
+    K_g = bent + s * weighs
+    columns = K_g + s * (s + 1) // 2 * weighs
+    K_C = columns + 3 * n
+    skew = K_C + s * (s + 1) // 2
+    L = skew + s * (s - 1) // 2
+    y = L + s * (s + 1) // 2
+    x = np.zeros((y + 3 * s) * BLOCK)
+    A, B = np.empty((s, s)), np.empty((s, max(s, 4)))
+    deflects = out.deflection_enhanced.size > 0
+    principal = out.values.size + out.directions.size > 0
+    stiffness = principal or deflects or out.compliance.size + out.stiffness_class.size > 0
+    stability = out.K_C.size + out.complementary_class.size + out.critical.size > 0
+    for first in range(begin, end, BLOCK):
+        count = min(BLOCK, end - first)
+        for i in range(fold.actuated):
+            row = at(pose + i)
+            for k in range(BLOCK):
+                x[row + k] = a[first + min(k, count - 1), i]
+        if weighs:
+            _hang(x, fold, pose, axes, levers, carried, bent, K_g, skew, L, y)
+        else:
+            place_joints(x, fold, pose, axes, levers, carried, False)
+        turn_levers(x, fold, axes, levers)
+        columns_of_J(x, fold, levers, columns)
+        _store_motion(x, fold, first, count, axes, levers, columns, out)
+        if weighs and out.K_gravity.size:
+            for k in range(count):
+                complementary_of_pose(x, s, K_g, -1, k, out.K_gravity[first + k])
+        for load in range(loads.shape[0]):
+            force, moment = _load(x, loads, load, first, count)
+            complementary(x, fold, axes, levers, K_C, skew, force, moment)
+            if stability:
+                _store_complementary(x, fold, load, first, count, K_C, K_g, skew, A, B, out)
+            if not stiffness:
+                continue
+            if weighs:
+                to, own = at(K_C), at(K_g)
+                for k in range(s * (s + 1) // 2 * BLOCK):
+                    x[to + k] += x[own + k]
+            factorise(x, fold, K_C, L)
+            compliance(x, fold.soft, columns, L, y)
+            if deflects:
+                deflect(x)
+            for k in range(count):
+                if moment or not x[SAFE * BLOCK + k] > SURE:
+                    complementary_of_pose(x, s, K_C, skew, k, A)
+                    subtract_from_springs(fold, A)
+                    torques_of_pose(x, fold, axes, levers, k, B)
+                    solve_pose(x, fold.soft, columns, k, A, B)
+            if principal:
+                eigen(x)
+            _store_stiffness(x, load, first, count, out)
+            _store_definiteness(x, fold, load, first, count, K_C, A, out)
+
+
+@part
+def _hang(
+    x: Array,
+    fold: Fold,
+    pose: int,
+    axes: int,
+    levers: int,
+    carried: int,
+    bent: int,
+    K_g: int,
+    skew: int,
+    L: int,
+    y: int,
+) -> None:
+    """Let the block's poses sag under their own weight; rows K_g become its stiffness there.
+
+    Where the springs cannot hold it, or Newton does not settle, nothing is a number.
+    """
+    n, s = fold.pose_map.shape[1], fold.soft.shape[0]
+    start = at(pose + fold.actuated)
+    for k in range((n - fold.actuated) * BLOCK):
+        x[start + k] = 0.0
+    start = at(bent)
+    for k in range(s * BLOCK):
+        x[start + k] = 0.0
+    for i in range(3):
+        for k in range(BLOCK):
+            x[(LOAD + i) * BLOCK + k] = fold.gravity[i]
+    for _ in range(BENDS):
+        place_joints(x, fold, pose, axes, levers, carried, True)
+        carry(x, fold, axes, levers, carried)
+        complementary(x, fold, axes, carried, K_g, skew, True, False)
+        factorise(x, fold, K_g, L)
+        if sag(x, fold, pose, carried, bent, L, y) <= REST:
+            break
+    for k in range(BLOCK):
+        if not x[CHANGE * BLOCK + k] <= REST or not x[SAFE * BLOCK + k] > 0.0:
+            x[POSITION * BLOCK + k] = math.nan
+
+
+@part
+def _load(x: Array, loads: Array, load: int, first: int, count: int) -> tuple[bool, bool]:
+    """Rows LOAD; whether there is any force, and any moment."""
+    each = loads.shape[1] > 1
+    force, moment = False, False
+    for k in range(BLOCK):
+        at_pose = first + min(k, count - 1) if each else 0
+        for i in range(3):
+            f, t = loads[load, at_pose, i], loads[load, at_pose, 3 + i]
+            x[(LOAD + i) * BLOCK + k] = f
+            x[(LOAD + 3 + i) * BLOCK + k] = t
+            force |= f != 0.0
+            moment |= t != 0.0
+    return force, moment
+
+
+@part
+def _store_motion(
+    x: Array, fold: Fold, first: int, count: int, axes: int, levers: int, columns: int, out: Outputs
+) -> None:
+    """Placement, Jacobian, and how far the position Jacobian is from losing a direction."""
+    if out.position.size:
+        for k in range(count):
+            for i in range(3):
+                out.position[first + k, i] = x[(POSITION + i) * BLOCK + k]
+    if out.rotation.size:
+        for k in range(count):
+            for i in range(3):
+                rx, ry = x[(ROTATION + i) * BLOCK + k], x[(ROTATION + 3 + i) * BLOCK + k]
+                rz = x[(ROTATION + 6 + i) * BLOCK + k]
+                for j in range(3):
+                    turned = rx * fold.final[0, j] + ry * fold.final[1, j]
+                    out.rotation[first + k, i, j] = turned + rz * fold.final[2, j]
+    if out.jacobian.size:
+        for k in range(count):
+            for j in range(fold.column_joint.shape[0]):
+                joint, z = fold.column_joint[j], fold.column_coordinate[j]
+                for i in range(3):
+                    v, w = x[at(levers + 3 * joint + i) + k], x[at(axes + 3 * joint + i) + k]
+                    out.jacobian[first + k, i, z] += fold.column_factor[j] * v
+                    out.jacobian[first + k, 3 + i, z] += fold.column_factor[j] * w
+    if out.condition.size:
+        for i in range(3):
+            for j in range(3):
+                row = (TENSOR + 3 * i + j) * BLOCK
+                for k in range(BLOCK):
+                    x[row + k] = 0.0
+                for z in range(fold.actuated):
+                    f, g = at(columns + 3 * z + i), at(columns + 3 * z + j)
+                    for k in range(BLOCK):
+                        x[row + k] += x[f + k] * x[g + k]
+        eigen(x)
+        for k in range(count):
+            large, small = x[EIGENVALUE * BLOCK + k], x[(EIGENVALUE + 2) * BLOCK + k]
+            out.condition[first + k] = math.sqrt(max(small, 0.0) / large) if large > 0.0 else 0.0
+
+
+@part
+def _store_stiffness(x: Array, load: int, first: int, count: int, out: Outputs) -> None:
+    """Compliance, principal stiffness and its directions."""
+    for k in range(count):
+        if out.compliance.size:
+            for i in range(3):
+                for j in range(3):
+                    out.compliance[load, first + k, i, j] = x[(TENSOR + 3 * i + j) * BLOCK + k]
+        if out.values.size:
+            size = 0.0
+            for i in range(3):
+                size = max(size, abs(x[(EIGENVALUE + i) * BLOCK + k]))
+            for i in range(3):
+                c = x[(EIGENVALUE + i) * BLOCK + k]
+                out.values[load, first + k, i] = np.inf if abs(c) <= ZERO * size else 1.0 / c
+        if out.directions.size:
+            for i in range(3):
+                for j in range(3):
+                    row = (EIGENVECTOR + 3 * i + j) * BLOCK
+                    out.directions[load, first + k, i, j] = x[row + k]
+
+
+@part
+def _store_definiteness(
+    x: Array, fold: Fold, load: int, first: int, count: int, K_C: int, A: Array, out: Outputs
+) -> None:
+    """Class of K, and the deflection where the balance holds."""
+    deflects = out.deflection_enhanced.size > 0
+    for k in range(count if deflects or out.stiffness_class.size else 0):
+        found = _class_of(x, fold, k, K_C, A)
+        if out.stiffness_class.size:
+            out.stiffness_class[load, first + k] = found
+        if deflects:
+            for i in range(3):
+                moved = x[(DEFLECTION + i) * BLOCK + k]
+                out.deflection_enhanced[load, first + k, i] = moved if found == PD else math.nan
+
+
+@part
+def _class_of(x: Array, fold: Fold, pose: int, K_C: int, A: Array) -> int:
+    """Class of K at one pose of the block; rows K_C hold all that is taken from K_θ."""
+    low, high, element = np.inf, 0.0, -1
+    for i in range(fold.soft.shape[0]):
+        element += i + 1
+        diagonal = fold.springs[element] - x[at(K_C + element) + pose]
+        low, high = min(low, diagonal), max(high, diagonal)
+    if x[SAFE * BLOCK + pose] > SURE and low > SPAN * high:
+        return PD
+    complementary_of_pose(x, fold.soft.shape[0], K_C, -1, pose, A)
+    subtract_from_springs(fold, A)
+    return int(classify(A))
+
+
+@part
+def _store_complementary(
+    x: Array,
+    fold: Fold,
+    load: int,
+    first: int,
+    count: int,
+    K_C: int,
+    K_g: int,
+    skew: int,
+    A: Array,
+    B: Array,
+    out: Outputs,
+) -> None:
+    """K_C, its class, and the factor on the load at which stability is lost."""
+    s = fold.soft.shape[0]
+    weighs = fold.mass.max() > 0.0
+    own = np.empty((s, s))
+    for k in range(count):
+        if out.K_C.size:
+            complementary_of_pose(x, s, K_C, skew, k, A)
+            out.K_C[load, first + k] = A
+        if not (out.complementary_class.size or out.critical.size):
+            continue
+        stands = True
+        if weighs and out.critical.size:
+            complementary_of_pose(x, s, K_g, -1, k, own)
+            subtract_from_springs(fold, own)
+            stands = whitener_of(own)
+        complementary_of_pose(x, s, K_C, -1, k, A)
+        if out.critical.size:
+            whitener = own if weighs else fold.whitener
+            factor = _critical(whitener, A, B[:, :s]) if stands else 0.0
+            out.critical[load, first + k] = factor
+        if out.complementary_class.size:
+            out.complementary_class[load, first + k] = classify(A)
+
+
+@part
+def _critical(whitener: Array, K_C: Array, B: Array) -> float:
+    """1 / (largest eigenvalue of L⁻¹ K_C L⁻ᵀ) with L Lᵀ = K_θ; infinite if it is not positive."""
+    s = K_C.shape[0]
+    for i in range(s):
+        for j in range(i + 1):
+            total = 0.0
+            for p in range(i + 1):
+                inner = 0.0
+                for q in range(j + 1):
+                    inner += K_C[p, q] * whitener[j, q]
+                total += whitener[i, p] * inner
+            B[i, j] = B[j, i] = total
+    jacobi(B)
+    largest, size = B[0, 0], 0.0
+    for i in range(s):
+        largest, size = max(largest, B[i, i]), max(size, abs(B[i, i]))
+    return 1.0 / largest if largest > ZERO * size else np.inf

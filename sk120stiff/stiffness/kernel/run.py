@@ -1,0 +1,116 @@
+"""From arrays to the compiled kernel and back, on all cores."""
+
+from __future__ import annotations
+
+import logging
+import os
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.arrays import Array
+from sk120stiff.errors import InputError
+from sk120stiff.stiffness.kernel.folding import Fold
+from sk120stiff.stiffness.quantities import BY_LOAD, COMPILED, shape_of
+
+logger = logging.getLogger(__name__)
+
+LARGEST_ANGLE = 1e5  # rad; beyond it sine and cosine lose digits
+PIECE = 16384  # poses that a thread takes at a time
+PATIENCE = 0.5  # seconds after which the preparation is announced
+_READY: list[Any] = []  # the compiled function and the type of its outputs, once they are loaded
+
+
+def run(
+    folded: Fold, poses: Array, wrench: Array, want: frozenset[str], threads: int | None
+) -> dict[str, NDArray[Any]]:
+    """Wanted quantities of `COMPILED` at poses (N, n_a) under (6,), (N, 6) or (Q, 1 or N, 6).
+
+    Raises:
+        InputError: An angle is too large for sine and cosine to be accurate.
+    """
+    _check_angles(folded, poses)
+    loads = np.ascontiguousarray(wrench.reshape(-1, 1, 6) if wrench.ndim < 2 else wrench)
+    if loads.ndim < 3 or wrench.ndim < 2:
+        loads = loads.reshape(1, -1, 6)
+    count, n, s = len(poses), folded.pose_map.shape[1], len(folded.soft)
+    arrays = {}
+    for name in COMPILED:
+        batch = (len(loads), count) if name in BY_LOAD else (count,)
+        own = shape_of(name, n, s)
+        arrays[name] = np.zeros(
+            (*batch, *own) if name in want else (0,) * (len(batch) + len(own)),
+            dtype=np.uint8 if name.endswith("_class") else float,
+        )
+    work, out = _kernel(folded, poses, loads, arrays)
+    cores = threads or available_cores()
+    pieces = range(0, count, PIECE)
+    if cores == 1 or len(pieces) == 1:
+        work(folded, poses, loads, 0, count, out)
+    else:
+        with ThreadPoolExecutor(cores) as pool:
+            done = [
+                pool.submit(work, folded, poses, loads, begin, min(begin + PIECE, count), out)
+                for begin in pieces
+            ]
+            for one in done:
+                one.result()
+    single = wrench.ndim < 3
+    return {name: arrays[name][0] if single and name in BY_LOAD else arrays[name] for name in want}
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _check_angles(folded: Fold, poses: Array) -> None:
+    """One pass without copies settles nearly every call; only a doubt looks at each joint."""
+    if not poses.size:
+        return
+    factors = np.abs(folded.pose_map[:, : poses.shape[1]])[folded.slides == 0.0]
+    reach = max(float(poses.max()), -float(poses.min()))
+    if reach * factors.sum(axis=1).max(initial=0.0) <= LARGEST_ANGLE:
+        return
+    turning = factors @ np.abs(poses).max(axis=0)
+    if turning.max(initial=0.0) > LARGEST_ANGLE:
+        raise InputError(
+            f"a joint angle of {turning.max():.3g} rad is beyond {LARGEST_ANGLE:.0e}",
+            remedy="Give joint angles in radians.",
+        )
+
+
+def _kernel(
+    folded: Fold, poses: Array, loads: Array, arrays: dict[str, Any]
+) -> tuple[Callable[..., None], Any]:
+    """The compiled function and its outputs; the first call in a process loads or compiles it."""
+    if _READY:
+        work, outputs = _READY
+        return work, outputs(**arrays)
+    with announced():
+        from sk120stiff.stiffness.kernel.block import Outputs, work
+
+        out = Outputs(**arrays)
+        work(folded, poses, loads, 0, 0, out)  # nothing to do but to be compiled or loaded
+        _READY[:] = [work, Outputs]
+    return work, out
+
+
+@contextmanager
+def announced() -> Iterator[None]:
+    """Say so when what happens inside takes long: it compiles, or the machine is busy."""
+    message = "Preparing the batch kernel (some ten seconds at its first use on a machine) …"
+    clock = threading.Timer(PATIENCE, logger.info, args=(message,))
+    clock.daemon = True
+    clock.start()
+    try:
+        yield
+    finally:
+        clock.cancel()
