@@ -20,6 +20,8 @@ from sk120stiff.cli.options import DataArgument, ModelOption, SeedOption
 from sk120stiff.cli.positions import positions_answer
 from sk120stiff.cli.tables import progress_bar
 from sk120stiff.explain import Options, explain
+from sk120stiff.explain.options import MOST_EFFECTS
+from sk120stiff.explain.priors import priors_from
 from sk120stiff.model import Model
 
 
@@ -46,11 +48,21 @@ def command(
         list[str] | None,
         typer.Option(metavar="EFFECT", help="Put this effect into the model from the start."),
     ] = None,
-    max_effects: Annotated[int, typer.Option(min=0, max=8, help="Name no more than this.")] = 4,
+    max_effects: Annotated[
+        int, typer.Option(min=0, max=20, help="Name no more than this; told where it binds.")
+    ] = MOST_EFFECTS,
     alpha: Annotated[
         float,
         typer.Option(min=1e-6, max=0.5, help="Largest chance of a name where nothing is missing."),
     ] = 0.01,
+    prior: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="EFFECT=P",
+            help="How probable an effect is before measuring, e.g. base_rocking=0.5 (the usual "
+            "is 0.1; may be repeated).",
+        ),
+    ] = None,
     seed: SeedOption = 0,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Write no report.html and no scene.html.")
@@ -76,6 +88,7 @@ def command(
         assume=tuple(assume or ()),
         max_effects=max_effects,
         alpha=alpha,
+        prior=priors_from(prior or ()),
         seed=seed,
     )
     if readings.absolute is not None:

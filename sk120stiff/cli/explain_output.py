@@ -15,6 +15,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
 from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.files import will_write, write_atomically
@@ -26,6 +27,7 @@ from sk120stiff.show.wording import with_error
 FEW_POSES = 8  # below this other poses confirm little
 STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
+LISTED = 8  # effects whose share is printed; verdict.json has all
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
 
@@ -159,6 +161,7 @@ def parts(
     shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
+    shown.append(_budget(answer))
     shown += answer.where[:TOLD]
     if answer.suspects:
         lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
@@ -181,6 +184,7 @@ def parts(
         f"line {readings.line[row]}."
         for row in answer.set_aside
     ]
+    shown.append(f"What to do now: {next_step(answer)}")
     if answer.next_poses is not None:
         shown.append(f"Measure next what stands in {out / 'next_poses.csv'}.")
         shown += answer.details.get("next_remarks", ())
@@ -188,6 +192,16 @@ def parts(
         shown.append(f"Report: {report}")
     shown.append(f"Results are in {out}.")
     return shown
+
+
+def _budget(answer: Explanation) -> object:
+    """What moves the point at the measured loads, the largest part first."""
+    rows = [
+        (share.name, share.rms * 1e6, None if share.std is None else share.std * 1e6)
+        for share in answer.budget[:LISTED]
+        if share.rms > 0.0
+    ]
+    return table("At the measured loads [µm rms per axis]", ["what yields", "moves", "±"], rows)
 
 
 def said(answer: Explanation) -> str:

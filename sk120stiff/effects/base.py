@@ -52,6 +52,8 @@ class Options:
         Series of the experiment, for `marker_shift`.
     thermal
         The experiment has temperatures, for `thermal_growth`.
+    shape
+        Names of the parameters of the law that is meant, for effects that know more than one.
     """
 
     poses: tuple[str, ...] = ()
@@ -59,6 +61,7 @@ class Options:
     breaks: tuple[float, ...] = ()
     series: tuple[str, ...] = ()
     thermal: bool = False
+    shape: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -114,9 +117,6 @@ class Effect(ABC):
     of_gear
         It is a law of a joint's gear: what one such law leaves over looks like another (class
         attribute).
-    less_usual
-        By how much the score of a model gets worse because it is met less often than an effect that
-        explains as much (class attribute).
     twins
         Names of effects that some experiments make one with this one, at the same place and with
         either sign (class attribute). It is tried whether the experiment at hand does.
@@ -143,7 +143,6 @@ class Effect(ABC):
     inexact: ClassVar[float] = 0.0
     joint_spring: ClassVar[bool] = False
     of_gear: ClassVar[bool] = False
-    less_usual: ClassVar[float] = 0.0
     twins: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[str] = ""
     only_absolute: ClassVar[bool] = False

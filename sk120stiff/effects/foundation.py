@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import ONE_WAY, Alias, LinearElastic
+from sk120stiff.effects.base import ONE_WAY, Alias, LinearElastic, Options, scale_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
+
+CROSS = "cross_stiffness"
 
 
 @dataclass(frozen=True)
@@ -20,9 +23,10 @@ class BaseRocking(LinearElastic):
 
     The base frame's z is the normal of the mounting surface, whether floor, wall or ceiling. Yaw
     about it is left out: where the first joint turns about that line, it is that joint's spring
-    under another name.
+    under another name. A foundation whose stiff direction lies askew has a cross term too.
     """
 
+    askew: bool = False
     name: ClassVar[str] = "base_rocking"
     place: ClassVar[str] = "the base frame"
     equation: ClassVar[str] = "turn = moment / K, about x and about y"
@@ -31,9 +35,31 @@ class BaseRocking(LinearElastic):
     )
     one_axis_each: ClassVar[bool] = True
 
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The foundation, askew where names of parameters tell of a cross term."""
+        return cls(where, scale_of(robot), CROSS in options.shape)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The law that the names of the parameters tell."""
+        return Options(shape=tuple(parameters))
+
+    def other_laws(self, situation: Situation) -> tuple[BaseRocking, ...]:
+        """With a cross term or without."""
+        return (replace(self, askew=not self.askew),)
+
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Rocking stiffness about x and about y."""
+        """Rocking stiffness about x and about y, and what couples the two."""
+        cross = compliance(
+            CROSS,
+            softest=6e5,
+            typical=2e7,
+            scale=self.scale,
+            meaning="moment about x over the turn about y that it brings, and the other way round",
+            signed=True,
+        )
         return (
             compliance(
                 "stiffness_x",
@@ -49,6 +75,7 @@ class BaseRocking(LinearElastic):
                 scale=self.scale,
                 meaning="against rocking about y of the base frame",
             ),
+            *([cross] if self.askew else []),
         )
 
     @property
@@ -75,8 +102,9 @@ class BaseRocking(LinearElastic):
         )
 
     def patterns(self, situation: Situation) -> Array:
-        """Each axis has a compliance of its own."""
-        return np.array([np.diag(row) for row in np.eye(2)])
+        """Each axis has a compliance of its own; the cross term couples them."""
+        own = [np.diag(row) for row in np.eye(2)]
+        return np.array([*own, 1.0 - np.eye(2)] if self.askew else own)
 
 
 @dataclass(frozen=True)

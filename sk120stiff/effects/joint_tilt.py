@@ -29,7 +29,6 @@ class JointTilt(LinearElastic):
         "axes through the joint, normal to its own: along the link that it carries, and across it"
     )
     one_axis_each: ClassVar[bool] = True
-    less_usual: ClassVar[float] = 1.0  # an arm rocks on its floor more often than a bearing tilts
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -2,74 +2,137 @@
 
 A beam cut at s turns there by M(s) ds / EI(s). The displacement it causes at the point is
 ∫ j(s) j(s)ᵀ W ds / EI(s). With 1/EI(s) = ρ(s)/EI, ρ of mean one, the integrand is ρ times a
-polynomial of second degree in s, for which the two Gauss points of the weight ρ are exact.
+polynomial of second degree in s, for which three stations suffice whatever ρ is.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic
+from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic, Options, scale_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, sample_poses
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
+TAPERS = (-0.5, 0.0, 0.3, 0.6)  # that are tried; below zero: stouter towards the far end
+STATIONS = 0.5 + np.array([-1.0, 0.0, 1.0]) * np.sqrt(0.15)  # Gauss and Legendre's, from 0 to 1
+SHAFT = np.deg2rad(15.0)  # largest angle between a link and the axis of the shaft that it is
+BRACKET = np.deg2rad(45.0)  # the same where the link's near end may be a stiff bracket
+PLANES = ("in_plane", "out_of_plane")
+NAME = re.compile(r"EI(_in_plane|_out_of_plane)?(_roll_axis)?(?:_taper_(minus_)?(\d+))?")
 
 
-def gauss_points(taper: float) -> tuple[Array, Array]:
-    """Places (2,) along a beam from 0 to 1 and their weights (2,), which add up to one.
+def shares(taper: float) -> Array:
+    """(3,) weights of `STATIONS` along a beam, which add up to one.
 
-    The flexibility ρ(s) goes with (1 − taper · s)⁻³, the cube of the section's depth.
+    The flexibility ρ(s) goes with (1 − taper · s)⁻³, the cube of the section's depth. The weights
+    have its moments up to the second.
     """
     nodes, weights = np.polynomial.legendre.leggauss(24)
     s = 0.5 * (nodes + 1.0)
     rho = weights * (1.0 - taper * s) ** -3
-    rho /= rho.sum()
-    mean = rho @ s
-    spread = rho @ (s - mean) ** 2
-    skewness = rho @ (s - mean) ** 3
-    # roots of the orthogonal polynomial (s − mean)² − (skewness / spread)(s − mean) − spread
-    half = 0.5 * skewness / spread
-    root = np.sqrt(half**2 + spread)
-    near, far = half - root, half + root
-    return mean + np.array([near, far]), np.array([far, -near]) / (far - near)
+    moments = np.vander(s, 3, increasing=True).T @ (rho / rho.sum())
+    return np.asarray(np.linalg.solve(np.vander(STATIONS, 3, increasing=True).T, moments))
 
 
-SHAFT = np.deg2rad(15.0)  # largest angle between a link and the axis of the shaft that it is
+@dataclass(frozen=True, eq=False)
+class Member:
+    """The straight piece of a link that bends, in the frame of the joint that moves the link.
+
+    `start` (3,) and `span` (3,) [m]; `in_plane` and `across` (3,) unit axes about which it bends.
+    """
+
+    start: Array
+    span: Array
+    in_plane: Array
+    across: Array
 
 
 @dataclass(frozen=True)
 class LinkBending(LinearElastic):
-    """A beam of equal bending stiffness in both planes along the link, slimmer at its far end.
+    """A beam along the link, equally stiff in both planes, slimmer at its far end.
 
-    EI is that of the uniform beam whose end a moment would turn as far.
+    EI is that of the uniform beam whose end a moment would turn as far. Other laws taper otherwise,
+    lie along the roll axis that the link carries (what is off that axis is a stiff bracket), or
+    have an EI for each plane.
+
+    Attributes
+    ----------
+    taper
+        Share of its depth that the section loses along the link.
+    roll
+        The beam lies along the axis of the next joint.
+    planes
+        Each plane has an EI of its own.
     """
 
+    taper: float = TAPER
+    roll: bool = False
+    planes: bool = False
     name: ClassVar[str] = "link_bending"
     place: ClassVar[str] = "a link"
     equation: ClassVar[str] = "curvature(s) = M(s) / EI(s), slimmer at the far end"
     axes: ClassVar[str] = "the line from the link's joint to the next; both planes that hold it"
     inexact: ClassVar[float] = 0.14  # links taper more or less
 
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The beam of one link, by the law that names of parameters tell."""
+        found = [match for name in options.shape if (match := NAME.fullmatch(name))]
+        if not found:
+            return cls(where, scale_of(robot))
+        plane, roll, minus, percent = found[0].groups()
+        taper = TAPER if percent is None else int(percent) / (-100.0 if minus else 100.0)
+        return cls(where, scale_of(robot), taper, roll is not None, plane is not None)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The law that the names of the parameters tell."""
+        return Options(shape=tuple(parameters))
+
+    @property
+    def _law(self) -> str:
+        """End of the parameters' names."""
+        sign = "minus_" if self.taper < 0.0 else ""
+        taper = "" if self.taper == TAPER else f"_taper_{sign}{round(abs(100.0 * self.taper))}"
+        return ("_roll_axis" if self.roll else "") + taper
+
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Bending stiffness EI."""
-        return (
+        """Bending stiffness EI, or one for each plane."""
+        along = ", along the axis of the next joint" if self.roll else ""
+        return tuple(
             compliance(
-                "EI",
+                f"EI{plane}{self._law}",
                 softest=3e5,
                 typical=7e6,
                 scale=self.scale,
                 unit="N*m**2",
-                meaning="bending stiffness of the uniform beam whose end a moment turns as far",
-            ),
+                meaning="bending stiffness of the uniform beam whose end a moment turns as far"
+                + along
+                + (f", {plane[1:].replace('_', ' ')} in which the joint turns" if plane else ""),
+            )
+            for plane in ([f"_{each}" for each in PLANES] if self.planes else [""])
         )
+
+    def other_laws(self, situation: Situation) -> tuple[LinkBending, ...]:
+        """Other tapers, a beam along the roll axis where there is one, planes that differ."""
+        along = [False, True] if _roll_member(situation.robot, self.where) else [False]
+        laws = [
+            replace(self, taper=taper, roll=roll, planes=planes)
+            for planes in (False, True)
+            for roll in along
+            for taper in TAPERS
+        ]
+        return tuple(law for law in laws if law != self)
 
     def sentence(self) -> str:
         """What happens."""
@@ -80,27 +143,34 @@ class LinkBending(LinearElastic):
         """Every link with a length."""
         return tuple(joint.link for joint in arm_links(robot))
 
+    def _member(self, robot: Robot) -> Member:
+        found = _roll_member(robot, self.where) if self.roll else None
+        if found is not None:
+            return found
+        link = arm_joint(robot, self.where)
+        _, across, third = link.directions()
+        if passed_on(robot, link):
+            across, third = _split(link)
+        return Member(np.zeros(3), link.along, third, across)
+
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
-        """Two joints across the beam at each Gauss point.
+        """Two joints across the beam at each station.
 
         A bend about the joint axis is passed on to joints that a linkage ties to the link.
         """
-        link = arm_joint(robot, self.where)
-        _, across, third = link.directions()
+        link, member = arm_joint(robot, self.where), self._member(robot)
         tied = passed_on(robot, link)
-        if tied:
-            across, third = _split(link)
-        places, _ = gauss_points(TAPER)
+        line = ".roll_axis" if self.roll else ""
         return tuple(
             VirtualJoint(
-                f"{self.id}[{k}].{label}",
+                f"{self.id}{line}[{k}].{label}",
                 link.index,
-                _moved(fraction * link.along),
+                _moved(member.start + place * member.span),
                 axis,
                 followers=tied if tied and label == "in_plane" else (),
             )
-            for k, fraction in enumerate(places)
-            for label, axis in (("in_plane", third), ("out_of_plane", across))
+            for k, place in enumerate(STATIONS)
+            for label, axis in zip(PLANES, (member.in_plane, member.across), strict=True)
         )
 
     def aliases(self, robot: Robot) -> tuple[Alias, ...]:
@@ -122,10 +192,13 @@ class LinkBending(LinearElastic):
         )
 
     def patterns(self, situation: Situation) -> Array:
-        """Every slice of the beam yields by its share of the flexibility."""
-        length = arm_joint(situation.robot, self.where).length
-        _, shares = gauss_points(TAPER)
-        return np.diag(length * np.repeat(shares, 2))[None]
+        """Every station of the beam yields by its share of the flexibility."""
+        length = float(np.linalg.norm(self._member(situation.robot).span))
+        both = length * np.repeat(shares(self.taper), 2)
+        if not self.planes:
+            return np.diag(both)[None]
+        own = np.tile(np.eye(2), len(STATIONS))  # (2, 6) which plane a joint bends in
+        return np.stack([np.diag(both * plane) for plane in own])
 
 
 @dataclass(frozen=True)
@@ -177,7 +250,7 @@ class LinkTorsion(LinearElastic):
         """
         link = arm_joint(robot, self.where)
         axis, placement = link.directions()[0], np.eye(4)
-        roll = _rolling_axis(robot, link)
+        roll = _rolling_axis(robot, link, SHAFT)
         if roll is not None:
             axis, placement[:3, 3] = roll, link.along
         return (VirtualJoint(f"{self.id}.twist", link.index, placement, axis),)
@@ -187,14 +260,28 @@ class LinkTorsion(LinearElastic):
         return np.full((1, 1, 1), arm_joint(situation.robot, self.where).length)
 
 
-def _rolling_axis(robot: Robot, link: ArmJoint) -> Array | None:
-    """(3,) axis of the next joint in the link's frame where it nearly follows the link."""
+def _rolling_axis(robot: Robot, link: ArmJoint, most: float) -> Array | None:
+    """(3,) axis of the next joint in the link's frame where it follows the link within an angle."""
     chain = robot.mechanism().chain
     if link.index + 1 >= chain.m or not chain.revolute[link.index + 1]:
         return None
     axis = chain.placements[link.index + 1][:3, :3] @ chain.axes[link.index + 1]
     cosine = float(axis @ link.along) / link.length
-    return axis * np.sign(cosine) if abs(cosine) > np.cos(SHAFT) else None
+    return axis * np.sign(cosine) if abs(cosine) > np.cos(most) else None
+
+
+def _roll_member(robot: Robot, where: str) -> Member | None:
+    """The beam along the axis of the next joint; None where there is none, or it is the link's."""
+    link = arm_joint(robot, where)
+    axis = None if passed_on(robot, link) else _rolling_axis(robot, link, BRACKET)
+    if axis is None or np.linalg.norm(np.cross(axis, link.along)) < 1e-6 * link.length:
+        return None
+    span = axis * (axis @ link.along)
+    across = np.cross(link.axis, axis)
+    if np.linalg.norm(across) < 1e-6:
+        across = np.cross(np.eye(3)[np.argmin(np.abs(axis))], axis)
+    across = across / np.linalg.norm(across)
+    return Member(link.along - span, span, np.cross(axis, across), across)
 
 
 def _split(link: ArmJoint) -> tuple[Array, Array]:

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.robot import Robot, Screws
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Absolute, Measurements
 
 MOVED = 1e-4  # rad or m: a joint that moves by less has not changed sides
+
+IDLE = -1  # in a history: no load, at a zero reading or before a repeat
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +60,9 @@ class Situation:
         (N, n) coordinates of the zero reading [rad or m]; None: those of the reading.
     side
         (N, n) side from which each joint came to its pose, -1, 0 or 1; None without an order.
+    zero_group, repeat
+        (N,) which zero reading a row subtracts, and the how-manieth repeat it is; None where every
+        row stands alone, and where nothing was repeated.
     """
 
     robot: Robot
@@ -79,6 +84,8 @@ class Situation:
     series_names: tuple[str, ...] = ()
     side: Array | None = None
     zero_a: Array | None = None
+    zero_group: Integers | None = None
+    repeat: Integers | None = None
 
     @property
     def count(self) -> int:
@@ -92,6 +99,46 @@ class Situation:
             return np.zeros_like(self.a)
         unique, inverse = np.unique(self.a, axis=0, return_inverse=True)
         return self.robot.gravity_torque(unique)[inverse.reshape(-1)]
+
+    @cached_property
+    def pose_column(self) -> Index:
+        """(N,) column of each row's pose in `history`."""
+        return np.unique(self.pose, return_inverse=True)[1].reshape(-1)
+
+    @cached_property
+    def history(self) -> tuple[Index, Index, Index]:
+        """In which order every pose met its loads.
+
+        Returns
+        -------
+        steps, zero, own
+            (S, g) row whose load is on, or `IDLE`, the poses side by side; (N,) the step at which
+            a row's zero was read, and the one at which the row itself was.
+        """
+        group = np.arange(self.count) if self.zero_group is None else self.zero_group
+        again = np.zeros(self.count, dtype=int) if self.repeat is None else self.repeat
+        sequence = np.arange(self.count) if self.order is None else self.order
+        zero, own = np.zeros(self.count, dtype=np.intp), np.zeros(self.count, dtype=np.intp)
+        series: list[list[int]] = []
+        for pose in range(int(self.pose_column.max(initial=-1)) + 1):
+            rows = np.flatnonzero(self.pose_column == pose)
+            # order counts from the zero reading, so zeros first, in the order of the file
+            first = {g: k for k, g in reversed(list(enumerate(group[rows])))}
+            ranks = [first[g] for g in group[rows]]
+            steps: list[int] = []
+            last, at = None, 0
+            for row in rows[np.lexsort((sequence[rows], ranks))]:
+                if last is None or group[row] != group[last]:
+                    at = len(steps)
+                    steps.append(IDLE)
+                elif again[row] != again[last]:
+                    steps.append(IDLE)
+                zero[row], own[row], last = at, len(steps), row
+                steps.append(int(row))
+            series.append(steps)
+        longest = max((len(steps) for steps in series), default=0)
+        padded = [steps + [IDLE] * (longest - len(steps)) for steps in series]
+        return np.array(padded, dtype=np.intp).T, zero, own
 
     @cached_property
     def nominal(self) -> Screws:
@@ -119,6 +166,8 @@ class Situation:
             series=part(self.series),
             side=part(self.side),
             zero_a=part(self.zero_a),
+            zero_group=part(self.zero_group),
+            repeat=part(self.repeat),
         )
 
 
@@ -190,6 +239,8 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
         pose=np.array([index[label] for label in measurements.pose], dtype=np.intp),
         poses=labels,
         zero_a=measurements.zero_joints,
+        zero_group=measurements.zero_group,
+        repeat=measurements.repeat,
     )
     if measurements.absolute is None:
         return plain

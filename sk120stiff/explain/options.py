@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
 POSES_WITH_OFFSETS = 60
-MOST_EFFECTS = 4  # looked for unless the user says otherwise
+MOST_EFFECTS = 8  # looked for unless the user says otherwise
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,9 @@ class Options:
         Largest number of named effects.
     alpha
         Probability of naming something where nothing is missing, over all candidates together.
+    prior
+        How probable effects are before anything is measured, by ``name`` or ``name:where``; the
+        others are as probable as `priors.py` has them.
     seed
         Of folds and resampling.
     """
@@ -39,6 +42,7 @@ class Options:
     assume: tuple[str, ...] = ()
     max_effects: int = MOST_EFFECTS
     alpha: float = 0.01
+    prior: Mapping[str, float] = field(default_factory=dict)
     seed: int = 0
 
     @property

@@ -134,6 +134,16 @@ def explain(
     return completed(answer, found.regression, seed=options.seed)
 
 
+def _where_it_binds(found: Attempt, wish: Options) -> tuple[str, ...]:
+    """That more effects might have been found, had more been looked for."""
+    if len(found.chosen) < wish.max_effects or not wish.max_effects:
+        return ()
+    return (
+        f"All {wish.max_effects} effects that may be named at most were found; there may be more: "
+        "ask for more with --max-effects.",
+    )
+
+
 def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:
     """What is confirmed is named, whatever is left beside it."""
     if not findings:
@@ -170,6 +180,7 @@ def _attempts(
             plain if chosen.form or (undescribed and chosen.zero == "separate") else candidates,
             max_effects=options.max_effects,
             alpha=options.alpha,
+            prior=options.prior,
         )
 
     return under
@@ -194,8 +205,7 @@ def _silent(phrase: str, share: float) -> None:
 
 
 def _adequacy(found: Attempt, noise: NoiseModel) -> Adequacy:
-    final = held_against(noise, found.final)
-    return adequacy(final, found.regression, found.scored.solved.columns)
+    return adequacy(held_against(noise, found.final), {effect.id for effect in found.effects})
 
 
 def _too_much(left: Adequacy, allowed: float) -> bool:

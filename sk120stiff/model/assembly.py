@@ -59,15 +59,15 @@ class Assembly:
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """The robot with all virtual joints."""
-        virtual = [
-            joint
+        """The robot with all virtual joints; laws of one effect may share some."""
+        virtual = {
+            joint.name: joint
             for effect in self.effects
             if isinstance(effect, Elastic | Geometric | Imposed)
             for joint in effect.virtual_joints(self.robot)
-        ]
+        }
         rigid = self.robot.mechanism()
-        return rigid.with_virtual_joints(virtual) if virtual else rigid
+        return rigid.with_virtual_joints(list(virtual.values())) if virtual else rigid
 
     @cached_property
     def _coordinate(self) -> dict[str, int]:

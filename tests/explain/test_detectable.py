@@ -67,7 +67,7 @@ def is_named(regression: Regression, name: str) -> bool:
     if not best.effects:
         return False
     (winner,) = best.effects
-    if not confirm(regression, best.effects, winner, [], seed=0).holds:
+    if not confirm(regression, best, winner, [], seed=0).holds:
         return False
     (k,) = (k for k, e in enumerate(regression.candidates) if e.id == name)
     score = score_set(regression, regression.sums(), (k,)).score

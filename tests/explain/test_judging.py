@@ -9,6 +9,7 @@ from scipy import stats
 
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects.gear.hardening import STEPS
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Confirmation
@@ -100,7 +101,7 @@ def test_the_two_laws_of_a_gear_lead_to_each_other(springs):
     situation = situation_of(springs.robot, hidden())
     (steps,) = series.other_laws(situation)
     assert steps.id == series.id
-    assert len(steps.parameters) == 4
+    assert len(steps.parameters) == len(STEPS)
     assert steps.other_laws(situation) == (series,)
 
 

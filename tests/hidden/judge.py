@@ -229,9 +229,7 @@ def coverage(truth: dict[str, Any], answer: Answer, share: float) -> tuple[list[
 
 def _inside(answer: Answer, key: str, value: float) -> bool:
     found = answer.parameters[key]
-    return (
-        found.internal_std is not None and abs(found.internal - value) <= 1.96 * found.internal_std
-    )
+    return found.std is not None and abs(found.value - value) <= 1.96 * found.std
 
 
 def heldout_ratio(truth: dict[str, Any], predicted: np.ndarray | None) -> float | None:

@@ -32,25 +32,37 @@ def contenders(
     """
     by_id = {effect.id: effect for effect in found.candidates}
     effects = [by_id[name] for name in dict.fromkeys(names) if name in by_id][:MOST]
-    seen = [_contender(found, effect, seed) for effect in effects]
-    gains = {c.id: fit for c, fit in seen if fit is not None and c.heldout_gain > 0.0}
-    ranked = sorted((c for c, _ in seen), key=lambda c: -np.nan_to_num(c.heldout_gain, nan=-1e9))
-    best = ranked[0].id if ranked else ""
-    return tuple(ranked), gains.get(best)
+    fits = {effect.id: _added(found, effect) for effect in effects}
+    gains = _heldout_gains(found.base, [fit for fit in fits.values() if fit is not None], seed)
+    told = iter(gains)
+    seen = [Contender(name, float("nan") if f is None else next(told)) for name, f in fits.items()]
+    ranked = sorted(seen, key=lambda c: -np.nan_to_num(c.heldout_gain, nan=-1e9))
+    good = ranked and ranked[0].heldout_gain > 0.0
+    return tuple(ranked), fits[ranked[0].id] if good else None
 
 
-def _contender(found: Attempt, effect: Effect, seed: int) -> tuple[Contender, Fit | None]:
+def _added(found: Attempt, effect: Effect) -> Fit | None:
     try:
-        whole = refit(found.base, [effect])
-        base = found.base
+        return refit(found.base, [effect])
+    except Refusal:
+        return None
 
-        def learn(readings: Measurements) -> list[Fit]:
-            return [
-                solve_near(Problem(fit.model, readings, fit.problem.noise), fit.x)
-                for fit in (base, whole)
-            ]
 
-        before, after = held_out(base.problem.measurements, learn, seed=seed)
+def _heldout_gains(base: Fit, fits: Sequence[Fit], seed: int) -> list[float]:
+    """By how much the gap at poses left out falls from the base model to each of some others."""
+    if not fits:
+        return []
+
+    def learn(readings: Measurements) -> list[Fit]:
+        return [
+            solve_near(Problem(fit.model, readings, fit.problem.noise), fit.x)
+            for fit in (base, *fits)
+        ]
+
+    try:
+        before, *after = held_out(base.problem.measurements, learn, seed=seed)
     except (InputError, Refusal):
-        return Contender(effect.id, float("nan")), None
-    return Contender(effect.id, before.rms - after.rms), whole
+        # one of them does not hold on some poses; then each is asked by itself
+        alone = [_heldout_gains(base, [fit], seed) for fit in fits] if len(fits) > 1 else [[np.nan]]
+        return [gain for gains in alone for gain in gains]
+    return [before.rms - each.rms for each in after]

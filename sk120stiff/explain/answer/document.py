@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.explain.answer.explanation import Explanation
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.posterior import LISTED
 from sk120stiff.identify import unseen_reasons
@@ -52,6 +53,11 @@ def verdict_document(
                 for step in answer.steps
             ],
         },
+        "next_step": next_step(answer),
+        "budget": [
+            {"name": share.name, "rms_um": _um(share.rms), "std_um": _um(share.std)}
+            for share in answer.budget
+        ],
         "where": list(answer.where),
         "suspects": [
             {"name": suspect.id, "heldout_gain_um": _um(suspect.heldout_gain)}

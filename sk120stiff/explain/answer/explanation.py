@@ -13,6 +13,7 @@ from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
 from sk120stiff.explain.answer.notebook import summary_html
 from sk120stiff.explain.findings import Contender, Detectable, Finding, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.budget import Share, error_budget
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.identify import Fit, Yardstick, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -103,6 +104,11 @@ class Explanation:
     def noise_floor(self) -> float | None:
         """Rms per axis that noise alone would give the gap [m]; None where nothing tells it."""
         return self.yardstick.floor
+
+    @cached_property
+    def budget(self) -> tuple[Share, ...]:
+        """What each effect moves the point by at the measured loads, the largest first."""
+        return error_budget(self.final)
 
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered."""

@@ -8,16 +8,19 @@ that thousands of models cost no more than a blink. What wins is refitted at exa
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
+from typing import Any
 
 import numpy as np
 from scipy import stats
+from scipy.linalg.lapack import dtrtrs
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
+from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
 
@@ -47,6 +50,9 @@ class Regression:
         them are often equal, one common column for those; the parameters of its other laws.
     laws
         For each of these variants the effect whose law it is.
+    tied, usual
+        For each candidate which of its variants has the common column (-1: none), and which has the
+        law that the catalogue gives it.
     lower
         (P,) physical lower bounds in typical sizes (0 or -inf).
     plausible
@@ -55,6 +61,8 @@ class Regression:
         The noise's size is known; else it is estimated by every model for itself.
     alpha
         Probability at which a first effect may be named where nothing is missing.
+    prior
+        Probabilities of effects that the user gave, by ``name`` or ``name:where``.
     """
 
     y: Array
@@ -65,10 +73,18 @@ class Regression:
     columns: tuple[Index, ...]
     variants: tuple[tuple[Index, ...], ...]
     laws: tuple[tuple[Effect, ...], ...]
+    tied: tuple[int, ...]
+    usual: tuple[int, ...]
     lower: Array
     plausible: Array
     sigma_known: bool
     alpha: float
+    prior: Mapping[str, float]
+
+    @cached_property
+    def unusual(self) -> tuple[float, ...]:
+        """What each candidate pays for being less usual than others."""
+        return tuple(price(effect, self.prior) for effect in self.candidates)
 
     @property
     def rows(self) -> int:
@@ -92,9 +108,17 @@ class Regression:
         return self.laws[candidate][variant]
 
     @cached_property
-    def reach(self) -> tuple[Index, ...]:
-        """For each candidate the columns of all its laws."""
-        return tuple(np.unique(np.concatenate(parts)) for parts in self.variants)
+    def variants_by_size(self) -> tuple[tuple[Index, Index], ...]:
+        """Pairs of candidate and variant (m, 2) and their columns (m, k), for every k there is."""
+        by_size: dict[int, list[tuple[int, int]]] = {}
+        for e, parts in enumerate(self.variants):
+            for k, part in enumerate(parts):
+                by_size.setdefault(len(part), []).append((e, k))
+        return tuple(
+            (np.array(pairs), np.array([self.variants[e][k] for e, k in pairs]))
+            for size, pairs in by_size.items()
+            if size
+        )
 
     @cached_property
     def poses(self) -> int:
@@ -118,7 +142,7 @@ class Regression:
 
 @dataclass(frozen=True, eq=False)
 class Sums:
-    """XᵀX, Xᵀy, yᵀy and the number of rows of some choice of poses."""
+    """XᵀX, Xᵀy, yᵀy and the number of rows of some choice of poses; `scores` remembers models."""
 
     gram: Array
     moment: Array
@@ -126,6 +150,7 @@ class Sums:
     count: float
     _marginals: dict[tuple[bytes, float], Marginal] = field(default_factory=dict)
     _inverses: dict[bytes, Array] = field(default_factory=dict)
+    scores: dict[bytes, Any] = field(default_factory=dict)
 
     def over(self, columns: Index, right: Array) -> Array:
         """(XᵀX)⁻¹ of some columns, on the right-hand side (k,)."""
@@ -220,31 +245,34 @@ def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) ->
 
     Columns that would be negative are dropped, the worst first.
     """
-    active = columns
+    drawn = plausible[columns] ** -2.0
+    size = np.sqrt(sums.gram[columns, columns] + drawn)
+    seen = size > 0.0
+    columns, size = columns[seen], size[seen]
+    whole = sums.gram[columns[:, None], columns] / (size[:, None] * size)
+    whole.flat[:: len(columns) + 1] = 1.0
+    right = sums.moment[columns] / size
+    bound = lower[columns] == 0.0
+    active = np.arange(len(columns))
     while len(active):
-        gram = sums.gram[np.ix_(active, active)] + np.diag(plausible[active] ** -2.0)
-        scale = np.sqrt(np.diag(gram))
-        if (scale <= 0.0).any():
-            active = active[scale > 0.0]
-            continue
-        scaled = gram / np.outer(scale, scale)
-        right = sums.moment[active] / scale
+        scaled = whole[active[:, None], active] if len(active) < len(columns) else whole
         try:
             factor = np.linalg.cholesky(scaled)
         except np.linalg.LinAlgError:
             active = np.delete(active, _dependent(scaled))
             continue
-        if np.diag(factor).min() < DEPENDENT:
-            active = np.delete(active, int(np.argmin(np.diag(factor))))
+        least = int(factor.diagonal().argmin())
+        if factor[least, least] < DEPENDENT:
+            active = np.delete(active, least)
             continue
-        half = np.linalg.solve(factor, right)
-        values = np.linalg.solve(factor.T, half) / scale
-        size = values * scale
-        forbidden = (values < 0.0) & (lower[active] == 0.0)
+        half, _ = dtrtrs(factor, right[active], lower=1)
+        found, _ = dtrtrs(factor, half, lower=1, trans=1)
+        forbidden = (found < 0.0) & bound[active]
         if not forbidden.any():
-            return Solved(active, values, max(sums.square - float(half @ half), 0.0))
-        active = np.delete(active, int(np.argmin(np.where(forbidden, size, np.inf))))
-    return Solved(active, np.zeros(0), sums.square)
+            rss = max(sums.square - float(half @ half), 0.0)
+            return Solved(columns[active], found / size[active], rss)
+        active = np.delete(active, int(np.argmin(np.where(forbidden, found, np.inf))))
+    return Solved(columns[:0], np.zeros(0), sums.square)
 
 
 def _dependent(scaled: Array) -> int:
@@ -255,7 +283,12 @@ def _dependent(scaled: Array) -> int:
 
 
 def regression_at(
-    fit: Fit, candidates: Sequence[Effect], base_effects: Sequence[str], *, alpha: float
+    fit: Fit,
+    candidates: Sequence[Effect],
+    base_effects: Sequence[str],
+    *,
+    alpha: float,
+    prior: Mapping[str, float] | None = None,
 ) -> Regression:
     """Linearise the readings at a fit, over its own parameters and all candidates.
 
@@ -267,8 +300,8 @@ def regression_at(
         Effects to consider besides; those that the model holds already are skipped.
     base_effects
         Ids of the effects that belong to every model.
-    alpha
-        See `Regression`.
+    alpha, prior
+        See `Regression`; without `prior` the table of `priors.py` counts alone.
     """
     problem = fit.problem
     full = fit.model
@@ -288,9 +321,12 @@ def regression_at(
     fixed = np.array([not p.free for p in full.parameters])
     y = gap + X[:, ~fixed] @ (full.values / typical)[~fixed]
 
+    same: dict[str, int] = {}  # a parameter of two laws of one effect has one column
+    first = [same.setdefault(p.name, k) for k, p in enumerate(full.parameters)]
+
     def columns_of(effect: Effect) -> Index:
         return np.array(
-            [k for k, p in enumerate(full.parameters) if p.effect == effect and p.free],
+            [first[k] for k, p in enumerate(full.parameters) if p.effect == effect and p.free],
             dtype=np.intp,
         )
 
@@ -299,6 +335,11 @@ def regression_at(
     lower = np.array([0.0 if spec.lower == 0.0 else -np.inf for spec in specs])
     plausible = np.array([spec.plausible / spec.typical for spec in specs])
     tied, sources, variants = _variants(chosen, columns, X)
+    plain = {effect.id: effect for effect in candidates}
+    all_laws = tuple(
+        (*(effect for _ in own), *laws)
+        for effect, own, laws in zip(chosen, variants, others, strict=True)
+    )
     return Regression(
         y=y,
         X=np.hstack([X, tied]),
@@ -310,14 +351,17 @@ def regression_at(
             (*own, *(columns_of(law) for law in laws))
             for own, laws in zip(variants, others, strict=True)
         ),
-        laws=tuple(
-            (*(effect for _ in own), *laws)
-            for effect, own, laws in zip(chosen, variants, others, strict=True)
+        laws=all_laws,
+        tied=tuple(1 if len(own) > 1 else -1 for own in variants),
+        usual=tuple(
+            laws.index(plain[laws[0].id]) if plain.get(laws[0].id) in laws else 0
+            for laws in all_laws
         ),
         lower=np.concatenate([lower, lower[sources]]),
         plausible=np.concatenate([plausible, plausible[sources]]),
         sigma_known=fit.sigma_known,
         alpha=alpha,
+        prior=prior or {},
     )
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Index
 from sk120stiff.errors import Refusal
-from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.judge.scatter_at_poses import unlike_scatter
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.identify import Fit, LackOfFit, Yardstick, lack_of_fit, yardstick
@@ -108,7 +106,7 @@ class Adequacy:
         return (said,) if said else ()
 
 
-def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+def adequacy(fit: Fit, named: Collection[str]) -> Adequacy:
     """Test the gap that a fitted model leaves.
 
     Tested are the whole misfit; the parts that go at single poses in proportion to the load, as
@@ -121,32 +119,30 @@ def adequacy(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
     Parameters
     ----------
     fit
-        The fitted model.
-    regression
-        Linearised at that fit, in units of the same σ.
-    columns
-        Its columns in the regression.
+        The fitted model, held against the noise that counts.
+    named
+        Ids of the effects that were added to it.
     """
     noise, whole = yardstick(fit), lack_of_fit(fit)
-    explained = _explained(regression, columns) / float(np.sqrt(noise.scale))
+    size = explained(fit, named) / float(np.sqrt(noise.scale))
     if noise.source == "stated" and whole is not None and whole.probability < LEVEL:
         free = dict(_structure(fit, _free(fit)))
         free |= unlike_scatter(fit)
         if _nothing_structured(fit, free, whole.factor):
-            return _judged(free, explained / whole.factor, whole, whole.factor)
+            return _judged(free, size / whole.factor, whole, whole.factor)
     tests = dict(_structure(fit, noise))
     if whole is not None:
         taken = whole.freedom[0]
         beyond = whole.statistic * (1 if whole.freedom[1] is None else taken) - taken
         tests["whole misfit"] = whole.probability, beyond
-    return _judged(tests, explained, whole)
+    return _judged(tests, size, whole)
 
 
-def structure(fit: Fit, regression: Regression, columns: Index) -> Adequacy:
+def structure(fit: Fit, named: Collection[str]) -> Adequacy:
     """As `adequacy`, of structure alone: beside model-form error the whole misfit says nothing."""
     noise = yardstick(fit)
-    explained = _explained(regression, columns) / float(np.sqrt(noise.scale))
-    return _judged(dict(_structure(fit, noise)), explained, None)
+    size = explained(fit, named) / float(np.sqrt(noise.scale))
+    return _judged(dict(_structure(fit, noise)), size, None)
 
 
 def _judged(
@@ -194,13 +190,19 @@ def _structure(fit: Fit, noise: Yardstick) -> Iterator[tuple[str, tuple[float, f
         yield f"together with {closest.name}", (closest.probability, beyond)
 
 
-def _explained(regression: Regression, columns: Index) -> float:
-    """‖M_B S v‖: what the chosen candidates explain that the base model cannot imitate."""
-    named = np.setdiff1d(columns, regression.base)
-    if not len(named):
+def explained(fit: Fit, named: Collection[str]) -> float:
+    """‖M_B S v‖: what some effects explain that the others cannot imitate, in units of the noise.
+
+    Parameters
+    ----------
+    fit
+        The fitted model; its noise is the unit.
+    named
+        Ids of the effects.
+    """
+    own = np.array([p.effect.id in named for p in fit.parameters], dtype=bool)
+    if not own.any():
         return 0.0
-    values = np.linalg.lstsq(regression.X[:, columns], regression.y, rcond=None)[0]
-    part = dict(zip(columns.tolist(), values, strict=True))
-    signature = regression.X[:, named] @ np.array([part[int(c)] for c in named])
-    base = orthonormal(regression.X[:, regression.base])
+    signature = fit.jacobian[:, own] @ fit.x[own]
+    base = orthonormal(fit.jacobian[:, ~own])
     return float(np.linalg.norm(signature - base @ (base.T @ signature)))

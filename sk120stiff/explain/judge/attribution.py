@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,7 +27,9 @@ MISSPECIFICATION = (
 )
 NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
+MOST_NAMES = 8  # one answer may list; with more of them it says nothing
 CONTENDERS = 24  # rivals looked at for every effect
+NEAR = 40.0  # difference of scores within which a rival's neighbours may take other laws
 
 
 @dataclass(frozen=True)
@@ -96,18 +98,18 @@ def judged(found: Attempt, *, seed: int, least: float = -np.inf) -> tuple[Attemp
         Gain of score that an effect has to bring.
     """
     fallen: list[Fallen] = []
-    named = findings_of(found, seed=seed, least=least)
-    while named.fallen:
-        fallen.append(named.fallen[-1])
-        kept = [e for e in _in_order(found) if e.id != fallen[-1].id]
+    while True:
+        findings, weakest = findings_of(found, seed=seed, least=least)
+        if weakest is None:
+            return found, Named(findings, tuple(fallen))
+        fallen.append(weakest)
+        kept = [e for e in _in_order(found) if e.id != weakest.id]
         found = _without_the_weakest(found, kept)
-        named = findings_of(found, seed=seed, least=least)
-    return found, Named(named.findings, tuple(fallen))
 
 
 def _in_order(found: Attempt) -> list[Effect]:
     """The chosen effects, the strongest first."""
-    return [found.regression.candidates[e] for e in by_weight(found.regression, found.chosen)]
+    return [found.regression.candidates[e] for e in by_weight(found.regression, found.scored)]
 
 
 def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
@@ -119,18 +121,28 @@ def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
             effects = effects[:-1]
 
 
-def findings_of(found: Attempt, *, seed: int, least: float = -np.inf) -> Named:
-    """Judge every chosen effect, beside all the others."""
-    findings: list[Finding] = []
-    fallen: list[Fallen] = []
-    for effect in by_weight(found.regression, found.chosen):
-        finding = _finding(found, effect, seed, least)
-        objection = _objection(found, finding, findings, least)
+def findings_of(
+    found: Attempt, *, seed: int, least: float = -np.inf
+) -> tuple[tuple[Finding, ...], Fallen | None]:
+    """Judge the chosen effects, each beside all the others, from the weakest up.
+
+    Returns
+    -------
+    findings, weakest
+        All effects in the order of their weight, and the weakest that may not be named: what is
+        stronger is not confirmed then, since it will be judged anew.
+    """
+    order = by_weight(found.regression, found.scored)
+    findings = [_finding(found, effect) for effect in order]
+    for place in reversed(range(len(order))):
+        objection = _objection(found, findings[place], findings[:place], least)
         if objection is None:
-            findings.append(finding)
-        else:
-            fallen.append(objection)
-    return Named(tuple(findings), tuple(fallen))
+            findings[place] = _confirmed(found, order[place], findings[place], seed)
+            if findings[place].evidence.confirmation.holds:
+                continue
+            objection = Fallen(findings[place].effect.id, _unconfirmed(findings[place]))
+        return tuple(findings), objection
+    return tuple(findings), None
 
 
 def _objection(
@@ -152,6 +164,12 @@ def _objection(
             f"{name} fits, but something in proportion to the load at every pose would fit as "
             "well; it is not named.",
         )
+    if len(set(finding.alternatives) - set(finding.exact)) > MOST_NAMES:
+        return Fallen(
+            name,
+            f"{name} fits, but so do {len(finding.alternatives)} other names at as many places; "
+            "the readings do not tell what it is, and it is not named.",
+        )
     if finding.evidence.score_gain < least:
         return Fallen(
             name,
@@ -159,9 +177,15 @@ def _objection(
             f"evidence is weak ({finding.evidence.score_gain:.1f} where {least:.0f} is strong); it "
             "is not named.",
         )
-    if not finding.evidence.confirmation.holds:
-        return Fallen(name, _unconfirmed(finding))
     return None
+
+
+def _confirmed(found: Attempt, effect: int, finding: Finding, seed: int) -> Finding:
+    """The finding with what other poses say of it."""
+    regression = found.regression
+    same = [e for e, other in enumerate(regression.candidates) if other.id in finding.alternatives]
+    seen = confirm(regression, found.scored, effect, same, seed=seed)
+    return replace(finding, evidence=replace(finding.evidence, confirmation=seen))
 
 
 def unit(regression: Regression, model: Scored) -> float:
@@ -236,8 +260,8 @@ def _length_alone(found: Attempt, effect: Effect) -> float:
     """Fall of the misfit that one effect alone brings, as a length √λ in units of the noise."""
     regression, sums = found.regression, found.regression.sums()
     place = next(k for k, e in enumerate(regression.candidates) if e.id == effect.id)
-    whole = score_set(regression, sums, found.chosen)
-    alone = score_set(regression, sums, (place,)).solved.rss
+    whole = found.scored
+    alone = score_set(regression, sums, (place,), start=whole.by_variant).solved.rss
     fall = (score_set(regression, sums, ()).solved.rss - alone) / unit(regression, whole)
     return float(np.sqrt(max(fall, 0.0)))
 
@@ -248,18 +272,20 @@ def _of_one_gear(finding: Finding, other: Finding) -> float:
     return MISSPECIFICATION if gears and finding.effect.where == other.effect.where else 0.0
 
 
-def _finding(found: Attempt, effect: int, seed: int, least: float) -> Finding:
-    """An effect with its evidence; where that is weak, other poses need not be asked."""
+def _finding(found: Attempt, effect: int) -> Finding:
+    """An effect with its evidence; other poses were not yet asked."""
     regression = found.regression
     with_it = found.scored
     rest = tuple(e for e in found.chosen if e != effect)
-    without = score_set(regression, regression.sums(), rest)
+    without = score_set(regression, regression.sums(), rest, start=with_it.by_variant)
     chosen = regression.candidates[effect]
-    rivals = _rivals(regression, rest, effect)
+    rivals = _rivals(regression, with_it, without, effect)
     exact = _aliases(found, effect, with_it, rivals)
     # A rival is compared with the effect in full: that some of its parameters may be equal is no
     # evidence against the rival, nor is one parameter more.
-    full = score_set(regression, regression.sums(), found.chosen, untied=effect).score
+    full = score_set(
+        regression, regression.sums(), found.chosen, untied=effect, start=with_it.by_variant
+    ).score
     margin = max(MARGIN, np.log(regression.rows) + 0.5)
     same = [
         e
@@ -279,9 +305,7 @@ def _finding(found: Attempt, effect: int, seed: int, least: float) -> Finding:
             misfit_gain=(without.solved.rss - with_it.solved.rss) / unit(regression, with_it),
             runner_up=None if runner_up is None else regression.candidates[runner_up[0]].id,
             runner_up_gap=np.inf if runner_up is None else runner_up[1] - with_it.score,
-            confirmation=confirm(regression, found.chosen, effect, same, seed=seed)
-            if gain >= least
-            else UNTRIED,
+            confirmation=UNTRIED,
             odds=posterior(
                 {chosen.id: with_it.score}
                 | {regression.candidates[e].id: model.score for e, model in rivals},
@@ -319,20 +343,30 @@ def _aliases(
     return always + here
 
 
-def by_weight(regression: Regression, model: tuple[int, ...]) -> list[int]:
+def by_weight(regression: Regression, model: Scored) -> list[int]:
     """Order in which a greedy observer would add the effects of a model."""
-    sums = regression.sums()
+    sums, start = regression.sums(), model.by_variant
     order: list[int] = []
-    while len(order) < len(model):
-        left = [e for e in model if e not in order]
-        order.append(min(left, key=lambda e: score_set(regression, sums, (*order, e)).solved.rss))
+
+    def left_by(effect: int) -> float:
+        return score_set(regression, sums, (*order, effect), start=start, only=()).solved.rss
+
+    while len(order) < len(model.effects):
+        order.append(min((e for e in model.effects if e not in order), key=left_by))
     return order
 
 
-def _rivals(regression: Regression, rest: tuple[int, ...], effect: int) -> list[tuple[int, Scored]]:
+def _rivals(
+    regression: Regression, model: Scored, without: Scored, effect: int
+) -> list[tuple[int, Scored]]:
     """The other candidates that promise most in the place of one effect, with their models."""
-    sums = regression.sums()
-    promise = gains(regression, sums, score_set(regression, sums, rest).solved)
+    sums, rest, start = regression.sums(), without.effects, model.by_variant
+    promise = gains(regression, sums, without.solved)
     order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:CONTENDERS]
-    found = [(e, score_set(regression, sums, (*rest, e))) for e in order]
-    return [(e, model) for e, model in found if model.plausible]
+    found = [(e, score_set(regression, sums, (*rest, e), start=start, only=(e,))) for e in order]
+    near = model.score + NEAR
+    settled = [
+        (e, score_set(regression, sums, m.effects, start=m.by_variant) if m.score < near else m)
+        for e, m in found
+    ]
+    return [(e, m) for e, m in settled if m.plausible]

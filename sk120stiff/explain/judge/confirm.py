@@ -6,17 +6,21 @@ from collections import Counter
 from collections.abc import Collection
 
 import numpy as np
+from scipy import stats
 
 from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression, Sums
 from sk120stiff.explain.findings import Confirmation
-from sk120stiff.explain.select.beam import gains
-from sk120stiff.explain.select.score import score_set
+from sk120stiff.explain.select.beam import largest, likeliest, promises
+from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.identify import drawn_parts
 
 FOLDS = 5
-RESAMPLES = 100
-
+RESAMPLES = 100  # at most
+RIVALS = 8  # for a place in the model, on every drawing
+ENOUGH = 20  # after which the drawings may be decided
+MOSTLY, SELDOM = 0.5, 0.33  # share of the drawings that a name wins, or that is too few
+SURE = 1e-3  # probability that more drawings would decide otherwise
 
 #: Of an effect that other poses were not asked about; it does not hold.
 UNTRIED = Confirmation(0, 1, 0.0, np.inf, 0.0, 0.0)
@@ -24,7 +28,7 @@ UNTRIED = Confirmation(0, 1, 0.0, np.inf, 0.0, 0.0)
 
 def confirm(
     regression: Regression,
-    model: tuple[int, ...],
+    model: Scored,
     effect: int,
     alternatives: Collection[int],
     *,
@@ -37,7 +41,7 @@ def confirm(
     regression
         Linearised readings.
     model
-        Candidates in the model.
+        The model, whose laws all keep but that of the effect.
     effect
         The one in question, part of `model`.
     alternatives
@@ -51,35 +55,45 @@ def confirm(
     folds = len(fold_gain)
     error = float(pose_gain.std(ddof=1) * np.sqrt(len(pose_gain))) if len(pose_gain) > 1 else np.inf
     same = {effect, *alternatives}
-    rest = tuple(e for e in model if e != effect)
-    wins = Counter(
-        _winner(regression, rest, same, _resampled(regression, rng)) for _ in range(RESAMPLES)
-    )
-    own = sum(count for winner, count in wins.items() if winner in same)
-    rivals = [count for winner, count in wins.items() if winner not in same and winner is not None]
+    wins: Counter[int | None] = Counter()
+    for count in range(1, RESAMPLES + 1):
+        wins[_winner(regression, model, effect, same, _resampled(regression, rng))] += 1
+        own = sum(times for winner, times in wins.items() if winner in same)
+        if count % ENOUGH == 0 and _decided(own, count):
+            break
+    rivals = [times for winner, times in wins.items() if winner not in same and winner is not None]
     return Confirmation(
         folds_improved=int((fold_gain > 0.0).sum()),
         folds=folds,
         gain=float(pose_gain.sum() / axes),
         gain_error=error / axes,
-        frequency=own / RESAMPLES,
-        rival_frequency=max(rivals, default=0) / RESAMPLES,
+        frequency=own / count,
+        rival_frequency=max(rivals, default=0) / count,
         foretells=not regression.candidates[effect].exchangeable,
     )
 
 
+def _decided(own: int, count: int) -> bool:
+    """Can more drawings hardly change whether the name wins in half of them (Clopper & Pearson)?"""
+    low = float(stats.beta.ppf(SURE, own, count - own + 1)) if own else 0.0
+    high = float(stats.beta.isf(SURE, own + 1, count - own)) if own < count else 1.0
+    return low > MOSTLY or high < SELDOM
+
+
 def _held_out_gain(
-    regression: Regression, model: tuple[int, ...], effect: int, rng: np.random.Generator
+    regression: Regression, model: Scored, effect: int, rng: np.random.Generator
 ) -> tuple[Array, Array, float]:
     """Fall of the held-out misfit by fold and by pose, and the number of reading axes."""
     fold = drawn_parts(regression.poses, FOLDS, rng)
-    smaller = tuple(e for e in model if e != effect)
+    smaller = tuple(e for e in model.effects if e != effect)
     pose_gain = np.zeros(regression.poses)
     for k in range(int(fold.max(initial=0)) + 1):
         train = regression.sums((fold != k).astype(float))
         misfit = []
-        for effects in (smaller, model):
-            solved = score_set(regression, train, effects).solved
+        for effects in (smaller, model.effects):
+            solved = score_set(
+                regression, train, effects, start=model.by_variant, only=(effect,)
+            ).solved
             v = np.zeros(regression.X.shape[1])
             v[solved.columns] = solved.values
             rest = regression.y - regression.X @ v
@@ -95,12 +109,18 @@ def _resampled(regression: Regression, rng: np.random.Generator) -> Sums:
 
 
 def _winner(
-    regression: Regression, rest: tuple[int, ...], same: Collection[int], sums: Sums
+    regression: Regression, model: Scored, effect: int, same: Collection[int], sums: Sums
 ) -> int | None:
-    """The best single effect to add to `rest` on these poses; None if none is plausible."""
-    promise = gains(regression, sums, score_set(regression, sums, rest).solved)
-    order = [int(e) for e in np.argsort(-promise) if int(e) not in rest][:8]
+    """The best in the place of one effect on these poses; None if none is plausible."""
+    rest = tuple(e for e in model.effects if e != effect)
+    start = model.by_variant
+    beside = score_set(regression, sums, rest, start=start, only=())
+    promised = promises(regression, sums, beside.solved)
+    order = [int(e) for e in np.argsort(-largest(promised)) if int(e) not in rest][:RIVALS]
     contenders = {*same, *(e for e in order if not regression.candidates[e].exchangeable)}
-    scored = {e: score_set(regression, sums, (*rest, e)) for e in contenders}
+    scored = {}
+    for e in contenders:
+        likely = {e: likeliest(regression, sums, e, promised[e])}
+        scored[e] = score_set(regression, sums, (*rest, e), start=start | likely, only=())
     fair = {e: model.score for e, model in scored.items() if model.plausible}
     return min(fair, key=lambda e: fair[e], default=None)

@@ -41,7 +41,8 @@ def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]
     base = score_set(regression, sums, model)
     promise = gains(regression, sums, base.solved)
     order = [int(e) for e in np.argsort(-promise) if int(e) not in model][:LOOKED_AT]
-    scored = {e: score_set(regression, sums, (*model, e)) for e in order}
+    start = base.by_variant
+    scored = {e: score_set(regression, sums, (*model, e), start=start, only=(e,)) for e in order}
     fair = {regression.candidates[e].id: m.score for e, m in scored.items() if m.plausible}
     found = posterior(fair, none=base.score)
     return {name: share for name, share in found.items() if share > LISTED}

@@ -15,12 +15,15 @@ import numpy as np
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.findings import Finding
+from sk120stiff.explain.judge.attribution import unit
+from sk120stiff.explain.select.score import score_set
 from sk120stiff.explain.select.stepwise import Attempt, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.fit import with_values
 
 REFUTED = 10.0  # twice the log-likelihood by which another law may be worse at most
 LOOKED_AT = 8  # alternatives of one name
+LAWS = 3  # other laws of one name
 
 
 def with_selection_uncertainty(found: Attempt, findings: Sequence[Finding]) -> Fit:
@@ -58,5 +61,20 @@ def _others(found: Attempt, findings: Sequence[Finding]) -> Iterator[tuple[list[
         rest = [other.effect for other in findings if other is not finding]
         for name in finding.alternatives[:LOOKED_AT]:
             yield [*rest, regression.candidates[where[name]]], False
-        for law in set(regression.laws[where[finding.effect.id]]) - {finding.effect}:
+        for law in _other_laws(found, where[finding.effect.id]):
             yield [*rest, law], True
+
+
+def _other_laws(found: Attempt, effect: int) -> list[Effect]:
+    """Laws of one effect that the readings do not refute, the likeliest first."""
+    regression, sums, now = found.regression, found.regression.sums(), found.scored
+    laws = regression.laws[effect]
+    fits: dict[Effect, float] = {}
+    for k, law in enumerate(laws):
+        other = score_set(
+            regression, sums, now.effects, start=now.by_variant | {effect: k}, only=()
+        )
+        fits[law] = min(other.solved.rss, fits.get(law, np.inf))
+    most = now.solved.rss + REFUTED * unit(regression, now)
+    near = [law for law in fits if law != laws[0] and fits[law] < most]
+    return sorted(near, key=lambda law: fits[law])[:LAWS]

@@ -79,7 +79,9 @@ def nested(found: Attempt, counts: Sequence[int]) -> Learn:
             base = fit(start, readings, noise=with_model_form(base))
         if not any(counts):
             return [base for _ in counts]
-        regression = regression_at(base, found.candidates, ids, alpha=alpha)
+        regression = regression_at(
+            base, found.candidates, ids, alpha=alpha, prior=found.regression.prior
+        )
         ranked = beam_search(regression, width=NARROW, max_effects=max(counts))
         return [
             _first_fit(base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count])

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression, Solved, Sums
-from sk120stiff.explain.select.score import Scored, score_set
+from sk120stiff.explain.select.score import Scored, price_of_choice, price_of_sizes, score_set
 
 BEAM = 12
+SETTLED = 4  # of them whose effects all try their variants
+HOPELESS = 40.0  # score by which larger models lose that have no future
+WORTH = 4.0  # fall of the misfit that a gear's curve promises, to join in with all others
 
 
-def gains(regression: Regression, sums: Sums, model: Solved) -> Array:
-    """(candidates,) upper bound on the misfit that each candidate could take away from a model.
+def promises(regression: Regression, sums: Sums, model: Solved) -> list[Array]:
+    """For each candidate, what each of its variants could take away from the misfit of a model.
 
-    One projection serves all candidates: with S the columns of one candidate and M projecting out
-    the model, the gain is ‖orth(M S)ᵀ r‖².
+    One projection serves all: with S the columns of one variant and M projecting out the model, it
+    is ‖orth(M S)ᵀ r‖², no bound of a parameter kept but that of one alone.
     """
     inside = model.columns
     gram_in = sums.gram[np.ix_(inside, inside)] + np.diag(regression.plausible[inside] ** -2.0)
@@ -26,15 +29,31 @@ def gains(regression: Regression, sums: Sums, model: Solved) -> Array:
     solved = np.linalg.solve(gram_in / np.outer(scale, scale), cross / scale[:, None])
     projected = sums.gram - (cross / scale[:, None]).T @ solved
     residual = sums.moment - solved.T @ (sums.moment[inside] / scale)
-    out = np.zeros(len(regression.candidates))
-    for e, columns in enumerate(regression.reach):
-        block = projected[np.ix_(columns, columns)]
-        size = np.sqrt(np.maximum(np.diag(sums.gram)[columns], 1e-300))
-        values, vectors = np.linalg.eigh(block / np.outer(size, size))
+    out = [np.zeros(len(parts)) for parts in regression.variants]
+    size = np.sqrt(np.maximum(np.diag(sums.gram), 1e-300))
+    for pairs, columns in regression.variants_by_size:
+        blocks = projected[columns[:, :, None], columns[:, None, :]]
+        scales = size[columns]
+        right = residual[columns] / scales
+        values, vectors = np.linalg.eigh(blocks / (scales[:, :, None] * scales[:, None, :]))
+        along = np.einsum("mki,mk->mi", vectors, right)
         seen = values > 1e-9
-        along = vectors[:, seen].T @ (residual[columns] / size)
-        out[e] = float((along**2 / values[seen]).sum())
+        found = np.where(seen, along**2 / np.where(seen, values, 1.0), 0.0).sum(axis=1)
+        if columns.shape[1] == 1:
+            found[(right[:, 0] < 0.0) & (regression.lower[columns[:, 0]] == 0.0)] = 0.0
+        for (e, k), gain in zip(pairs, found, strict=True):
+            out[e][k] = gain
     return out
+
+
+def gains(regression: Regression, sums: Sums, model: Solved) -> Array:
+    """(candidates,) upper bound on the misfit that each candidate could take away from a model."""
+    return largest(promises(regression, sums, model))
+
+
+def largest(promised: list[Array]) -> Array:
+    """(candidates,) the most that any variant promises."""
+    return np.array([float(each.max(initial=0.0)) for each in promised])
 
 
 def beam_search(
@@ -63,32 +82,76 @@ def beam_search(
     total = sums or regression.sums()
     seen: dict[tuple[int, ...], Scored] = {}
 
-    def scored(effects: Iterable[int]) -> Scored:
-        key = tuple(sorted(effects))
+    def scored(variants: Mapping[int, int]) -> Scored:
+        """A model by these variants, until it proves good enough to look at all."""
+        key = tuple(sorted(variants))
         if key not in seen:
-            seen[key] = score_set(regression, total, key)
+            seen[key] = score_set(regression, total, key, start=variants, only=())
         return seen[key]
 
-    front = [scored(fixed)]
+    def settled(model: Scored) -> Scored:
+        seen[model.effects] = score_set(regression, total, model.effects, start=model.by_variant)
+        return seen[model.effects]
+
+    front = [score_set(regression, total, fixed)]
+    seen[front[0].effects] = front[0]
     for _ in range(max_effects - len(front[0].effects)):
-        proposals: set[tuple[int, ...]] = set()
+        grown: dict[tuple[int, ...], Scored] = {}
         for model in front:
-            promise = gains(regression, total, model.solved)
+            promised = promises(regression, total, model.solved)
+            promise = largest(promised)
             order = [int(e) for e in np.argsort(-promise) if int(e) not in model.effects]
-            proposals |= {tuple(sorted((*model.effects, e))) for e in order[: 2 * width]}
-        grown = [scored(effects) for effects in proposals]
-        grown = sorted((m for m in grown if m.plausible), key=lambda m: m.score)[:width]
-        if not grown:
+            steps: list[tuple[int, ...]] = [(e,) for e in order[: 2 * width]]
+            steps += _all_gears(regression, model, promise, max_effects)
+            for step in steps:
+                likely = {e: likeliest(regression, total, e, promised[e]) for e in step}
+                child = scored(model.by_variant | likely)
+                grown[child.effects] = child
+        ranked = sorted((m for m in grown.values() if m.plausible), key=lambda m: m.score)
+        ranked[:SETTLED] = [settled(m) for m in ranked[:SETTLED]]
+        front = sorted((m for m in ranked[:width] if m.plausible), key=lambda m: m.score)
+        if not front:
             break
         best_before = min(
-            (m.score for m in seen.values() if m.plausible and m not in grown), default=np.inf
+            (m.score for m in seen.values() if m.plausible and m.effects not in grown),
+            default=np.inf,
         )
-        front = grown
         # Larger models that lose to a smaller one by far have no future.
-        if grown[0].score > best_before + 40.0:
+        if front[0].score > best_before + HOPELESS:
             break
     for model in sorted(seen.values(), key=lambda m: m.score)[:width]:
-        for e in model.effects:  # backward: what a later effect made superfluous
-            if e not in set(fixed):
-                scored(set(model.effects) - {e})
-    return sorted((m for m in seen.values() if m.plausible), key=lambda m: m.score)
+        smaller = model
+        while len(smaller.effects) > len(set(fixed)):  # backward: what became superfluous
+            less = [
+                scored({f: k for f, k in smaller.by_variant.items() if f != e})
+                for e in smaller.effects
+                if e not in set(fixed)
+            ]
+            before, smaller = smaller, min(less, key=lambda m: (not m.plausible, m.score))
+            if smaller.score > before.score:
+                break
+    best = sorted((m for m in seen.values() if m.plausible), key=lambda m: m.score)
+    best[:SETTLED] = sorted((settled(m) for m in best[:SETTLED]), key=lambda m: m.score)
+    return best
+
+
+def likeliest(regression: Regression, sums: Sums, effect: int, promised: Array) -> int:
+    """The variant that promises the best score."""
+    rows = max(sums.count, 2.0)
+    worth = [
+        gain - price_of_sizes(gain, len(part), rows) - price_of_choice(regression, effect, k)
+        for k, (gain, part) in enumerate(zip(promised, regression.variants[effect], strict=True))
+    ]
+    return int(np.argmax(worth))
+
+
+def _all_gears(
+    regression: Regression, model: Scored, promise: Array, max_effects: int
+) -> list[tuple[int, ...]]:
+    """One law at the gears of all joints together: alone, each may hide what the others do."""
+    gears: dict[str, dict[str, int]] = {}
+    for e, effect in enumerate(regression.candidates):
+        if effect.of_gear and e not in model.effects and promise[e] > WORTH:
+            gears.setdefault(effect.name, {})[effect.where] = e
+    sets = [tuple(places.values()) for places in gears.values()]
+    return [each for each in sets if 1 < len(each) <= max_effects - len(model.effects)]

@@ -22,9 +22,11 @@ def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> 
     axes would still take more than `LIMIT` standard errors (`NEXT`, once one was found). The worst
     is taken out first, and the rest judged again.
     """
-    X, y = regression.X, regression.y
-    prior = 3.0 / np.maximum(regression.plausible, 1e-300)
-    prior[regression.base] = 0.0
+    # one law of each effect: all of them together would follow any single reading
+    columns = np.concatenate([regression.base, *regression.columns])
+    X, y = regression.X[:, columns], regression.y
+    prior = 3.0 / np.maximum(regression.plausible[columns], 1e-300)
+    prior[: len(regression.base)] = 0.0
     own = np.diag(X.T @ X)
     prior = np.where(own > 0.0, prior, 1.0)
     count = len(y) // 3

@@ -13,9 +13,8 @@ and the level of a chance finding is the same for an effect of one parameter and
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from sk120stiff.explain.candidates.regression import Regression, Solved, Sums, s
 
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
 PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit
+SWEEPS = 3  # over the candidates of a model, to settle their variants
 DRAWN_SIZES = (0.7, 1.5, 3.0, 6.0)  # standard deviations tried, in typical sizes
 
 
@@ -51,46 +51,104 @@ class Scored:
     plausible: bool
     variants: tuple[int, ...]
 
+    @property
+    def by_variant(self) -> dict[int, int]:
+        """The variant of each effect."""
+        return dict(zip(self.effects, self.variants, strict=True))
+
 
 def score_set(
-    regression: Regression, sums: Sums, effects: Iterable[int], *, untied: int | None = None
+    regression: Regression,
+    sums: Sums,
+    effects: Iterable[int],
+    *,
+    untied: int | None = None,
+    start: Mapping[int, int] | None = None,
+    only: Collection[int] | None = None,
 ) -> Scored:
     """Score the base model with some candidates added.
 
-    Of every candidate the variant that scores best counts; `untied` names one that has to enter
-    with all its parameters.
+    Of every candidate the variant that scores best counts, found one candidate after the other
+    until none changes.
+
+    Parameters
+    ----------
+    regression, sums
+        Linearised readings, and the poses of them that count.
+    effects
+        Candidates in the model.
+    untied
+        One that has to enter with all its parameters.
+    start
+        Variant of each candidate to begin with; the first one of those that are not in it.
+    only
+        Candidates whose variants are tried; the others keep theirs. None: of all.
     """
     chosen = tuple(sorted(effects))
-    best: Scored | None = None
-    sizes: tuple[float, ...] = DRAWN_SIZES
-    drawn = [regression.columns[e] for e in chosen if regression.candidates[e].exchangeable]
-    choices = (range(1 if e == untied else len(regression.variants[e])) for e in chosen)
-    for variants in product(*choices):
-        parts = [
-            regression.variants[e][k]
-            for e, k in zip(chosen, variants, strict=True)
-            if not regression.candidates[e].exchangeable
-        ]
-        if drawn:
-            solved, score, size = _with_draws(regression, sums, parts, drawn, sizes)
-            sizes = (size,)  # hardly goes with the law of another effect
-        else:
-            solved, score = _with_parts(regression, sums, parts)
-        added = ~regression.in_base[solved.columns]
-        limits = regression.plausible[solved.columns[added]]
-        plausible = bool((np.abs(solved.values[added]) <= limits).all())
-        score += sum(_price_of_choice(regression, e, tied=e != untied) for e in chosen)
-        if best is None or (plausible, -score) > (best.plausible, -best.score):
-            best = Scored(chosen, score, solved, plausible, variants)
-    if best is None:
-        raise ValueError("a model without variants")
+    known = start or {}
+    now = {e: known.get(e, 0) for e in chosen}
+    if untied is not None and now[untied] == regression.tied[untied]:
+        now[untied] = 0
+    best = _at(regression, sums, now, untied)
+    moving = [e for e in chosen if len(regression.variants[e]) > 1]
+    moving = [e for e in moving if only is None or e in only]
+    for _ in range(SWEEPS):
+        before = best
+        for e in moving:
+            tried = [
+                _at(regression, sums, now | {e: k}, untied)
+                for k in range(len(regression.variants[e]))
+                if k != now[e] and not (e == untied and k == regression.tied[e])
+            ]
+            better = min(tried, key=lambda m: (not m.plausible, m.score), default=best)
+            if (better.plausible, -better.score) > (best.plausible, -best.score):
+                best = better
+                now = best.by_variant
+        if best is before or len(moving) == 1:
+            break
     return best
 
 
-def _price_of_choice(regression: Regression, effect: int, *, tied: bool) -> float:
-    """What an effect pays for the variants that are open to it, and for being less usual."""
-    count = len(regression.variants[effect]) if tied else 1
-    return 2.0 * float(np.log(count)) + regression.candidates[effect].less_usual
+def _at(
+    regression: Regression, sums: Sums, variants: Mapping[int, int], untied: int | None
+) -> Scored:
+    """Score the base model with some candidates, each by one of its variants."""
+    chosen = tuple(variants)
+    key = np.array([*variants.items(), (-1 if untied is None else untied, -1)]).tobytes()
+    if key in sums.scores:
+        found: Scored = sums.scores[key]
+        return found
+    parts = [
+        regression.variants[e][k]
+        for e, k in variants.items()
+        if not regression.candidates[e].exchangeable
+    ]
+    drawn = [regression.columns[e] for e in chosen if regression.candidates[e].exchangeable]
+    if drawn:
+        solved, score = _with_draws(regression, sums, parts, drawn)
+    else:
+        solved, score = _with_parts(regression, sums, parts)
+    added = ~regression.in_base[solved.columns]
+    limits = regression.plausible[solved.columns[added]]
+    plausible = bool((np.abs(solved.values[added]) <= limits).all())
+    score += sum(price_of_choice(regression, e, k, e != untied) for e, k in variants.items())
+    made = Scored(chosen, score, solved, plausible, tuple(variants.values()))
+    sums.scores[key] = made
+    return made
+
+
+def price_of_choice(regression: Regression, effect: int, variant: int, tied: bool = True) -> float:
+    """What an effect pays for the variant by which it enters, and for being less usual.
+
+    The law that the catalogue gives it is the usual one, with its parameters equal or not. Any
+    other law is as likely as all others together.
+    """
+    usual = {regression.usual[effect]}
+    if regression.usual[effect] == 0 and regression.tied[effect] > 0 and tied:
+        usual.add(regression.tied[effect])
+    others = len(regression.variants[effect]) - len(usual)
+    price = 2.0 * float(np.log(len(usual) if variant in usual else 2.0 * others))
+    return price + regression.unusual[effect]
 
 
 def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> tuple[Solved, float]:
@@ -109,13 +167,9 @@ def _misfit(regression: Regression, n: float, rss: float) -> float:
 
 
 def _with_draws(
-    regression: Regression,
-    sums: Sums,
-    parts: Sequence[Index],
-    drawn: Sequence[Index],
-    sizes: Sequence[float],
-) -> tuple[Solved, float, float]:
-    """Best solution and score over the common size of exchangeable parameters, and that size.
+    regression: Regression, sums: Sums, parts: Sequence[Index], drawn: Sequence[Index]
+) -> tuple[Solved, float]:
+    """Best solution and score over the common size of exchangeable parameters.
 
     Such parameters (`drawn`, beside the `parts` of other effects) pay by their marginal likelihood;
     that they exist at all is held against chance like one parameter, their size τ.
@@ -128,10 +182,10 @@ def _with_draws(
         rest, score = _with_parts(regression, left.sums, parts)
         return score + left.price + flat, rest
 
-    tried = {size: at(size) for size in sizes}
+    tried = {size: at(size) for size in DRAWN_SIZES}
     size = min(tried, key=lambda each: tried[each][0])
     score, rest = tried[size]
-    return sums.marginal(members, size).joined(sums, rest), score, size
+    return sums.marginal(members, size).joined(sums, rest), score
 
 
 def price_of_looking(regression: Regression, rows: float) -> float:
@@ -160,8 +214,8 @@ def _sizes(regression: Regression, sums: Sums, solved: Solved, parts: Sequence[I
         inside = (solved.columns[:, None] == part).any(axis=1)
         own, values = solved.columns[inside], solved.values[inside]
         if len(own):
-            signature = sums.gram[np.ix_(own, own)] @ values
-            covered = sums.gram[np.ix_(base, own)] @ values
+            signature = sums.gram[own[:, None], own] @ values
+            covered = sums.gram[base[:, None], own] @ values
             gain = float(values @ signature - covered @ sums.over(base, covered)) / variance
             price += price_of_sizes(gain, len(own), n)
     return price
@@ -173,7 +227,9 @@ def entry_fall(regression: Regression, effect: int) -> float:
     It is the fall that equals the price of the effect, its sizes included.
     """
     count, rows = len(regression.columns[effect]), float(regression.rows)
-    rest = price_of_looking(regression, rows) + _price_of_choice(regression, effect, tied=True)
+    rest = price_of_looking(regression, rows) + price_of_choice(
+        regression, effect, regression.usual[effect], True
+    )
     fall = rest
     for _ in range(PRICED):  # the price of sizes grows with the logarithm of the fall
         fall = rest + price_of_sizes(fall, count, rows)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -54,7 +55,7 @@ class Attempt:
         """The chosen effects."""
         return tuple(self.regression.candidates[e] for e in self.chosen)
 
-    @property
+    @cached_property
     def scored(self) -> Scored:
         """The chosen model in the regression."""
         return score_set(self.regression, self.regression.sums(), self.chosen)
@@ -68,6 +69,7 @@ def attempt(
     *,
     max_effects: int,
     alpha: float,
+    prior: Mapping[str, float] | None = None,
 ) -> Attempt:
     """Settle on a set of effects under one noise model.
 
@@ -85,17 +87,19 @@ def attempt(
         Largest number of them to add.
     alpha
         Probability of naming something where nothing is missing.
+    prior
+        Probabilities of effects that the user gave.
     """
     base = fit(model, measurements, noise=noise)
     ids = tuple(effect.id for effect in model.effects)
-    regression = regression_at(base, candidates, ids, alpha=alpha)
+    regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
     whole = base.problem.whitener.logdet
     aside = outlying_rows(regression, base.problem.whitener)
     if len(aside):
         keep = np.ones(measurements.n_readings, dtype=bool)
         keep[aside] = False
         base = fit(model, measurements.select(keep), noise=noise)
-        regression = regression_at(base, candidates, ids, alpha=alpha)
+        regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     axes = np.log(3.0 * measurements.n_readings)
@@ -116,7 +120,9 @@ def with_effects(found: Attempt, effects: Sequence[Effect]) -> Attempt:
     """The same attempt with other effects chosen, refitted and linearised anew."""
     ids = tuple(effect.id for effect in found.base.model.effects)
     final = refit(found.base, effects)
-    regression = regression_at(final, found.candidates, ids, alpha=found.regression.alpha)
+    regression = regression_at(
+        final, found.candidates, ids, alpha=found.regression.alpha, prior=found.regression.prior
+    )
     chosen = positions(regression, effects)
     return Attempt(
         base=found.base,
@@ -160,7 +166,9 @@ def _settle(
         if set(laws_of(regression, ranked[0])) == set(effects):
             break
         effects, final = _first_that_fits(base, regression, ranked)
-        regression = regression_at(final, candidates, ids, alpha=regression.alpha)
+        regression = regression_at(
+            final, candidates, ids, alpha=regression.alpha, prior=regression.prior
+        )
     return final, regression, positions(regression, effects)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from sk120stiff.explain import Explanation
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import (
     Block,
@@ -16,6 +17,7 @@ from sk120stiff.show.report import (
     Section,
     attempted,
 )
+from sk120stiff.show.stories.budget_section import budget_section
 from sk120stiff.show.stories.evidence_section import evidence_section
 from sk120stiff.show.stories.gap_section import gap_section
 from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
@@ -58,6 +60,7 @@ def explain_report(
         "Where it lives": lambda: where_section(answer),
         "The evidence": lambda: evidence_section(answer),
         "Parameters": lambda: parameters_section(answer),
+        "What moves the point": lambda: budget_section(answer),
         "What is left, and the noise": lambda: left_section(answer, readings),
         "What these readings cannot show": lambda: blind_section(answer),
         "What to measure next": lambda: next_section(answer, next_poses),
@@ -81,6 +84,7 @@ def _answer(answer: Explanation) -> Section:
         blocks.append(Items([_line(answer, k) for k in range(len(answer.findings))], ordered=True))
     elif answer.where:
         blocks.append(answer.where[0])
+    blocks.append(Note(next_step(answer), "note", "What to do now"))
     blocks += [Note(reason, "note", "About the noise") for reason in answer.noise_reasons]
     return Section("The answer", blocks)
 

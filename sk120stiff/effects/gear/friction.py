@@ -1,0 +1,151 @@
+"""A gear that rubs: its twist depends on where its torque came from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import (
+    LOADS_GROW,
+    Alias,
+    Elongation,
+    Options,
+    Switching,
+    scale_of,
+)
+from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
+from sk120stiff.effects.gear.lost_motion import LostMotion
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.situation import IDLE, Situation
+from sk120stiff.robot import Robot
+
+REACHES = (0.02, 0.06, 0.15, 0.4)  # of the largest torque: after which a gear may start to slip
+HALF, REACH = "half_width", "half_width_presliding_"
+
+
+@dataclass(frozen=True)
+class FrictionHysteresis(GearEffect, Switching):
+    """e = ∓h sign(τ): friction holds the joint back while the load grows, and up while it falls.
+
+    Real gears pre-slide: after every reversal of the torque they first stick. Then
+    e = −Σ h_k p_k / r_k, with p_k what the torque has changed by since, held within ±r_k (the stop
+    operator of Prandtl and Ishlinskii; a sum of them is any Maxwell-slip gear, its loops follow
+    Masing's rule)::
+
+        p_k(t) = min(max(p_k(t − 1) + τ(t) − τ(t − 1), −r_k), r_k),   p_k(0) = 0
+
+    Attributes
+    ----------
+    reaches
+        Torques r_k [N·m] after which it slips; 0: at once, on the branch that the readings tell.
+    """
+
+    reaches: tuple[float, ...] = (0.0,)
+    name: ClassVar[str] = "friction_hysteresis"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = (
+        "q - q_0 = torque / K - h * sign(torque) while loading, + h * sign(torque) while unloading;"
+        " with presliding r: - h * p / r, p the change of torque since the last reversal within +-r"
+    )
+    axes: ClassVar[str] = "the axis of the joint itself"
+    twins: ClassVar[tuple[str, ...]] = (LostMotion.name,)  # while loads only grow
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The friction of one joint, pre-sliding where names of parameters tell."""
+        told = tuple(sorted(torques_told(options.shape, REACH, "torque of slipping")))
+        jump = HALF in options.shape or not told
+        return cls(where, scale_of(robot), (*([0.0] if jump else []), *told))
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The pre-sliding that the names of the parameters tell."""
+        return Options(shape=tuple(parameters))
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Half width h of the loop, or of each part that slips after another torque."""
+        return tuple(
+            ParameterSpec(
+                f"{REACH}{r:g}" if r else HALF,
+                "rad",
+                "rad",
+                plausible=5e-4,
+                typical=5e-5,
+                lower=0.0,
+                meaning="h, half the width of the loop"
+                + (f" of the part that slips after {r:g} N*m" if r else ""),
+            )
+            for r in self.reaches
+        )
+
+    def other_laws(self, situation: Situation) -> tuple[FrictionHysteresis, ...]:
+        """Pre-sliding over each of `REACHES` of the largest torque, and over all of them.
+
+        Where no load is taken off step by step, nothing tells one from another.
+        """
+        largest = float(np.abs(self.load_torque(situation)).max(initial=0.0))
+        if largest <= 0.0 or not (situation.branch < 0.0).any():
+            return ()
+        reaches = tuple(float(f"{share * largest:.3g}") for share in REACHES)
+        single = [replace(self, reaches=(r,)) for r in reaches]
+        laws = (*single, replace(self, reaches=reaches), replace(self, reaches=(0.0,)))
+        return tuple(law for law in laws if law != self)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"Friction in {self.where} makes loading and unloading differ."
+
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
+        """Of an arm without weight: lost motion with the other sign, until a load is taken off.
+
+        What the weight presses against a gear's flank never crosses the play at small loads.
+        """
+        if robot.total_mass > 0.0:
+            return ()
+        own = f"{self.id}.half_width"
+        return (Alias(own, own.replace(self.name, LostMotion.name), LOADS_GROW),)
+
+    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+        """See `Elastic.elongation`."""
+        shapes = [
+            -held_back(torques[:, 0], r, situation) / r
+            if r
+            else -situation.branch * np.sign(torques[:, 0])
+            for r in self.reaches
+        ]
+        return constant_in_torque(np.stack(shapes, axis=-1), values)
+
+
+def held_back(torque: Array, reach: float, situation: Situation) -> Array:
+    """(N,) what friction holds back at every reading beyond its zero reading [N·m].
+
+    Every pose begins without load and without memory; its loads follow one another in the order of
+    the readings, with none in between where a zero was read or a repeat begins. Of a load that is
+    first met while it falls, more was on before.
+
+    Parameters
+    ----------
+    torque
+        (N,) torque of the load [N·m].
+    reach
+        Torque after which it slips [N·m].
+    situation
+        The readings, in whose order the torques came.
+    """
+    steps, zero, own = situation.history
+    before = np.zeros(steps.shape[1])
+    held = np.zeros(steps.shape[1])
+    falls = situation.branch < 0.0
+    seen = np.zeros(steps.shape)
+    for k, rows in enumerate(steps):
+        now = np.where(rows == IDLE, 0.0, torque[rows])
+        fresh = (rows != IDLE) & falls[rows] & (np.abs(before) < np.abs(now))
+        held = np.where(fresh, -reach * np.sign(now), np.clip(held + now - before, -reach, reach))
+        seen[k], before = held, now
+    pose = situation.pose_column
+    return np.asarray(seen[own, pose] - seen[zero, pose])

@@ -1,0 +1,116 @@
+"""A gear that gets stiffer as its torque grows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Elongation, Options, scale_of
+from sk120stiff.effects.gear.law import GearEffect, torques_told
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+
+# of the largest torque: where the gear may change its stiffness
+STEPS = (0.06, 0.12, 0.2, 0.3, 0.45, 0.7)
+BELOW = "extra_below_"  # extra_below_150: softer by the value of this parameter below 150 N·m
+
+
+@dataclass(frozen=True)
+class GearHardening(GearEffect):
+    """The gear yields less than in proportion: e(τ + τ_g) − e(τ_g), τ_g the weight's torque.
+
+    As a series, whatever the torque range::
+
+        e = −κ₂ τ|τ| − κ₃ τ³
+
+    The two terms together come within a fifth of any stiffness that rises in steps. The other usual
+    law is piecewise linear: the gear is softer by c_k as long as |τ| < T_k::
+
+        e = Σ c_k min(max(τ, −T_k), T_k)
+
+    The torques T_k of the steps come from a data sheet; where a search has none, it tries steps
+    over the torques that were measured.
+    """
+
+    breaks: tuple[float, ...] = ()
+    name: ClassVar[str] = "gear_hardening"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3"
+    axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
+    bends_a_spring: ClassVar[bool] = True
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The gear of one joint, with the steps of its data sheet where they are known."""
+        return cls(where, scale_of(robot), breaks=options.breaks)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The steps that the names of the parameters tell."""
+        return Options(breaks=torques_told(parameters, BELOW, "break torque"))
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Coefficients κ₂ and κ₃, or the extra compliance c_k below each break torque."""
+        size = self.scale**-3  # torques grow with the cube of an arm's length, compliances fall
+        if self.breaks:
+            unit = "rad/(N*m)"
+            return tuple(
+                ParameterSpec(
+                    f"{BELOW}{torque:g}", unit, unit, plausible=1e-4 * size, typical=5e-7 * size,
+                    lower=0.0, meaning=f"extra compliance while the torque is below {torque:g} N*m",
+                )
+                for torque in self.breaks
+            )  # fmt: skip
+        square, cube = "rad/(N*m)**2", "rad/(N*m)**3"
+        return (
+            ParameterSpec(
+                "quadratic", square, square, plausible=1e-8 * size**2, typical=3e-10 * size**2,
+                lower=0.0, meaning="k2; positive: stiffer as the torque grows",
+            ),
+            ParameterSpec(
+                "cubic", cube, cube, plausible=1e-11 * size**3, typical=3e-13 * size**3,
+                meaning="k3; positive: stiffer as the torque grows",
+            ),
+        )  # fmt: skip
+
+    def other_laws(self, situation: Situation) -> tuple[GearHardening, ...]:
+        """The series, or steps at `STEPS` of the largest torque among the readings."""
+        if self.breaks:
+            return (replace(self, breaks=()),)
+        largest = self.largest_torque(situation)
+        if largest <= 0.0:
+            return ()
+        return (replace(self, breaks=tuple(float(f"{share * largest:.3g}") for share in STEPS)),)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The gear of {self.where} gets stiffer as its torque grows."
+
+    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+        """See `Elastic.elongation`."""
+        weight = self.weight_torque(situation)
+        total = torques + weight
+        by_parameter = self._shapes(total) - self._shapes(weight)
+        return Elongation(
+            value=by_parameter @ values,
+            by_torque=(self._slopes(total) @ values)[..., None],
+            by_parameter=by_parameter,
+        )
+
+    def _shapes(self, torque: Array) -> Array:
+        """(N, 1, P) elongation per unit of each parameter at torques (N, 1)."""
+        if self.breaks:
+            return np.stack([np.clip(torque, -T, T) for T in self.breaks], axis=-1)
+        return np.stack([-torque * np.abs(torque), -(torque**3)], axis=-1)
+
+    def _slopes(self, torque: Array) -> Array:
+        """(N, 1, P) derivative of `_shapes` by the torque."""
+        if self.breaks:
+            return np.stack([1.0 * (np.abs(torque) < T) for T in self.breaks], axis=-1)
+        return np.stack([-2.0 * np.abs(torque), -3.0 * torque**2], axis=-1)

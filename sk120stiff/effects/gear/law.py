@@ -1,0 +1,84 @@
+"""What all laws of a gear have in common: one turning joint, and its torque."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Elastic, Elongation
+from sk120stiff.effects.situation import Situation
+from sk120stiff.errors import InputError
+from sk120stiff.robot import Robot
+
+
+@dataclass(frozen=True)
+class GearEffect(Elastic):
+    """A law of the total torque of one turning actuated joint, its weight's share included."""
+
+    of_gear: ClassVar[bool] = True
+
+    @classmethod
+    def places(cls, robot: Robot) -> tuple[str, ...]:
+        """Every actuated joint that turns."""
+        slides = dict(zip(robot.actuated, robot.prismatic, strict=True))
+        return tuple(name for name in robot.actuated if not slides[name])
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """The actuated joint itself."""
+        return (self.where,)
+
+    def weight_torque(self, situation: Situation) -> Array:
+        """(N, 1) torque of the arm's weight on the joint, before the load came [N·m]."""
+        index = situation.robot.actuated.index(self.where)
+        torque = situation.gravity_torque[:, index : index + 1]
+        # About a vertical axis only rounding is left, and its sign must not count.
+        return np.where(np.abs(torque) > 1e-9 * situation.robot.total_mass, torque, 0.0)
+
+    def load_torque(self, situation: Situation) -> Array:
+        """(N, 1) torque of the load on the joint at the unloaded pose [N·m]."""
+        index = situation.robot.actuated.index(self.where)
+        load = situation.nominal.at(situation.force_point).torques(situation.wrench)
+        return np.asarray(load[:, index : index + 1])
+
+    def largest_torque(self, situation: Situation) -> float:
+        """Largest total torque on the joint among the readings [N·m]."""
+        total = self.load_torque(situation) + self.weight_torque(situation)
+        return float(np.abs(total).max(initial=0.0))
+
+
+def constant_in_torque(shapes: Array, values: Array) -> Elongation:
+    """Σ values[p] · shapes (N, p) of one coordinate, whatever the torque of the loaded pose is."""
+    return Elongation(
+        value=(shapes @ values)[:, None],
+        by_torque=np.zeros((len(shapes), 1, 1)),
+        by_parameter=shapes[:, None, :],
+    )
+
+
+def torques_told(names: Iterable[str], head: str, what: str) -> tuple[float, ...]:
+    """Torques [N·m] in which those of some names end that begin with `head`; `what` they are.
+
+    Raises
+    ------
+    InputError
+        A name begins so but ends in no positive number.
+    """
+    found = []
+    for name in names:
+        if not name.startswith(head):
+            continue
+        try:
+            torque = float(name.removeprefix(head))
+        except ValueError:
+            torque = np.nan
+        if not (np.isfinite(torque) and torque > 0.0 and f"{head}{torque:g}" == name):
+            raise InputError(
+                f"the parameter {name!r} names no {what}",
+                remedy=f"Write {head}150 for 150 N·m.",
+            )
+        found.append(torque)
+    return tuple(found)

@@ -1,0 +1,127 @@
+"""A gear with play: between its flanks it turns without resisting."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Elongation, Options, Switching, scale_of
+from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.situation import Situation
+from sk120stiff.robot import Robot
+
+FLANKS = (0.02, 0.06, 0.15)  # of the largest torque: over which teeth may take hold
+HALF, FLANK = "half_width", "_flank_"
+SIDES = {"": 0, "_positive": 1, "_negative": -1}  # end of a name → sign of the torque
+
+
+@dataclass(frozen=True)
+class LostMotion(GearEffect, Switching):
+    """e = Σ b_k [s_k(τ + τ_g) − s_k(τ_g)], τ_g the weight's torque.
+
+    Without flanks s is the sign: the play is crossed when the total torque turns round. Teeth take
+    hold gradually, over a flank T of a few percent of the rated torque: s = tanh(τ/T). Where the
+    two sides differ, each has a half width of its own.
+
+    Attributes
+    ----------
+    flanks
+        Torques T [N·m] over which the flanks close; 0: at once.
+    sided
+        The two sides of the play differ.
+    """
+
+    flanks: tuple[float, ...] = (0.0,)
+    sided: bool = False
+    name: ClassVar[str] = "lost_motion"
+    place: ClassVar[str] = "a joint"
+    equation: ClassVar[str] = (
+        "q - q_0 = torque / K + b * (s(torque) - s(torque of the weight)), s the sign, or tanh "
+        "where flanks close gradually"
+    )
+    axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
+    twins: ClassVar[tuple[str, ...]] = ("friction_hysteresis",)  # while loads only grow
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The play of one joint, with the flanks that names of parameters tell."""
+        heads = [f"{HALF}{side}" for side in SIDES]
+        told = {T for head in heads for T in torques_told(options.shape, f"{head}{FLANK}", "flank")}
+        plain = set(heads) & set(options.shape)
+        sided = any(name.startswith(tuple(heads[1:])) for name in options.shape)
+        flanks = (*([0.0] if plain or not told else []), *sorted(told))
+        return cls(where, scale_of(robot), flanks, sided)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The flanks that the names of the parameters tell."""
+        return Options(shape=tuple(parameters))
+
+    @property
+    def _terms(self) -> tuple[tuple[str, float], ...]:
+        """Side and flank of every parameter."""
+        sides = list(SIDES)[1:] if self.sided else [""]
+        return tuple((side, T) for T in self.flanks for side in sides)
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Half width b of the play, for each side and each flank that it has."""
+        words = {"": "", "_positive": " under positive torque", "_negative": " under negative one"}
+        return tuple(
+            ParameterSpec(
+                f"{HALF}{side}" + (f"{FLANK}{T:g}" if T else ""),
+                "rad",
+                "rad",
+                plausible=1e-3,
+                typical=1e-4,
+                lower=0.0,
+                meaning=f"b{words[side]}, half the play: "
+                + (
+                    f"the joint gives way by 2 b over a flank of {T:g} N*m as its torque turns "
+                    "round"
+                    if T
+                    else "the joint jumps by 2 b when its torque turns round"
+                ),
+            )
+            for side, T in self._terms
+        )
+
+    def other_laws(self, situation: Situation) -> tuple[LostMotion, ...]:
+        """Flanks of `FLANKS` of the largest torque, sides that differ, and all of these together.
+
+        Together they come near any curve that flattens, as one law with non-negative parts.
+        """
+        largest = self.largest_torque(situation)
+        if largest <= 0.0:
+            return ()
+        flanks = tuple(float(f"{share * largest:.3g}") for share in FLANKS)
+        smooth = [replace(self, flanks=(T,), sided=False) for T in flanks]
+        unequal = [replace(self, flanks=(T,), sided=True) for T in (0.0, *flanks)]
+        free = [
+            replace(self, flanks=(0.0, *flanks), sided=False),
+            replace(self, flanks=(0.0, *flanks), sided=True),
+        ]
+        return tuple(law for law in (*smooth, *unequal, *free) if law != self)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return f"The gear of {self.where} has lost motion: it jumps when its torque turns round."
+
+    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+        """See `Elastic.elongation`."""
+        weight = self.weight_torque(situation)
+        return constant_in_torque(self._shapes(torques + weight) - self._shapes(weight), values)
+
+    def _shapes(self, torque: Array) -> Array:
+        """(N, p) twist per unit of each parameter at torques (N, 1)."""
+        out = []
+        for side, T in self._terms:
+            s = np.tanh(torque[:, 0] / T) if T else np.sign(torque[:, 0])
+            way = SIDES[side]
+            out.append(way * np.maximum(way * s, 0.0) if way else s)
+        return np.stack(out, axis=-1)

@@ -1,0 +1,103 @@
+"""What to do now: one paragraph for every verdict."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from sk120stiff.explain.answer.explanation import Explanation
+
+REPEATS = "repeat a few readings (same pose and load), so that the noise is known from them"
+LARGE = 2.0  # times what noise alone makes
+
+
+def next_step(answer: Explanation) -> str:
+    """Plain sentences: what the model may be used for, and what to measure or to mend."""
+    said = {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}
+    return " ".join(said[answer.verdict](answer))
+
+
+def _none(answer: Explanation) -> list[str]:
+    left = answer.adequacy
+    if left.chance is None:
+        return [f"Before anything is concluded, state the noise or {REPEATS}, and run this again."]
+    if left.understated is not None:
+        sigma = (answer.yardstick.sigma or 0.0) * left.understated * 1e6
+        return [
+            f"Correct the stated σ to about {sigma:.3g} µm, or look for what disturbs single "
+            "readings; the model itself may be used as it is."
+        ]
+    return [
+        "Use model.yaml as it is.",
+        "What could still hide, and how large it would have to be, is listed below; poses farther "
+        "apart and larger loads show smaller effects.",
+    ]
+
+
+def _named(answer: Explanation) -> list[str]:
+    said = [_gain(answer), *_largest(answer)]
+    if answer.remainder.significant:
+        said.append(_of_the_remainder(answer))
+    return said
+
+
+def _ambiguous(answer: Explanation) -> list[str]:
+    if answer.next_poses is None:
+        return [_gain(answer)]
+    count = len(answer.next_poses[0])
+    said = [
+        f"Measure the {count} readings of next_poses.csv, append them to the file and run this "
+        "again: they tell the open names apart.",
+        "Until then the model foretells such poses alike under either name.",
+    ]
+    if answer.remainder.significant:
+        said.append(_of_the_remainder(answer))
+    return said
+
+
+def _outside(answer: Explanation) -> list[str]:
+    said = ["Trust the springs no farther than the gap that is left."]
+    if answer.guess is not None:
+        said.append(
+            "best_guess.yaml foretells other poses best; use it at most where poses and loads are "
+            "like those measured."
+        )
+    return [*said, _of_the_remainder(answer)]
+
+
+def _gain(answer: Explanation) -> str:
+    first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
+    if not (np.isfinite(first) and np.isfinite(last) and last < first):
+        return "Use model.yaml where poses and loads are like those measured."
+    return (
+        f"Use model.yaml: at poses that no fit saw it is off by {last:.3g} µm rms per axis where "
+        f"springs alone were off by {first:.3g} µm."
+    )
+
+
+def _largest(answer: Explanation) -> list[str]:
+    named = {finding.effect.id for finding in answer.findings}
+    mine = [share for share in answer.budget if share.name in named]
+    if not mine:
+        return []
+    return [
+        f"At the measured loads {mine[0].name} brings the most of what was named, "
+        f"{1e6 * mine[0].rms:.3g} µm rms per axis: look there first if the arm is to be mended."
+    ]
+
+
+def _of_the_remainder(answer: Explanation) -> str:
+    """What would tell more of what is left."""
+    readings = answer.final.problem.measurements
+    wishes = []
+    if readings.repeat is None:
+        wishes.append(REPEATS)
+    if readings.branch is None:
+        wishes.append("take loads off in steps as they were put on, with a column branch")
+    per_pose = readings.n_readings / max(len(readings.poses), 1)
+    if per_pose < LARGE:
+        wishes.append("put several loads on at every pose")
+    wishes.append("push in other directions at the poses that fit worst")
+    return f"To learn what the rest is: {'; '.join(wishes[:3])}."

@@ -1,0 +1,30 @@
+"""What each effect moves the point by, as bars with their standard errors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from sk120stiff.arrays import Array
+from sk120stiff.errors import InputError
+from sk120stiff.show import palette
+from sk120stiff.show.style import new_figure, styled
+
+
+def budget_bars(names: Sequence[str], sizes: Array, errors: Array) -> Figure:
+    """One bar for each share: sizes (k,) and their standard errors (k,) in µm."""
+    if not len(names):
+        raise InputError("no share to draw")
+    with styled():
+        figure = new_figure(1.05 + 0.32 * len(names))
+        panel = figure.subplots()
+        rows = np.arange(len(names))
+        panel.barh(rows, sizes, xerr=errors, color=palette.SKY, ecolor=palette.INK, capsize=3)
+        panel.set_yticks(rows, list(names))
+        panel.set_ylim(len(names) - 0.4, -0.6)
+        panel.set_xlabel("µm rms per axis at the measured loads, ± one standard error")
+        panel.grid(visible=False, axis="y")
+        panel.tick_params(axis="y", length=0)
+    return figure
