@@ -10,7 +10,7 @@ from scipy.stats import multivariate_normal
 from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.regression import Regression, solve_columns
 from sk120stiff.explain.select.beam import beam_search, gains
-from sk120stiff.explain.select.score import score_set
+from sk120stiff.explain.select.score import price_of_choice, score_set
 from sk120stiff.robot import load_robot
 
 POSES, AXES = 12, 15
@@ -36,10 +36,13 @@ def regression(seed: int = 0, *, known: bool = True, lower: float = -np.inf) -> 
         columns=columns,
         variants=tuple((own,) for own in columns),
         laws=tuple((each,) for each in (*named, zero)),
+        tied=(-1,) * len(columns),
+        usual=(0,) * len(columns),
         lower=np.full(X.shape[1], lower),
         plausible=np.full(X.shape[1], 1e6),
         sigma_known=known,
         alpha=0.01,
+        prior={},
     )
 
 
@@ -129,7 +132,25 @@ def test_an_implausible_value_disqualifies():
 
 def vars_of(found: Regression) -> dict[str, object]:
     names = (
-        "y", "X", "group", "base", "candidates", "columns", "variants", "laws", "lower",
-        "plausible", "sigma_known", "alpha",
+        "y", "X", "group", "base", "candidates", "columns", "variants", "laws", "tied", "usual",
+        "prior", "lower", "plausible", "sigma_known", "alpha",
     )  # fmt: skip
     return {name: getattr(found, name) for name in names}
+
+
+def test_effects_settle_their_laws_one_after_the_other():
+    """Two effects with three laws each: the right pair of nine is found, whatever comes first."""
+    plain = regression()
+    first, second = plain.columns[0], plain.columns[1]
+    laws = [np.array([c]) for c in range(2, plain.X.shape[1])][:6]
+    y = plain.X[:, laws[2]] @ [9.0] + plain.X[:, laws[4]] @ [7.0]
+    variants = [(own,) for own in plain.columns]
+    variants[0], variants[1] = (first, laws[0], laws[2]), (second, laws[3], laws[4])
+    effects = [tuple([own[0]] * len(v)) for own, v in zip(plain.laws, variants, strict=True)]
+    many = Regression(
+        **{**vars_of(plain), "y": y, "variants": tuple(variants), "laws": tuple(effects)}
+    )
+    for start in ({}, {0: 1, 1: 1}, {0: 2}):
+        found = score_set(many, many.sums(), [0, 1], start=start)
+        assert found.by_variant == {0: 2, 1: 2}
+    assert price_of_choice(many, 0, 1) > price_of_choice(many, 0, 0)

@@ -125,8 +125,8 @@ def held_back(torque: Array, reach: float, situation: Situation) -> Array:
     """(N,) what friction holds back at every reading beyond its zero reading [N·m].
 
     Every pose begins without load and without memory; its loads follow one another in the order of
-    the readings, with none in between where a zero was read or a repeat begins. Of a load that is
-    first met while it falls, more was on before.
+    the readings, with none in between where a zero was read or a repeat begins. Before a series
+    that begins with a load that falls, more was on.
 
     Parameters
     ----------
@@ -140,12 +140,13 @@ def held_back(torque: Array, reach: float, situation: Situation) -> Array:
     steps, zero, own = situation.history
     before = np.zeros(steps.shape[1])
     held = np.zeros(steps.shape[1])
+    idle = np.ones(steps.shape[1], dtype=bool)
     falls = situation.branch < 0.0
     seen = np.zeros(steps.shape)
     for k, rows in enumerate(steps):
         now = np.where(rows == IDLE, 0.0, torque[rows])
-        fresh = (rows != IDLE) & falls[rows] & (np.abs(before) < np.abs(now))
+        fresh = idle & (rows != IDLE) & falls[rows]
         held = np.where(fresh, -reach * np.sign(now), np.clip(held + now - before, -reach, reach))
-        seen[k], before = held, now
+        seen[k], before, idle = held, now, rows == IDLE
     pose = situation.pose_column
     return np.asarray(seen[own, pose] - seen[zero, pose])

@@ -1,0 +1,97 @@
+"""One curve of a gear has one name; what it does is told in micrometres, and what to do next."""
+
+import numpy as np
+import pytest
+
+from sk120stiff import InputError, base_model, load_robot
+from sk120stiff.effects import effect, situation_of
+from sk120stiff.explain import Options, explain
+from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.judge.budget import error_budget
+from sk120stiff.explain.priors import PRIORS, USUAL, price, priors_from
+from sk120stiff.identify import fit
+from tests.explain.readings import NOISE, hidden
+from tests.hidden.generator.causes_curves import MaxwellSlip, SmoothPlay
+
+GEARS = Options(
+    only=("lost_motion", "gear_hardening", "friction_hysteresis", "zero_offset", "joint_tilt")
+)
+
+
+@pytest.fixture(scope="module")
+def springs():
+    return base_model(load_robot("motoman_sk120"))
+
+
+@pytest.fixture(scope="module")
+def skewed(springs):
+    """Play of 100 µrad whose flanks close over 60 and 20 N·m, far above the noise."""
+    play = SmoothPlay("joint_1_s", {"half_width": 1e-4}, {"flank": 40.0, "skew": 0.5})
+    return explain(springs, hidden(play, sigma=4e-6), options=GEARS)
+
+
+def test_skewed_play_with_flanks_has_one_name(skewed):
+    assert [finding.effect.id for finding in skewed.findings] == ["lost_motion:joint_1_s"]
+    assert not skewed.adequacy.lacking
+
+
+def test_a_maxwell_slip_gear_is_friction_and_nothing_else(springs):
+    gear = MaxwellSlip(
+        "joint_1_s", {"half_width": 9e-5}, {"shares": (0.5, 0.3, 0.2), "reach": (2e-5, 8e-5, 2e-4)}
+    )
+    answer = explain(springs, hidden(gear, schedule="up_down", sigma=4e-6), options=GEARS)
+    assert [finding.effect.id for finding in answer.findings] == ["friction_hysteresis:joint_1_s"]
+
+
+def test_the_budget_adds_up_as_vectors(skewed):
+    fitted = skewed.final
+    _, derivative = fitted.model.predict_with_sensitivities(fitted.problem.situation)
+    whole = fitted.model.predict(fitted.problem.situation)
+    first_order = derivative @ fitted.model.values
+    assert np.abs(first_order - whole).max() < 2e-3 * np.abs(whole).max()
+    found = {share.name: share for share in skewed.budget}
+    play = derivative[:, :, 3:] @ fitted.model.values[3:]
+    assert found["lost_motion:joint_1_s"].rms == pytest.approx(np.sqrt(np.mean(play**2)))
+    assert 0.0 < found["lost_motion:joint_1_s"].std < 0.1 * found["lost_motion:joint_1_s"].rms
+    assert [share.rms for share in skewed.budget] == sorted(
+        (share.rms for share in skewed.budget), reverse=True
+    )
+
+
+def test_the_error_of_a_share_is_that_of_drawn_readings(springs):
+    """Thirty draws of the noise scatter as the budget says."""
+    clean = hidden(sigma=1e-12)
+    rng = np.random.default_rng(3)
+    sizes, told = [], []
+    for _ in range(30):
+        drawn = hidden(seed=int(rng.integers(1 << 30)), poses=4, loads=3)
+        shares = error_budget(fit(springs, drawn, noise=NOISE), situation_of(springs.robot, clean))
+        (own,) = (share for share in shares if share.name == "joint_springs:joint_2_l")
+        sizes.append(own.rms)
+        told.append(own.std)
+    assert np.std(sizes) == pytest.approx(np.median(told), rel=0.5)
+
+
+def test_what_to_do_now_says_what_the_model_is_worth(skewed):
+    said = next_step(skewed)
+    assert said.startswith("Use model.yaml: at poses that no fit saw")
+    assert "lost_motion:joint_1_s brings the most" in said
+
+
+def test_priors_are_prices(springs):
+    tilt = effect(springs.robot, "joint_tilt", "joint_2_l")
+    rocking = effect(springs.robot, "base_rocking")
+    assert price(rocking, {}) == 0.0
+    assert price(tilt, {}) == pytest.approx(1.0, abs=0.02)
+    assert price(tilt, {"joint_tilt": USUAL}) == 0.0
+    likely = {"joint_tilt": 0.9, "joint_tilt:joint_2_l": 0.5}
+    assert price(tilt, likely) == pytest.approx(-2.0 * np.log(9.0))
+    assert all(0.0 < each.probability < 1.0 and each.source for each in PRIORS.values())
+
+
+def test_priors_as_they_are_typed():
+    typed = ["base_rocking=0.5", "joint_tilt:joint_2_l=0.3"]
+    assert priors_from(typed) == {"base_rocking": 0.5, "joint_tilt:joint_2_l": 0.3}
+    for wrong in ("base_rocking", "base_rocking=1", "base_rocking=x", "rocking=0.5"):
+        with pytest.raises(InputError):
+            priors_from([wrong])
