@@ -37,7 +37,7 @@ def parameter_rows(
             "at_bound": bool(found.at_bound[k]),
             "identifiable": shown,
             "reason": reasons.get(p.name),
-            "plausible": abs(p.value) <= p.spec.plausible,
+            "plausible": abs(p.internal) <= p.spec.plausible,
         }
         if profile is not None:
             row["profile_95"] = profile[k]

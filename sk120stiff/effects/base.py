@@ -278,7 +278,16 @@ class Switching(Elastic):
 
 
 class Geometric(Effect):
-    """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p."""
+    """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p.
+
+    Attributes
+    ----------
+    of_marker
+        Where positions are read it moves the marker alone, along the tool's axes: what hangs on the
+        tool stays (class attribute).
+    """
+
+    of_marker: ClassVar[bool] = False
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Rigid joints that carry the error; none where an actuated coordinate does."""

@@ -79,6 +79,7 @@ class ToolOffset(Geometric):
     place: ClassVar[str] = "the tool frame"
     equation: ClassVar[str] = "p_true = p_stated + o"
     axes: ClassVar[str] = "axes of the tool frame"
+    of_marker: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -27,6 +27,7 @@ class MarkerShift(Geometric):
     axes: ClassVar[str] = "axes of the tool frame"
     needs: ClassVar[str] = "positions in several series"
     only_absolute: ClassVar[bool] = True
+    of_marker: ClassVar[bool] = True
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:

@@ -58,12 +58,16 @@ class Channels:
     @property
     def count(self) -> int:
         """Number of rows N."""
-        return len(getattr(self, self.present[0]))
+        return len(next(x for kind in KINDS if (x := getattr(self, kind)) is not None))
 
     @property
     def present(self) -> tuple[Kind, ...]:
         """Kinds of channels that there are."""
-        return tuple(kind for kind in KINDS if getattr(self, kind) is not None)
+        return tuple(
+            kind
+            for kind in KINDS
+            if getattr(self, kind) is not None and np.isfinite(getattr(self, kind)).any()
+        )
 
     def held(self, kind: Kind) -> Mask:
         """(N, w) channels of a kind that were read, w of them in a row."""
@@ -121,23 +125,24 @@ class Channels:
             moved, moving: (N, 3) predicted displacement by the load and (N, 3, P) its derivative,
                 axes of the displacements; looked at only where there are shifts.
         """
-        found: list[tuple[Array, Array]] = []
+        found: dict[Kind, tuple[Array, Array]] = {}
         if self.position is not None:
-            found.append((self.position - position, columns[:, :3]))
+            found["position"] = self.position - position, columns[:, :3]
         if self.rotation is not None:
-            found.append(_turned(self.rotation, rotation, columns[:, 3:]))
+            found["rotation"] = _turned(self.rotation, rotation, columns[:, 3:])
         if self.distance is not None and self.anchor is not None:
             away = position - self.anchor
             far = np.linalg.norm(away, axis=1)
             slope = np.einsum("ni,nip->np", away / far[:, None], columns[:, :3])
-            found.append(((self.distance - far)[:, None], slope[:, None]))
+            found["distance"] = (self.distance - far)[:, None], slope[:, None]
         if self.shift is not None and self.along is not None:
             gap = self.shift - np.einsum("ni,ni->n", self.along, moved)
-            found.append((gap[:, None], np.einsum("ni,nip->np", self.along, moving)[:, None]))
-        held = [self.held(kind) for kind in self.present]
+            slope = np.einsum("ni,nip->np", self.along, moving)
+            found["shift"] = gap[:, None], slope[:, None]
+        held = [(*found[kind], self.held(kind)) for kind in self.present]
         return (
-            np.concatenate([gap[known] for (gap, _), known in zip(found, held, strict=True)]),
-            np.concatenate([slope[known] for (_, slope), known in zip(found, held, strict=True)]),
+            np.concatenate([gap[known] for gap, _, known in held]),
+            np.concatenate([slope[known] for _, slope, known in held]),
         )
 
     def scale(self, kind: Kind) -> Array:

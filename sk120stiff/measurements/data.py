@@ -116,6 +116,7 @@ class Measurements(Tabular):
     zero_joints: Array | None = None
     line: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     absolute: Absolute | None = None
+    spare: tuple[str, ...] = ()
     source: str = ""
     extra: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
@@ -247,7 +248,7 @@ class Measurements(Tabular):
         """
         listed = f"The actuated joints are {', '.join(names)}."
         for name in self.joint_names:
-            if name not in names:
+            if name not in names and name not in self.spare:
                 close = get_close_matches(name, names, n=1)
                 meant = f" (did you mean {close[0]!r}?)" if close else ""
                 raise InputError(

@@ -144,10 +144,11 @@ class _Parser:
 
 def mapped_joints(
     table: Table, kinds: Mapping[str, str], mapping: Mapping[str, str | float], place: str
-) -> tuple[dict[str, str], Array]:
-    """Joint names with their kinds, and their values (N, n) [rad or m].
+) -> tuple[dict[str, str], Array, tuple[str, ...]]:
+    """Joint names with their kinds, their values (N, n) [rad or m], and columns only used.
 
-    Columns that no expression uses stay joints of their own name.
+    Other columns stay joints of their own name; those that an expression uses only count where the
+    robot has such a joint.
 
     Raises:
         InputError: An expression that is none, or one of a column that does not exist or is of
@@ -155,8 +156,8 @@ def mapped_joints(
     """
     values = {name: table.quantity(name, kind) for name, kind in kinds.items()}
     found: dict[str, str] = {}
-    columns: list[Array] = []
     used: set[str] = set()
+    columns: list[Array] = []
     for joint, text in mapping.items():
         where = f"{place}.{joint}"
         linear = parse_linear(str(text), where)
@@ -178,7 +179,7 @@ def mapped_joints(
         found[joint] = own.pop()
         columns.append(total)
     for name, kind in kinds.items():
-        if name not in used and name not in found:
+        if name not in found:
             found[name] = kind
             columns.append(values[name])
-    return found, np.column_stack(columns)
+    return found, np.column_stack(columns), tuple(sorted(used - mapping.keys()))

@@ -102,7 +102,7 @@ def assembled(
 
 def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) -> Measurements:
     settings = file.settings
-    rows, kinds = read_rows(table, roles, settings.joints, file.place("joints"))
+    rows, kinds, spare = read_rows(table, roles, settings.joints, file.place("joints"))
     blank = rows.measured is not None and bool(np.isnan(rows.measured).any())
     absolute = None
     if is_absolute(file, roles, bool(rows.loaded.any()), blank):
@@ -165,6 +165,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         zero_joints=found.zero_joints,
         use=found.use,
         absolute=absolute,
+        spare=spare,
         notes=(*_assumed_frames(settings, absolute, rows), *found.notes, *told),
         data_hash=data_hash,
     )

@@ -48,14 +48,15 @@ class Rows:
 
 def read_rows(
     table: Table, roles: Roles, mapping: Mapping[str, str | float], place: str
-) -> tuple[Rows, dict[str, str]]:
-    """Turn cells into numbers; joints as `mapping` makes them of columns, and their kinds.
+) -> tuple[Rows, dict[str, str], tuple[str, ...]]:
+    """Turn cells into numbers; joints as `mapping` makes them of columns, their kinds, and the
+    columns that only feed others.
 
     Raises:
         InputError: A cell that its column cannot hold, with line and column.
     """
     count = len(table.lines)
-    kinds, joints = mapped_joints(table, roles.joints, mapping, place)
+    kinds, joints, spare = mapped_joints(table, roles.joints, mapping, place)
     pose = _labels(table) if "pose" in roles.has else rows_of_one_pose(joints)
     position = {label: k for k, label in enumerate(dict.fromkeys(pose))}
     wrench = np.zeros((count, 6))
@@ -83,7 +84,7 @@ def read_rows(
         repeat=counts(table, "repeat", 0) if "repeat" in roles.has else None,
         use=_flags(table) if "use" in roles.has else np.ones(count, dtype=np.bool_),
     )
-    return rows, kinds
+    return rows, kinds, spare
 
 
 def quantities(

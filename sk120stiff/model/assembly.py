@@ -106,7 +106,7 @@ class Assembly:
         z_0 = np.zeros((situation.count, self.mechanism.n))
         z_0[:, : self.robot.n] = situation.a
         for effect, part, index in self._geometric:
-            if values[part].any():
+            if values[part].any() and not _marks(effect, situation):
                 z_0[:, index] += effect.shifts(situation) @ values[part]
         return z_0
 
@@ -135,7 +135,7 @@ class Assembly:
             self._moved(z_0, situation, values),
             wrench,
             law,
-            point=situation.point,
+            point=self._marker(situation, values),
             force_point=situation.force_point,
             soft=self.soft(values),
             weight=self._weight(springs),
@@ -159,6 +159,14 @@ class Assembly:
         return Solution(
             situation, stood.wrench, stood.loads, stood.onset, stood.rest, unloaded, readings
         )
+
+    def _marker(self, situation: Situation, values: Array) -> Array:
+        """(3,) or (N, 3) measured point in the tool frame [m]."""
+        point = situation.point
+        for effect, part, _ in self._geometric:
+            if _marks(effect, situation) and values[part].any():
+                point = point + effect.shifts(situation) @ values[part]
+        return point
 
     def _weight(self, springs: Array) -> Weight | None:
         weighs = self.mechanism.chain.weighs
@@ -251,6 +259,9 @@ class Assembly:
             found = effect.elongation(torques[:, index], situation, values[part])
             out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
         for shifted, part, index in self._geometric:
+            if _marks(shifted, situation):
+                out[:, :3, part] += rest.screws.rotation @ shifted.shifts(situation)
+                continue
             out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(situation)
         for moving, part, index in self._imposed:
             out[:, :, part] += adjoint[:, :, index] @ moving.shifts(situation)
@@ -339,6 +350,11 @@ class Solution(Standing):
         """(N, 3) predicted readings in the axes of the measurements [m]."""
         axes = np.swapaxes(self.situation.reading_axes, -1, -2)
         return np.asarray(np.einsum("nij,nj->ni", axes, self.readings.value))
+
+
+def _marks(effect: Geometric, situation: Situation) -> bool:
+    """Does it move the marker, and nothing of the arm?"""
+    return effect.of_marker and situation.absolute
 
 
 def _adjoint(rest: Equilibrium, soft: Index, J: Array) -> Array:

@@ -277,6 +277,8 @@ def heldout_on(final: Calibration, others: Measurements) -> tuple[float, float]:
     """Rms per axis and mean distance [m] of a calibration at readings it never saw."""
     problem = replace(final.problem, measurements=others.masked(), model=final.fit.model)
     gap = problem.channel_gap(final.fit.model.values)[0]
+    if "position" not in problem.channels.present:
+        return _rms(gap[problem.lengths]), np.nan
     held = problem.channels.held("position")
     first = np.flatnonzero(held.all(axis=1))
     full = np.full(held.shape, np.nan)

@@ -75,7 +75,7 @@ class Calibration:
 def row_lengths(problem: PoseProblem, x: Array) -> Array:
     """(K,) length of the gap at every row with a whole position [m]."""
     position = problem.channels.position
-    if position is None:
+    if position is None or "position" not in problem.channels.present:
         return np.zeros(0)
     gap = problem.channel_gap(problem.values(x))[0]
     held = problem.channels.held("position")

@@ -1,0 +1,187 @@
+"""Positions in every form in which they are taken: springs come out as from whole positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import sk120stiff as sk
+from sk120stiff.errors import InputError
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
+from tests.absolute.arm import NAMES, TURN, Arm, Array, G, errors, poses, tracked, write
+
+SIGMA = 2e-5
+FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
+NOISE = "noise: {sigma: 20, unit: um}\n"
+A = poses(80, 2)
+RNG = np.random.default_rng(3)
+
+
+def calibrated(path: Path) -> Calibration:
+    data = sk.read(path)
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    return calibrate(sk.base_model(robot), data.with_joints(robot.actuated))
+
+
+def agrees(found: Calibration, share: float = 0.05) -> None:
+    """The second joint's spring is right within its error, known to `share`, and the noise is."""
+    assert found.fit.misfit[2] > 1e-3, found.fit.noise_factor
+    spring = found.fit.model.parameter("joint_springs:j2.stiffness")
+    assert abs(spring.internal - 1 / 8e5) < 3.5 * spring.internal_std
+    assert spring.internal_std < share * spring.internal
+
+
+def noisy(x: Array) -> Array:
+    return x + SIGMA * RNG.normal(size=x.shape)
+
+
+def rows(numbers: Array) -> list[str]:
+    return [",".join(f"{v:.10g}" for v in np.atleast_1d(row)) for row in numbers]
+
+
+def test_blank_cells_are_channels_that_were_not_read(tmp_path: Path) -> None:
+    x = noisy(tracked(errors(1).stands(A)[0]))
+    x[RNG.random(x.shape) < 0.15] = np.nan
+    found = calibrated(write(tmp_path, A, x, FIT + NOISE))
+    agrees(found)
+    assert len(found.fit.residual) == np.isfinite(x).sum()
+
+
+@pytest.mark.parametrize("quaternion", [False, True])
+def test_rotations_beside_positions(tmp_path: Path, quaternion: bool) -> None:
+    x, axes = errors(1).stands(A)
+    turned = Rotation.from_rotvec(2e-5 * RNG.normal(size=x.shape)) * Rotation.from_matrix(
+        TURN.as_matrix() @ axes
+    )
+    more, cells = ",rx[rad],ry[rad],rz[rad]", rows(turned.as_rotvec())
+    if quaternion:
+        more, cells = ",qw,qx,qy,qz", rows(np.roll(turned.as_quat(), 1, axis=1))
+    settings = "noise: {sigma: 20, unit: um, rotation: 20, rotation_unit: urad}\n"
+    found = calibrated(
+        write(tmp_path, A, noisy(tracked(x)), FIT + settings, more=more, cells=cells)
+    )
+    agrees(found, 0.006)
+
+
+def test_rotations_tell_what_positions_leave_open(tmp_path: Path) -> None:
+    """A last joint whose marker lies on its axis: where it stands, only the tool's axes show."""
+    arm = errors(1)
+    arm.marker = np.array([0.05, 0.0, 0.0])
+    x, axes = arm.stands(A)
+    vectors = rows(Rotation.from_matrix(TURN.as_matrix() @ axes).as_rotvec())
+    x = noisy(tracked(x))
+    alone = calibrated(write(tmp_path, A, x, FIT + NOISE))
+    more = ",rx[rad],ry[rad],rz[rad]"
+    both = calibrated(write(tmp_path, A, x, FIT, more=more, cells=vectors))
+    frozen = [{item.name for item in found.frozen} for found in (alone, both)]
+    assert "joint_frame:j6.rz" in frozen[0] - frozen[1]
+    assert frozen[1] < frozen[0]
+
+
+def test_markers_series_and_payloads(tmp_path: Path) -> None:
+    places = {"A": [0.05, -0.08, 0.12], "B": [-0.06, 0.03, 0.1]}
+    names = RNG.choice(["A", "B"], len(A))
+    x = np.array([_with(marker=places[n]).stands(A[k : k + 1])[0][0] for k, n in enumerate(names)])
+    x = noisy(tracked(x))
+    points = "points: {A: {xyz: [50, -80, 120], unit: mm}, B: {xyz: [-60, 30, 100], unit: mm}}\n"
+    settings = "position: {frame: unknown}\n" + points + NOISE
+    agrees(calibrated(write(tmp_path, A, x, settings, more=",marker", cells=list(names))))
+    rough = settings.replace("mm}", "mm, fit: true}").replace("50, -80", "48, -79")
+    agrees(calibrated(write(tmp_path, A, x, rough, more=",marker", cells=list(names))))
+    swapped = [{"A": "B", "B": "A"}[n] for n in names]
+    with pytest.raises(InputError, match="Two markers look exchanged"):
+        calibrated(write(tmp_path, A, x, settings, more=",marker", cells=swapped))
+
+
+def test_a_marker_mounted_anew(tmp_path: Path) -> None:
+    series = np.repeat(["one", "two"], len(A) // 2)
+    moved = {"one": [0.05, -0.08, 0.12], "two": [0.0508, -0.0805, 0.1203]}
+    x = np.array([_with(marker=moved[n]).stands(A[k : k + 1])[0][0] for k, n in enumerate(series)])
+    found = calibrated(
+        write(tmp_path, A, noisy(tracked(x)), FIT + NOISE, more=",series", cells=list(series))
+    )
+    agrees(found)
+    shift = [found.fit.model.parameter(f"marker_shift:tool.two.{axis}").value for axis in "xyz"]
+    assert shift == pytest.approx([8e-4, -5e-4, 3e-4], abs=5e-5)
+
+
+@pytest.mark.parametrize("doubted", [False, True])
+def test_payloads_bend_the_arm_where_they_hang(tmp_path: Path, doubted: bool) -> None:
+    """Not where the marker is; a wrong centre is found from the sag."""
+    mass, centre = RNG.choice([0.0, 20.0, 50.0], len(A)), np.array([0.0, 0.0, 0.12])
+    x = np.array(
+        [_with(payload=(m, centre)).stands(A[k : k + 1])[0][0] for k, m in enumerate(mass)]
+    )
+    settings = FIT + NOISE + "payload: {point: {xyz: [0, 0, 120], unit: mm}, fit: %s}\n"
+    found = calibrated(
+        write(
+            tmp_path, A, noisy(tracked(x)), settings % str(doubted).lower(),
+            more=",payload[kg]", cells=rows(mass),
+        )
+    )  # fmt: skip
+    agrees(found, 0.01)
+
+
+def test_distances_to_fixed_points_alone(tmp_path: Path) -> None:
+    x = errors(1).stands(A)[0]
+    anchors = np.array([[2.0, 1, 0.5], [1.5, -2, 0], [0, 2.5, 1], [-1, -2, 1.5]])[np.arange(80) % 4]
+    far = np.linalg.norm(x - anchors, axis=1) + SIGMA * RNG.normal(size=80)
+    found = calibrated(
+        write(
+            tmp_path, A, np.full_like(x, np.nan),
+            "point: {xyz: [50, -80, 120], unit: mm}\n" + NOISE,
+            more=",l[mm],ax[m],ay[m],az[m]", cells=rows(np.column_stack([1e3 * far, anchors])),
+        )
+    )  # fmt: skip
+    agrees(found)
+
+
+def test_a_dial_gauge_reads_one_direction(tmp_path: Path) -> None:
+    path = write(tmp_path, A, errors(1).stands(A)[0], FIT)
+    robot = sk.load_robot(str(tmp_path / "six.urdf"), base="base", tool="tool")
+    force = 400.0 * RNG.normal(size=(80, 3))
+    moved = sk.joint_spring_model(robot, 1 / errors(1).compliance).deflect(
+        A, np.column_stack([force, np.zeros((80, 3))]), point=[0.05, -0.08, 0.12]
+    )
+    along = RNG.normal(size=(80, 3))
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    read = 1e3 * ((along * moved).sum(axis=1) + 1e-6 * RNG.normal(size=80))
+    table = np.column_stack([np.degrees(A), force, read, along])
+    header = ",".join(f"{n}[deg]" for n in NAMES) + ",fx[N],fy[N],fz[N],d[mm],ux,uy,uz"
+    path.write_text("\n".join([header, *rows(table)]) + "\n")
+    path.with_suffix(".yaml").write_text(
+        "robot: six.urdf\nbase_frame: base\ntool_frame: tool\nforce: {frame: base}\n"
+        "point: {xyz: [50, -80, 120], unit: mm}\nnoise: {sigma: 1, unit: um}\n"
+    )
+    agrees(calibrated(path), 0.005)
+
+
+def test_columns_as_the_controller_has_them(tmp_path: Path) -> None:
+    """Joint 3 measured against the floor, under a name of its own."""
+    shown = A.copy()
+    shown[:, 2] = -(A[:, 2] + A[:, 1])
+    settings = FIT + NOISE + "joints: {j3: -(K3 + j2)}\n"
+    path = write(tmp_path, shown, noisy(tracked(errors(1).stands(A)[0])), settings)
+    path.write_text(path.read_text().replace("j3[deg]", "K3[deg]"))
+    agrees(calibrated(path))
+
+
+def _with(marker: list[float] | None = None, payload: tuple[float, Array] | None = None) -> Arm:
+    """The arm with another marker, or with a mass hung on its tool."""
+    arm = errors(1)
+    if marker is not None:
+        arm.marker = np.array(marker)
+    if payload is not None:
+        mass, centre = payload
+        bare: Callable[[Array], tuple[Array, Array, float]] = arm.pose
+
+        def pose(q: Array) -> tuple[Array, Array, float]:
+            x, R, energy = bare(q)
+            return x, R, energy + mass * G * float((x - R @ arm.marker + R @ centre)[2])
+
+        arm.pose = pose  # type: ignore[method-assign]
+    return arm
