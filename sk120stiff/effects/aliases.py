@@ -58,12 +58,6 @@ class AliasClasses:
     within: tuple[tuple[str, str], ...]
     overlaps: tuple[Overlap, ...]
 
-    def imitators(self, effect_id: str) -> tuple[str, ...]:
-        """Effects that can do all that this one does: no reading can speak against them."""
-        alike = [name for group in self.same if effect_id in group for name in group]
-        wider = [wide for narrow, wide in self.within if narrow == effect_id]
-        return tuple(dict.fromkeys(name for name in (*alike, *wider) if name != effect_id))
-
     def sentences(self) -> list[str]:
         """The same in words, one statement each."""
         out = [f"{name} cannot be seen: no reading changes with it." for name in self.invisible]

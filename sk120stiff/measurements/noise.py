@@ -137,14 +137,6 @@ class NoiseModel:
         full: Array = np.where(same, zero.T[:, :, None], 0.0)
         return full + np.eye(len(own)) * own.T[:, :, None]
 
-    def describe(self) -> str:
-        """The model in plain words."""
-        size = f"{self.sigma * 1e6:.3g} µm per axis"
-        words = f"One reading has a standard uncertainty of {size}"
-        if not self.known:
-            words = f"The standard uncertainty of one reading is to be estimated, from {size} on"
-        return f"{words}. {self.of_growth_and_zero()}"
-
     def of_growth_and_zero(self) -> str:
         """What the model holds beside the size of sigma, in plain words."""
         said = ""

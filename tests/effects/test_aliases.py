@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from itertools import permutations
 from typing import ClassVar
 
 import numpy as np
@@ -129,11 +130,13 @@ def test_the_sk120s_list(arms):
     assert found.invisible == ()
 
 
-def test_imitators_and_sentences(arms):
+def test_narrow_effects_and_sentences(arms):
     found = alias_classes(arms["sk120"], base=BASE)
-    assert found.imitators("link_torsion:link_2_l") == ("joint_tilt:joint_2_l",)
-    assert found.imitators("joint_springs:joint_4_r") == ("link_torsion:link_3_u",)
-    assert found.imitators("joint_tilt:joint_2_l") == ()
+    alike = [pair for group in found.same for pair in permutations(group, 2)]
+    wider = dict([*alike, *found.within])
+    assert wider["link_torsion:link_2_l"] == "joint_tilt:joint_2_l"
+    assert wider["joint_springs:joint_4_r"] == "link_torsion:link_3_u"
+    assert "joint_tilt:joint_2_l" not in wider
     words = found.sentences()
     assert any("link_bending:link_2_l.EI[in_plane] cannot be seen beside" in s for s in words)
     assert all(s.endswith(".") for s in words)

@@ -218,10 +218,9 @@ def test_candidates_are_what_the_data_leave_open() -> None:
 
 
 def test_models_speak_plainly() -> None:
-    text = NoiseModel(SIGMA, 0.01, "shared").describe()
-    assert re.search(r"10 µm per axis.*1 % of its displacement.*share its error", text)
-    assert "to be estimated" in NoiseModel(SIGMA, freedom=0).describe()
-    assert "independent" in NoiseModel(SIGMA, zero="separate").describe()
+    text = NoiseModel(SIGMA, 0.01, "shared").of_growth_and_zero()
+    assert re.search(r"1 % of its displacement.*share its error", text)
+    assert "independent" in NoiseModel(SIGMA, zero="separate").of_growth_and_zero()
 
 
 def test_scaling_scales_the_covariance() -> None:
