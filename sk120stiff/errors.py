@@ -6,6 +6,7 @@ or the work was done and its honest answer is "no" (`Refusal`, exit code 1).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 
@@ -59,3 +60,10 @@ class MissingPart(InputError):
 
 class ToolkitWarning(UserWarning):
     """Something suspicious that does not stop the work."""
+
+
+def listed(words: Sequence[str], joint: str = "and") -> str:
+    """``a, b and c``: names in a sentence."""
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} {joint} {words[-1]}"

@@ -16,6 +16,7 @@ from sk120stiff.effects.base import SPRINGS, Effect, LinearElastic
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.effects.situation import Situation, situation_of_load
+from sk120stiff.errors import listed
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length, sample_poses
 
@@ -62,10 +63,10 @@ class AliasClasses:
         """The same in words, one statement each."""
         out = [f"{name} cannot be seen: no reading changes with it." for name in self.invisible]
         out += [
-            f"{name} cannot be seen beside {_listed(springs)}, which can do all that it does."
+            f"{name} cannot be seen beside {listed(springs)}, which can do all that it does."
             for name, springs in self.absorbed.items()
         ]
-        out += [f"{_listed(group)} do the same: only together." for group in self.same]
+        out += [f"{listed(group)} do the same: only together." for group in self.same]
         out += [f"Whatever {narrow} does, {wide} can do." for narrow, wide in self.within]
         return out
 
@@ -296,9 +297,3 @@ def _basis(columns: Array, tolerance: float) -> Array:
         return np.zeros((len(columns), 0))
     vectors, values, _ = np.linalg.svd(left / np.linalg.norm(left, axis=0), full_matrices=False)
     return np.asarray(vectors[:, values > tolerance * values[0]])
-
-
-def _listed(names: Sequence[str]) -> str:
-    if len(names) < 2:
-        return "".join(names)
-    return ", ".join(names[:-1]) + " and " + names[-1]

@@ -65,13 +65,6 @@ def chance(probability: float) -> str:
     return "<\u00a010⁻⁶" if probability < 1e-6 else number(probability, 2)
 
 
-def listed(words: Sequence[str], joint: str = "and") -> str:
-    """``a, b and c``."""
-    if len(words) < 2:
-        return "".join(words)
-    return f"{', '.join(words[:-1])} {joint} {words[-1]}"
-
-
 def load_in_words(wrench: Sequence[float]) -> str:
     """``load 0, 0, -490 N``: a wrench [N, N·m], its moment only where there is one."""
     if not any(wrench):

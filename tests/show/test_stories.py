@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import effect
+from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation, Finding, explain
 from sk120stiff.explain.candidates.absorbed import absorbed
 from sk120stiff.explain.findings import Contender
@@ -19,7 +20,7 @@ from sk120stiff.show import scene_html
 from sk120stiff.show.stories import explain_report, explain_scene
 from sk120stiff.show.stories.pictures import ArmView, exaggeration, gap_vectors, suspect_panels
 from sk120stiff.show.stories.verdicts import lead_of
-from sk120stiff.show.wording import listed, number, percent, um, unit_of, with_error
+from sk120stiff.show.wording import number, percent, um, unit_of, with_error
 from tests.explain.readings import base_fit, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.show.test_report import Outline

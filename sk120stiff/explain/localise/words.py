@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from sk120stiff.errors import listed
 from sk120stiff.explain.localise.localisation import LEVEL, Localisation, Suspicion
 from sk120stiff.identify.checks.lack_of_fit import chance
 
@@ -91,7 +92,7 @@ def _strongest(found: Localisation) -> Iterator[str]:
     rest = [s for s in found.suspects[1:] if s.seen]
     close = [s for s in rest if best.evidence - s.evidence < CLOSE]
     if close:
-        yield f"As well as that fits {_listed([s.name for s in close[:3]], 'or')}."
+        yield f"As well as that fits {listed([s.name for s in close[:3]], 'or')}."
     elif rest:
         share = _percent(rest[0].explained)
         yield f"The next best in its place, {rest[0].name}, takes away {share}."
@@ -148,7 +149,7 @@ def _poses(found: Localisation) -> Iterator[str]:
         share = _percent(min(carried, 1.0))
         yield f"Pose {ranked[0].label} alone carries {share} of it, with {worst}."
     else:
-        named = _listed([pose.label for pose in ranked[:top]])
+        named = listed([pose.label for pose in ranked[:top]])
         yield (
             f"Poses {named} carry {_percent(carried)} of it; the worst, {ranked[0].label}, has "
             f"{worst}."
@@ -197,10 +198,10 @@ def _loads(found: Localisation) -> Iterator[str]:
         if not others:
             yield f"{line}, as with anything that yields like a spring."
             return
-        bent = _listed([f"{_percent(o.share)} is {o.name}" for o in others])
+        bent = listed([f"{_percent(o.share)} is {o.name}" for o in others])
         yield f"{line}; {bent}, which no plain spring makes."
     elif seen:
-        bent = _listed([f"{_percent(o.share)} of it is {o.name}" for o in seen.values()])
+        bent = listed([f"{_percent(o.share)} of it is {o.name}" for o in seen.values()])
         yield f"Within a pose {bent}, which no plain spring makes."
     elif found.orders:
         yield "Within a pose it is neither linear nor constant nor curved in the load beyond doubt."
@@ -242,7 +243,7 @@ def _series(found: Localisation) -> Iterator[str]:
     ]
     if clear:
         beside = " beside that" if found.beside else ""
-        yield f"It does not go with {_listed(clear, 'or')}{beside}."
+        yield f"It does not go with {listed(clear, 'or')}{beside}."
 
 
 def _um(metres: float) -> str:
@@ -252,9 +253,3 @@ def _um(metres: float) -> str:
 
 def _percent(share: float) -> str:
     return f"{100.0 * share:.0f} %"
-
-
-def _listed(words: Sequence[str], joint: str = "and") -> str:
-    if len(words) < 2:
-        return "".join(words)
-    return f"{', '.join(words[:-1])} {joint} {words[-1]}"

@@ -8,6 +8,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects.base import SPRINGS
+from sk120stiff.errors import listed
 from sk120stiff.identify.checks.unseen import why_unseen
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
@@ -66,11 +67,11 @@ def overlaid_sentence(fit: Fit, group: Overlay) -> str:
     members = [fit.parameters[k] for k in group.members]
     held = [fit.parameters[k] for k in group.held]
     if {p.effect.name for p in members} == {SPRINGS}:
-        names = f"the springs of {_listed([p.effect.where for p in members])}"
-        bound = f"that {_listed([p.effect.where for p in held])} came out rigid"
+        names = f"the springs of {listed([p.effect.where for p in members])}"
+        bound = f"that {listed([p.effect.where for p in held])} came out rigid"
     else:
-        names = _listed([words_for(p) for p in members])
-        bound = f"that {_listed([words_for(p) for p in held])} lies on a physical bound"
+        names = listed([words_for(p) for p in members])
+        bound = f"that {listed([words_for(p) for p in held])} lies on a physical bound"
     low = 100.0 * group.likeness
     return (
         f"In these readings {names} lie on one another (they move the point alike by {low:.3f} % "
@@ -153,13 +154,13 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
             f"{why}." if why else "no plausible value would change them by a tenth of their noise."
         )
     if size >= len(group):
-        return f"{_listed([p.name for p in parameters])} cannot be told from the others."
+        return f"{listed([p.name for p in parameters])} cannot be told from the others."
     if len(group) == 2:
         return _pair(fit, group)
     known = len(group) - size
     some = "one combination" if known == 1 else f"{known} of {len(group)} combinations"
     return (
-        f"{_listed([words_for(p) for p in parameters])} move together: only {some} of their values "
+        f"{listed([words_for(p) for p in parameters])} move together: only {some} of their values "
         f"{'is' if known == 1 else 'are'} known."
     )
 
@@ -247,7 +248,3 @@ def _implausible(parameter: Parameter) -> str:
         f"{parameter.name} is {than} than is plausible ({parameter.value:.3g}, limit "
         f"{limit:.3g} {spec.unit}): it fits, but it explains nothing."
     )
-
-
-def _listed(names: Sequence[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from sk120stiff.errors import listed
 from sk120stiff.explain.candidates.absorbed import WHOLE
 from sk120stiff.show.figures import (
     Estimate,
@@ -34,7 +35,7 @@ from sk120stiff.show.stories.limits_section import blind_section, next_section
 from sk120stiff.show.stories.stiffness_section import stiffness_section
 from sk120stiff.show.stories.verdicts import lead_of
 from sk120stiff.show.stories.where_section import where_section
-from sk120stiff.show.wording import chance, counted, listed, number, percent, um, with_error
+from sk120stiff.show.wording import chance, counted, number, percent, um, with_error
 
 NAMEABLE = 5.0  # √λ at which an effect can usually be named
 _SHORT = {

@@ -8,12 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.effects import comment_lines
+from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.report import Block, Items, Note, Section, Table
 from sk120stiff.show.stories.verdicts import near, sentence_of
-from sk120stiff.show.wording import chance, counted, listed, number, percent, unit_of, with_error
+from sk120stiff.show.wording import chance, counted, number, percent, unit_of, with_error
 
 MANY = 12  # parameters of one effect beyond which a table helps nobody
 

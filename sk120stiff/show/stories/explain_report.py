@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.measurements import Measurements
@@ -24,7 +25,7 @@ from sk120stiff.show.stories.limits_section import blind_section, left_section, 
 from sk120stiff.show.stories.parameters_section import parameters_section
 from sk120stiff.show.stories.verdicts import FEW, lead_of, title_of
 from sk120stiff.show.stories.where_section import where_section
-from sk120stiff.show.wording import chance, counted, listed, percent, um
+from sk120stiff.show.wording import chance, counted, percent, um
 
 CROSS = "on poses left out in turn (cross-validation by pose)"
 

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.figures import Estimate, parameter_forest
 from sk120stiff.show.report import Block, Note, Picture, Section, Table
-from sk120stiff.show.wording import listed, number, percent, unit_of, with_error
+from sk120stiff.show.wording import number, percent, unit_of, with_error
 
 WORTH_TELLING = 0.01
 UNSEEN = "cannot be seen"
