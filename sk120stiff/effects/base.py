@@ -40,20 +40,14 @@ from sk120stiff.robot.anatomy import arm_length
 class Options:
     """What an effect may be told beside its place.
 
-    Attributes
-    ----------
-    poses
-        Poses of the experiment, for `zero_offset`.
-    timed
-        The experiment has times, for `reading_drift`.
-    breaks
-        Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
-    series
-        Series of the experiment, for `marker_shift`.
-    thermal
-        The experiment has temperatures, for `thermal_growth`.
-    shape
-        Names of the parameters of the law that is meant, for effects that know more than one.
+    Attributes:
+        poses: Poses of the experiment, for `zero_offset`.
+        timed: The experiment has times, for `reading_drift`.
+        breaks: Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
+        series: Series of the experiment, for `marker_shift`.
+        thermal: The experiment has temperatures, for `thermal_growth`.
+        shape: Names of the parameters of the law that is meant, for effects that know more than
+            one.
     """
 
     poses: tuple[str, ...] = ()
@@ -68,14 +62,10 @@ class Options:
 class Alias:
     """Two names for one thing.
 
-    Attributes
-    ----------
-    name
-        ``effect:where.parameter``, with ``[part]`` behind it where only a part is meant.
-    other
-        Another parameter, or `SPRINGS` for all joint springs together.
-    when
-        The kind of readings that it holds for; empty where it holds for all.
+    Attributes:
+        name: ``effect:where.parameter``, with ``[part]`` behind it where only a part is meant.
+        other: Another parameter, or `SPRINGS` for all joint springs together.
+        when: The kind of readings that it holds for; empty where it holds for all.
     """
 
     name: str
@@ -93,41 +83,30 @@ ONE_WAY = "all loads point one way and grow with the order of the readings"
 class Effect(ABC):
     """One physical cause at one place.
 
-    Attributes
-    ----------
-    name
-        Public identifier (class attribute).
-    place
-        What `where` names, in words (class attribute).
-    equation
-        The law, in symbols that `axes` and the parameters' meanings explain (class attribute).
-    axes
-        The frame in which its parameters are stated (class attribute).
-    former
-        Names under which files of earlier versions hold a parameter with the other sign, and its
-        name now (class attribute).
-    exchangeable
-        The parameters are draws of one size (class attribute).
-    bends_a_spring
-        It changes the spring of the joint at which it acts, so there must be one (class attribute).
-    inexact
-        Share of what it explains by which real parts depart from its law (class attribute).
-    joint_spring
-        Its one parameter is the stiffness of the actuated joint at which it acts (class attribute).
-    of_gear
-        It is a law of a joint's gear: what one such law leaves over looks like another (class
-        attribute).
-    twins
-        Names of effects that some experiments make one with this one, at the same place and with
-        either sign (class attribute). It is tried whether the experiment at hand does.
-    needs
-        What readings must hold for its law, in words (class attribute).
-    only_absolute
-        Positions show it, displacements hardly ever (class attribute).
-    where
-        URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
-    scale
-        Length of the arm over `REFERENCE_LENGTH`: what is usual and what is plausible goes with it.
+    Attributes:
+        name: Public identifier (class attribute).
+        place: What `where` names, in words (class attribute).
+        equation: The law, in symbols that `axes` and the parameters' meanings explain (class
+            attribute).
+        axes: The frame in which its parameters are stated (class attribute).
+        former: Names under which files of earlier versions hold a parameter with the other sign,
+            and its name now (class attribute).
+        exchangeable: The parameters are draws of one size (class attribute).
+        bends_a_spring: It changes the spring of the joint at which it acts, so there must be one
+            (class attribute).
+        inexact: Share of what it explains by which real parts depart from its law (class
+            attribute).
+        joint_spring: Its one parameter is the stiffness of the actuated joint at which it acts
+            (class attribute).
+        of_gear: It is a law of a joint's gear: what one such law leaves over looks like another
+            (class attribute).
+        twins: Names of effects that some experiments make one with this one, at the same place and
+            with either sign (class attribute). It is tried whether the experiment at hand does.
+        needs: What readings must hold for its law, in words (class attribute).
+        only_absolute: Positions show it, displacements hardly ever (class attribute).
+        where: URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
+        scale: Length of the arm over `REFERENCE_LENGTH`: what is usual and what is plausible goes
+            with it.
     """
 
     where: str
@@ -206,14 +185,10 @@ class Effect(ABC):
 class Elongation:
     """What an elastic law returns for k coordinates and P parameters.
 
-    Attributes
-    ----------
-    value
-        (N, k) elongation [rad or m].
-    by_torque
-        (N, k, k) tangent compliance.
-    by_parameter
-        (N, k, P) derivative by the internal parameters.
+    Attributes:
+        value: (N, k) elongation [rad or m].
+        by_torque: (N, k, k) tangent compliance.
+        by_parameter: (N, k, P) derivative by the internal parameters.
     """
 
     value: Array
@@ -240,11 +215,9 @@ class Elastic(Effect):
 class LinearElastic(Elastic):
     """Elongation linear in torque and in parameters: e = Σ_p values[p] · pattern_p τ.
 
-    Attributes
-    ----------
-    one_axis_each
-        Parameter k is the compliance of coordinate k alone, the same at all poses (class
-        attribute). Two such compliances about one axis are one.
+    Attributes:
+        one_axis_each: Parameter k is the compliance of coordinate k alone, the same at all poses
+            (class attribute). Two such compliances about one axis are one.
     """
 
     one_axis_each: ClassVar[bool] = False
@@ -280,11 +253,9 @@ class Switching(Elastic):
 class Geometric(Effect):
     """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p.
 
-    Attributes
-    ----------
-    of_marker
-        Where positions are read it moves the marker alone, along the tool's axes: what hangs on the
-        tool stays (class attribute).
+    Attributes:
+        of_marker: Where positions are read it moves the marker alone, along the tool's axes: what
+            hangs on the tool stays (class attribute).
     """
 
     of_marker: ClassVar[bool] = False

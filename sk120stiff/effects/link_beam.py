@@ -64,14 +64,10 @@ class LinkBending(LinearElastic):
     lie along the roll axis that the link carries (what is off that axis is a stiff bracket), or
     have an EI for each plane.
 
-    Attributes
-    ----------
-    taper
-        Share of its depth that the section loses along the link.
-    roll
-        The beam lies along the axis of the next joint.
-    planes
-        Each plane has an EI of its own.
+    Attributes:
+        taper: Share of its depth that the section loses along the link.
+        roll: The beam lies along the axis of the next joint.
+        planes: Each plane has an EI of its own.
     """
 
     taper: float = TAPER

@@ -24,45 +24,27 @@ IDLE = -1  # in a history: no load, at a zero reading or before a repeat
 class Situation:
     """N readings of a robot under load.
 
-    Attributes
-    ----------
-    robot
-        The rigid robot.
-    a
-        (N, n) commanded coordinates [rad or m].
-    wrench
-        (N, 6) load as reported, base axes, at `force_point` [N, N·m].
-    rotation
-        (N, 3, 3) unloaded tool frame in base axes.
-    point, force_point
-        (3,) measured point, or (N, 3) where it differs, and (3,) point of the force, in the tool
-        frame [m].
-    reading_axes
-        (N, 3, 3) axes in which displacements are stated, in base axes.
-    order, time
-        (N,) position in the series [1] and instant [s] of each reading minus that of its zero, or
-        None.
-    branch
-        (N,) +1 while the load grows, -1 while it falls.
-    pose
-        (N,) index into `poses`.
-    poses
-        Labels of the poses.
-    absolute
-        Readings say where the point stands, not how far it went under a load.
-    payload_point
-        (3,) where a payload hangs, in the tool frame [m]; None where there is none.
-    temperature
-        (N,) temperature over its mean [K], or None.
-    series, series_names
-        (N,) series that each reading belongs to, and their labels.
-    zero_a
-        (N, n) coordinates of the zero reading [rad or m]; None: those of the reading.
-    side
-        (N, n) side from which each joint came to its pose, -1, 0 or 1; None without an order.
-    zero_group, repeat
-        (N,) which zero reading a row subtracts, and the how-manieth repeat it is; None where every
-        row stands alone, and where nothing was repeated.
+    Attributes:
+        robot: The rigid robot.
+        a: (N, n) commanded coordinates [rad or m].
+        wrench: (N, 6) load as reported, base axes, at `force_point` [N, N·m].
+        rotation: (N, 3, 3) unloaded tool frame in base axes.
+        point, force_point: (3,) measured point, or (N, 3) where it differs, and (3,) point of the
+            force, in the tool frame [m].
+        reading_axes: (N, 3, 3) axes in which displacements are stated, in base axes.
+        order, time: (N,) position in the series [1] and instant [s] of each reading minus that of
+            its zero, or None.
+        branch: (N,) +1 while the load grows, -1 while it falls.
+        pose: (N,) index into `poses`.
+        poses: Labels of the poses.
+        absolute: Readings say where the point stands, not how far it went under a load.
+        payload_point: (3,) where a payload hangs, in the tool frame [m]; None where there is none.
+        temperature: (N,) temperature over its mean [K], or None.
+        series, series_names: (N,) series that each reading belongs to, and their labels.
+        zero_a: (N, n) coordinates of the zero reading [rad or m]; None: those of the reading.
+        side: (N, n) side from which each joint came to its pose, -1, 0 or 1; None without an order.
+        zero_group, repeat: (N,) which zero reading a row subtracts, and the how-manieth repeat it
+            is; None where every row stands alone, and where nothing was repeated.
     """
 
     robot: Robot
@@ -109,11 +91,9 @@ class Situation:
     def history(self) -> tuple[Index, Index, Index]:
         """In which order every pose met its loads.
 
-        Returns
-        -------
-        steps, zero, own
-            (S, g) row whose load is on, or `IDLE`, the poses side by side; (N,) the step at which
-            a row's zero was read, and the one at which the row itself was.
+        Returns:
+            steps, zero, own: (S, g) row whose load is on, or `IDLE`, the poses side by side; (N,)
+                the step at which a row's zero was read, and the one at which the row itself was.
         """
         group = np.arange(self.count) if self.zero_group is None else self.zero_group
         again = np.zeros(self.count, dtype=int) if self.repeat is None else self.repeat
@@ -205,10 +185,8 @@ def situation_of_load(
 def situation_of(robot: Robot, measurements: Measurements) -> Situation:
     """Readings of a measurement file on a robot.
 
-    Raises
-    ------
-    InputError
-        The file's joints are not the robot's actuated joints.
+    Raises:
+        InputError: The file's joints are not the robot's actuated joints.
     """
     measurements = measurements.with_joints(robot.actuated, robot.kinds)
     a = measurements.joints
@@ -283,12 +261,9 @@ def _since_first(clock: Array | None) -> Array | None:
 def approach_sides(a: Array, clock: Array) -> Array:
     """(N, n) sign of the last movement of each joint, 0 before it has moved at all.
 
-    Parameters
-    ----------
-    a
-        (N, n) coordinates of the readings [rad or m].
-    clock
-        (N,) their order.
+    Args:
+        a: (N, n) coordinates of the readings [rad or m].
+        clock: (N,) their order.
     """
     order = np.argsort(clock, kind="stable")
     steps = np.diff(a[order], axis=0, prepend=a[order[:1]])

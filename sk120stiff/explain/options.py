@@ -20,21 +20,16 @@ MOST_EFFECTS = 8  # looked for unless the user says otherwise
 class Options:
     """How the user steers the search.
 
-    Attributes
-    ----------
-    only, exclude
-        Effects (``name`` or ``name:where``) to which the search is limited, or which it leaves out.
-    assume
-        Effects that are in the model from the start.
-    max_effects
-        Largest number of named effects.
-    alpha
-        Probability of naming something where nothing is missing, over all candidates together.
-    prior
-        How probable effects are before anything is measured, by ``name`` or ``name:where``; the
-        others are as probable as `priors.py` has them.
-    seed
-        Of folds and resampling.
+    Attributes:
+        only, exclude: Effects (``name`` or ``name:where``) to which the search is limited, or which
+            it leaves out.
+        assume: Effects that are in the model from the start.
+        max_effects: Largest number of named effects.
+        alpha: Probability of naming something where nothing is missing, over all candidates
+            together.
+        prior: How probable effects are before anything is measured, by ``name`` or ``name:where``;
+            the others are as probable as `priors.py` has them.
+        seed: Of folds and resampling.
     """
 
     only: tuple[str, ...] = ()

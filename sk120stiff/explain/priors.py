@@ -38,12 +38,9 @@ PRIORS: Mapping[str, Prior] = {
 def price(effect: Effect, given: Mapping[str, float]) -> float:
     """What an effect adds to a model's score for being less usual than `USUAL`; negative if more.
 
-    Parameters
-    ----------
-    effect
-        The effect.
-    given
-        Probabilities that the user gave, by ``name`` or ``name:where``.
+    Args:
+        effect: The effect.
+        given: Probabilities that the user gave, by ``name`` or ``name:where``.
     """
     table = PRIORS[effect.name].probability if effect.name in PRIORS else USUAL
     return 2.0 * (_logit(USUAL) - _logit(given.get(effect.id, given.get(effect.name, table))))
@@ -52,10 +49,8 @@ def price(effect: Effect, given: Mapping[str, float]) -> float:
 def priors_from(texts: Iterable[str], catalogue: Catalogue = CATALOGUE) -> dict[str, float]:
     """Probabilities from texts such as ``base_rocking=0.5`` or ``joint_tilt:joint_2=0.3``.
 
-    Raises
-    ------
-    InputError
-        No such effect, or no probability between 0 and 1.
+    Raises:
+        InputError: No such effect, or no probability between 0 and 1.
     """
     found: dict[str, float] = {}
     for text in texts:

@@ -50,36 +50,27 @@ def explain(
 ) -> Explanation:
     """Find where model and readings disagree, name what is missing, add it, judge the rest.
 
-    Parameters
-    ----------
-    model
-        The base model; its effects are part of every model considered.
-    measurements
-        Readings to be explained.
-    holdout
-        Readings of other poses, kept out of everything; the gap on them is reported.
-    options
-        How the search is steered.
-    catalogue
-        The effects that may be missing, ``CATALOGUE + Mine`` with your own.
-    progress
-        Called with a phrase and a share of the work done.
+    Args:
+        model: The base model; its effects are part of every model considered.
+        measurements: Readings to be explained.
+        holdout: Readings of other poses, kept out of everything; the gap on them is reported.
+        options: How the search is steered.
+        catalogue: The effects that may be missing, ``CATALOGUE + Mine`` with your own.
+        progress: Called with a phrase and a share of the work done.
 
-    Raises
-    ------
-    InputError
-        No displacements, too few readings, one pose alone, or an effect that does not exist.
-    Refusal
-        The data look written down wrongly, they contradict their stated uncertainty, or the base
-        model itself cannot be fitted.
+    Raises:
+        InputError: No displacements, too few readings, one pose alone, or an effect that does not
+            exist.
+        Refusal: The data look written down wrongly, they contradict their stated uncertainty, or
+            the base model itself cannot be fitted.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> readings = sk.read(sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv")
-    >>> answer = sk.explain(sk.base_model(sk.load_robot("motoman_sk120")), readings)
-    >>> answer.verdict
-    'none'
+    Examples:
+        >>> import sk120stiff as sk
+        >>> folder = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(folder / "table2_measured.csv")
+        >>> answer = sk.explain(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+        >>> answer.verdict
+        'none'
     """
     options = options or Options()
     tell = progress or _silent

@@ -20,14 +20,10 @@ def branches_by_order(
     least one on the way down was met on the way up; so must the loads of every direction where a
     pose was loaded in several, one after the other. Most poses with three loads or more have to.
 
-    Parameters
-    ----------
-    pose
-        (N,) number of the pose of each row.
-    wrench
-        (N, 6) loads; rows without load count for nothing.
-    sequence
-        (N,) order or time of the rows, or their place in the file.
+    Args:
+        pose: (N,) number of the pose of each row.
+        wrench: (N, 6) loads; rows without load count for nothing.
+        sequence: (N,) order or time of the rows, or their place in the file.
     """
     size = np.linalg.norm(wrench[:, :3], axis=1)
     falling = np.zeros(len(pose), dtype=bool)

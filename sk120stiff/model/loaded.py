@@ -107,13 +107,12 @@ def loaded_stiffness(
         ToolkitWarning: No equilibrium exists: the load is beyond what the springs can hold; or the
             arm bends as no arm does.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-    >>> found = sk.stiffness(model, [0, 0.2, -0.3, 0, -1, 0], [0, 0, -490, 0, 0, 0])
-    >>> found.K_X_enhanced.shape, bool(found.deflection_equilibrium[2] < 0.0)
-    ((3, 3), True)
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> found = sk.stiffness(model, [0, 0.2, -0.3, 0, -1, 0], [0, 0, -490, 0, 0, 0])
+        >>> found.K_X_enhanced.shape, bool(found.deflection_equilibrium[2] < 0.0)
+        ((3, 3), True)
     """
     arm = model_compliance(model, frame)
     n, load = arm.mechanism.n, np.asarray(wrench, dtype=float)

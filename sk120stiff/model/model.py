@@ -254,12 +254,11 @@ def joint_spring_model(robot: Robot, stiffness: ArrayLike | None = None) -> Mode
         stiffness: (n,) [N·m/rad or N/m]; an infinite one is left out. Default: all joints, at a
             stiffness that is typical of large arms and only a start for identification.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> model = sk.joint_spring_model(sk.load_robot("motoman_sk120"))
-    >>> len(model.parameters), model.parameters[0].spec.unit
-    (6, 'N*m/rad')
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.joint_spring_model(sk.load_robot("motoman_sk120"))
+        >>> len(model.parameters), model.parameters[0].spec.unit
+        (6, 'N*m/rad')
     """
     from sk120stiff.effects import effect
 

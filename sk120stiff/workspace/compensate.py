@@ -95,13 +95,12 @@ def compensate(
     Raises:
         InputError: Shapes do not fit, or a number is not finite.
 
-    Examples
-    --------
-    >>> import sk120stiff as sk
-    >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-    >>> mended = sk.compensate(model, [0, 0.2, -0.3, 0, -1, 0], [0, 0, -490, 0, 0, 0])
-    >>> bool(mended.after.distance[0] < 1e-6 < mended.before.distance[0])  # m
-    True
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> mended = sk.compensate(model, [0, 0.2, -0.3, 0, -1, 0], [0, 0, -490, 0, 0, 0])
+        >>> bool(mended.after.distance[0] < 1e-6 < mended.before.distance[0])  # m
+        True
     """
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)

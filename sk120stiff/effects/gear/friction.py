@@ -38,10 +38,9 @@ class FrictionHysteresis(GearEffect, Switching):
 
         p_k(t) = min(max(p_k(t − 1) + τ(t) − τ(t − 1), −r_k), r_k),   p_k(0) = 0
 
-    Attributes
-    ----------
-    reaches
-        Torques r_k [N·m] after which it slips; 0: at once, on the branch that the readings tell.
+    Attributes:
+        reaches: Torques r_k [N·m] after which it slips; 0: at once, on the branch that the readings
+            tell.
     """
 
     reaches: tuple[float, ...] = (0.0,)
@@ -128,14 +127,10 @@ def held_back(torque: Array, reach: float, situation: Situation) -> Array:
     the readings, with none in between where a zero was read or a repeat begins. Before a series
     that begins with a load that falls, more was on.
 
-    Parameters
-    ----------
-    torque
-        (N,) torque of the load [N·m].
-    reach
-        Torque after which it slips [N·m].
-    situation
-        The readings, in whose order the torques came.
+    Args:
+        torque: (N,) torque of the load [N·m].
+        reach: Torque after which it slips [N·m].
+        situation: The readings, in whose order the torques came.
     """
     steps, zero, own = situation.history
     before = np.zeros(steps.shape[1])

@@ -62,10 +62,8 @@ def constant_in_torque(shapes: Array, values: Array) -> Elongation:
 def torques_told(names: Iterable[str], head: str, what: str) -> tuple[float, ...]:
     """Torques [N·m] in which those of some names end that begin with `head`; `what` they are.
 
-    Raises
-    ------
-    InputError
-        A name begins so but ends in no positive number.
+    Raises:
+        InputError: A name begins so but ends in no positive number.
     """
     found = []
     for name in names:

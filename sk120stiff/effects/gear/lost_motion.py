@@ -28,12 +28,9 @@ class LostMotion(GearEffect, Switching):
     hold gradually, over a flank T of a few percent of the rated torque: s = tanh(τ/T). Where the
     two sides differ, each has a half width of its own.
 
-    Attributes
-    ----------
-    flanks
-        Torques T [N·m] over which the flanks close; 0: at once.
-    sided
-        The two sides of the play differ.
+    Attributes:
+        flanks: Torques T [N·m] over which the flanks close; 0: at once.
+        sided: The two sides of the play differ.
     """
 
     flanks: tuple[float, ...] = (0.0,)

@@ -20,12 +20,9 @@ MOST = 40
 class Chosen:
     """A set of candidates and how it came about.
 
-    Attributes
-    ----------
-    order
-        Candidates in the order in which they joined.
-    dropped
-        Candidate → why it fitted and is not named.
+    Attributes:
+        order: Candidates in the order in which they joined.
+        dropped: Candidate → why it fitted and is not named.
     """
 
     order: tuple[int, ...]
@@ -36,14 +33,10 @@ class Chosen:
 class Gain:
     """What a cause takes off the held-out squares beside the others, per pose.
 
-    Attributes
-    ----------
-    share
-        Relative fall of the rms gap.
-    errors
-        The gain in its standard errors over poses.
-    folds
-        Parts in which the gap falls.
+    Attributes:
+        share: Relative fall of the rms gap.
+        errors: The gain in its standard errors over poses.
+        folds: Parts in which the gap falls.
     """
 
     share: float

@@ -22,26 +22,17 @@ FAINT = 1e-9  # share of a column left beside the base below which it is roundin
 class Linear:
     """M whitened numbers, columns of the base and of every candidate.
 
-    Attributes
-    ----------
-    residual
-        (M,) gap of the base model in units of its noise.
-    base
-        (M, P) orthonormal columns that span the base model.
-    columns
-        (M, K) further columns per usual size of their parameter, what the base does taken out.
-    positive
-        (K,) parameters that cannot be negative.
-    candidates
-        The effects that the columns belong to.
-    slices
-        The part of the columns of each candidate.
-    row
-        (M,) reading that each number belongs to.
-    fold
-        (M,) part that it is left out with.
-    stated
-        The size of the noise was stated.
+    Attributes:
+        residual: (M,) gap of the base model in units of its noise.
+        base: (M, P) orthonormal columns that span the base model.
+        columns: (M, K) further columns per usual size of their parameter, what the base does taken
+            out.
+        positive: (K,) parameters that cannot be negative.
+        candidates: The effects that the columns belong to.
+        slices: The part of the columns of each candidate.
+        row: (M,) reading that each number belongs to.
+        fold: (M,) part that it is left out with.
+        stated: The size of the noise was stated.
     """
 
     residual: Array

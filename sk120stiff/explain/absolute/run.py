@@ -55,34 +55,21 @@ class GapStep:
 class Explained:
     """What is missing where positions were read.
 
-    Attributes
-    ----------
-    verdict
-        none, named, ambiguous or outside.
-    named
-        Causes in the order in which they joined.
-    base, final
-        Calibrations without them and with them.
-    linear
-        The positions linearised at the base.
-    steps
-        The gap step by step.
-    families
-        Family → rms per axis that its causes take off the held-out gap together [m].
-    springs
-        What springs in all joints would take off the held-out gap beside the named causes, as a
-        share of it; None where they are named, or nothing bends the arm.
-    dropped
-        What fitted and is not named, in sentences.
-    hidden
-        Candidates that do not show in these positions at all.
-    remainder
-        Rms per axis that is left beyond the stated noise, and its 95 % interval [m]; None: no
-        noise is stated.
-    chance
-        Probability of as large a misfit if the noise were all; None where none is stated.
-    where
-        Where what is left lives, in sentences.
+    Attributes:
+        verdict: none, named, ambiguous or outside.
+        named: Causes in the order in which they joined.
+        base, final: Calibrations without them and with them.
+        linear: The positions linearised at the base.
+        steps: The gap step by step.
+        families: Family → rms per axis that its causes take off the held-out gap together [m].
+        springs: What springs in all joints would take off the held-out gap beside the named causes,
+            as a share of it; None where they are named, or nothing bends the arm.
+        dropped: What fitted and is not named, in sentences.
+        hidden: Candidates that do not show in these positions at all.
+        remainder: Rms per axis that is left beyond the stated noise, and its 95 % interval [m];
+            None: no noise is stated.
+        chance: Probability of as large a misfit if the noise were all; None where none is stated.
+        where: Where what is left lives, in sentences.
     """
 
     verdict: str
@@ -110,25 +97,16 @@ def explain_positions(
 ) -> Explained:
     """Find what is missing where readings say where markers stand.
 
-    Parameters
-    ----------
-    model
-        Effects that are taken for granted; a rigid arm otherwise.
-    readings
-        Rows of positions and what goes with them.
-    options
-        How the search is steered.
-    catalogue
-        The effects that may be missing.
-    progress
-        Called with a phrase and a share of the work done.
+    Args:
+        model: Effects that are taken for granted; a rigid arm otherwise.
+        readings: Rows of positions and what goes with them.
+        options: How the search is steered.
+        catalogue: The effects that may be missing.
+        progress: Called with a phrase and a share of the work done.
 
-    Raises
-    ------
-    InputError
-        No such robot gave these positions, or too few poses.
-    Refusal
-        The fit did not converge.
+    Raises:
+        InputError: No such robot gave these positions, or too few poses.
+        Refusal: The fit did not converge.
     """
     wish = options or Options()
     tell = progress or (lambda _phrase, _share: None)

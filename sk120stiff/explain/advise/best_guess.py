@@ -21,14 +21,10 @@ def contenders(
 ) -> tuple[tuple[Contender, ...], Fit | None]:
     """How much the held-out gap falls with each, best first, and the fit with the best.
 
-    Parameters
-    ----------
-    found
-        The attempt; its base model is what each is added to.
-    names
-        Effects (``name:where``) that fitted and are not named, the likeliest first.
-    seed
-        Of the parts in which poses are left out.
+    Args:
+        found: The attempt; its base model is what each is added to.
+        names: Effects (``name:where``) that fitted and are not named, the likeliest first.
+        seed: Of the parts in which poses are left out.
     """
     by_id = {effect.id: effect for effect in found.candidates}
     effects = [by_id[name] for name in dict.fromkeys(names) if name in by_id][:MOST]

@@ -25,51 +25,29 @@ Verdict = Literal["none", "named", "ambiguous", "outside"]
 class Explanation:
     """The whole answer.
 
-    Attributes
-    ----------
-    verdict
-        See PRODUCT: none, named, ambiguous, outside.
-    findings
-        Named effects in the order in which they were added.
-    base, final
-        Fits of the base model and of the model with the findings.
-    steps
-        The gap step by step.
-    noise
-        The noise model used.
-    noise_reasons
-        What was decided about it beyond the data's own words.
-    set_aside
-        Rows of the readings, masked ones counted, that were treated as outliers.
-    readings
-        What was explained, masked rows included.
-    adequacy
-        Tests of what the final model leaves over.
-    remainder
-        Its size, as model-form error beside the noise.
-    unnamed
-        What fitted but is not named, and why, in sentences.
-    limits
-        How the user limited the search, in sentences; empty if not at all.
-    where
-        Plain statements on where the gap of the base model lives.
-    suspects
-        For verdict ``outside``: what comes nearest.
-    guess
-        For verdict ``outside``: the fit with what foretells other poses best, confirmed or not;
-        None if nothing does.
-    odds
-        Probability of one effect more, for each candidate above a hundredth.
-    not_observable
-        Effects that these readings cannot show at any plausible size.
-    smallest_detectable
-        For every parameter of the catalogue what would have shown.
-    next_poses
-        (K, n) coordinates and (K, 6) wrenches to measure next, or None.
-    catalogue
-        The effects that were considered.
-    details
-        Further figures for reports.
+    Attributes:
+        verdict: See PRODUCT: none, named, ambiguous, outside.
+        findings: Named effects in the order in which they were added.
+        base, final: Fits of the base model and of the model with the findings.
+        steps: The gap step by step.
+        noise: The noise model used.
+        noise_reasons: What was decided about it beyond the data's own words.
+        set_aside: Rows of the readings, masked ones counted, that were treated as outliers.
+        readings: What was explained, masked rows included.
+        adequacy: Tests of what the final model leaves over.
+        remainder: Its size, as model-form error beside the noise.
+        unnamed: What fitted but is not named, and why, in sentences.
+        limits: How the user limited the search, in sentences; empty if not at all.
+        where: Plain statements on where the gap of the base model lives.
+        suspects: For verdict ``outside``: what comes nearest.
+        guess: For verdict ``outside``: the fit with what foretells other poses best, confirmed or
+            not; None if nothing does.
+        odds: Probability of one effect more, for each candidate above a hundredth.
+        not_observable: Effects that these readings cannot show at any plausible size.
+        smallest_detectable: For every parameter of the catalogue what would have shown.
+        next_poses: (K, n) coordinates and (K, 6) wrenches to measure next, or None.
+        catalogue: The effects that were considered.
+        details: Further figures for reports.
     """
 
     verdict: Verdict
@@ -125,17 +103,12 @@ class Explanation:
         Files of an earlier answer in the folder are replaced, pages too, all in one moment. The
         report and the scene are pages of `sk120stiff.show.stories`.
 
-        Parameters
-        ----------
-        folder
-            Made where it is missing.
-        provenance
-            Where the readings come from, for the model's file.
+        Args:
+            folder: Made where it is missing.
+            provenance: Where the readings come from, for the model's file.
 
-        Returns
-        -------
-        dict
-            The content of verdict.json.
+        Returns:
+            dict: The content of verdict.json.
         """
         from sk120stiff.explain.answer.saving import save
 

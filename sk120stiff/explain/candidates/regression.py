@@ -31,38 +31,24 @@ DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
 class Regression:
     """Linearised readings against the parameters of base model and candidates.
 
-    Attributes
-    ----------
-    y
-        (R,) whitened readings, R = 3N.
-    X
-        (R, P) whitened sensitivities, in typical sizes of the parameters.
-    group
-        (R,) pose of each row; resampling and folds never cut a pose.
-    base
-        Columns of the base model, part of every model.
-    candidates
-        The effects that may be missing.
-    columns
-        For each candidate the columns of its parameters.
-    variants
-        For each candidate the sets of columns by which it may enter: its parameters; where some of
-        them are often equal, one common column for those; the parameters of its other laws.
-    laws
-        For each of these variants the effect whose law it is.
-    tied, usual
-        For each candidate which of its variants has the common column (-1: none), and which has the
-        law that the catalogue gives it.
-    lower
-        (P,) physical lower bounds in typical sizes (0 or -inf).
-    plausible
-        (P,) magnitudes in typical sizes beyond which a value explains nothing.
-    sigma_known
-        The noise's size is known; else it is estimated by every model for itself.
-    alpha
-        Probability at which a first effect may be named where nothing is missing.
-    prior
-        Probabilities of effects that the user gave, by ``name`` or ``name:where``.
+    Attributes:
+        y: (R,) whitened readings, R = 3N.
+        X: (R, P) whitened sensitivities, in typical sizes of the parameters.
+        group: (R,) pose of each row; resampling and folds never cut a pose.
+        base: Columns of the base model, part of every model.
+        candidates: The effects that may be missing.
+        columns: For each candidate the columns of its parameters.
+        variants: For each candidate the sets of columns by which it may enter: its parameters;
+            where some of them are often equal, one common column for those; the parameters of its
+            other laws.
+        laws: For each of these variants the effect whose law it is.
+        tied, usual: For each candidate which of its variants has the common column (-1: none), and
+            which has the law that the catalogue gives it.
+        lower: (P,) physical lower bounds in typical sizes (0 or -inf).
+        plausible: (P,) magnitudes in typical sizes beyond which a value explains nothing.
+        sigma_known: The noise's size is known; else it is estimated by every model for itself.
+        alpha: Probability at which a first effect may be named where nothing is missing.
+        prior: Probabilities of effects that the user gave, by ``name`` or ``name:where``.
     """
 
     y: Array
@@ -189,16 +175,11 @@ class Sums:
 class Marginal:
     """Sums without columns that were integrated out.
 
-    Attributes
-    ----------
-    sums
-        What is left for the other columns.
-    price
-        ln det(1 + τ² ZᵀZ), what the freedom of the draws costs.
-    members
-        The columns.
-    factor
-        Cholesky factor of ZᵀZ + 1/τ².
+    Attributes:
+        sums: What is left for the other columns.
+        price: ln det(1 + τ² ZᵀZ), what the freedom of the draws costs.
+        members: The columns.
+        factor: Cholesky factor of ZᵀZ + 1/τ².
     """
 
     sums: Sums
@@ -222,14 +203,10 @@ class Marginal:
 class Solved:
     """Least squares over some columns.
 
-    Attributes
-    ----------
-    columns
-        Columns that moved freely; others asked for lie on their bound of zero.
-    values
-        Their values in typical sizes.
-    rss
-        Residual sum of squares.
+    Attributes:
+        columns: Columns that moved freely; others asked for lie on their bound of zero.
+        values: Their values in typical sizes.
+        rss: Residual sum of squares.
     """
 
     columns: Index
@@ -292,16 +269,11 @@ def regression_at(
 ) -> Regression:
     """Linearise the readings at a fit, over its own parameters and all candidates.
 
-    Parameters
-    ----------
-    fit
-        A fitted model; effects of it that are not in `base_effects` count as candidates.
-    candidates
-        Effects to consider besides; those that the model holds already are skipped.
-    base_effects
-        Ids of the effects that belong to every model.
-    alpha, prior
-        See `Regression`; without `prior` the table of `priors.py` counts alone.
+    Args:
+        fit: A fitted model; effects of it that are not in `base_effects` count as candidates.
+        candidates: Effects to consider besides; those that the model holds already are skipped.
+        base_effects: Ids of the effects that belong to every model.
+        alpha, prior: See `Regression`; without `prior` the table of `priors.py` counts alone.
     """
     problem = fit.problem
     full = fit.model

@@ -34,20 +34,14 @@ Tests = dict[str, tuple[float, float]]  # name → probability, excess in noise 
 class Adequacy:
     """Tests of what a model leaves over.
 
-    Attributes
-    ----------
-    probability
-        Smallest probability of the tests, times their number (Bonferroni).
-    excess
-        Size of the left-over structure in units of the noise, √λ.
-    explained
-        Size of what the named effects explain beyond the base model, in the same units.
-    tests
-        For each test its name and probability.
-    whole
-        The test of the whole misfit; None where nothing tells the noise.
-    understated
-        By how much a stated σ looks too small, where that is all that is wrong; else None.
+    Attributes:
+        probability: Smallest probability of the tests, times their number (Bonferroni).
+        excess: Size of the left-over structure in units of the noise, √λ.
+        explained: Size of what the named effects explain beyond the base model, in the same units.
+        tests: For each test its name and probability.
+        whole: The test of the whole misfit; None where nothing tells the noise.
+        understated: By how much a stated σ looks too small, where that is all that is wrong; else
+            None.
     """
 
     probability: float
@@ -70,10 +64,9 @@ class Adequacy:
     def refuse_contradicted(self, where: str) -> None:
         """Stop where "nothing is missing" would rest on noise that the data themselves deny.
 
-        Raises
-        ------
-        Refusal
-            Nothing structured is left, and what is left is `CONTRADICTED` times the stated σ.
+        Raises:
+            Refusal: Nothing structured is left, and what is left is `CONTRADICTED` times the stated
+                σ.
         """
         if self.understated is None or self.understated < CONTRADICTED:
             return
@@ -116,12 +109,9 @@ def adequacy(fit: Fit, named: Collection[str]) -> Adequacy:
     noise is free, the statement is too small and no cause is missing. The more it is exceeded, the
     less structure it takes to think otherwise.
 
-    Parameters
-    ----------
-    fit
-        The fitted model, held against the noise that counts.
-    named
-        Ids of the effects that were added to it.
+    Args:
+        fit: The fitted model, held against the noise that counts.
+        named: Ids of the effects that were added to it.
     """
     noise, whole = yardstick(fit), lack_of_fit(fit)
     size = explained(fit, named) / float(np.sqrt(noise.scale))
@@ -193,12 +183,9 @@ def _structure(fit: Fit, noise: Yardstick) -> Iterator[tuple[str, tuple[float, f
 def explained(fit: Fit, named: Collection[str]) -> float:
     """‖M_B S v‖: what some effects explain that the others cannot imitate, in units of the noise.
 
-    Parameters
-    ----------
-    fit
-        The fitted model; its noise is the unit.
-    named
-        Ids of the effects.
+    Args:
+        fit: The fitted model; its noise is the unit.
+        named: Ids of the effects.
     """
     own = np.array([p.effect.id in named for p in fit.parameters], dtype=bool)
     if not own.any():

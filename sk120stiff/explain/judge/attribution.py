@@ -36,14 +36,11 @@ NEAR = 40.0  # difference of scores within which a rival's neighbours may take o
 class Fallen:
     """An effect that fits and may not be named.
 
-    Attributes
-    ----------
-    id
-        ``name:where``.
-    reason
-        Why, in a sentence.
-    misspecification
-        It only mends the law of a stronger effect; else other poses do not confirm it.
+    Attributes:
+        id: ``name:where``.
+        reason: Why, in a sentence.
+        misspecification: It only mends the law of a stronger effect; else other poses do not
+            confirm it.
     """
 
     id: str
@@ -55,12 +52,9 @@ class Fallen:
 class Named:
     """What came of the chosen effects.
 
-    Attributes
-    ----------
-    findings
-        Effects that may be named, in the order of their weight.
-    fallen
-        Those that may not, the weakest last.
+    Attributes:
+        findings: Effects that may be named, in the order of their weight.
+        fallen: Those that may not, the weakest last.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -88,14 +82,10 @@ def judged(found: Attempt, *, seed: int, least: float = -np.inf) -> tuple[Attemp
     Where some may not, the weakest of them falls, and the others are judged anew without it: names
     that overlap spoil each other's evidence, and theirs is that of the model that is written.
 
-    Parameters
-    ----------
-    found
-        The attempt.
-    seed
-        Of folds and resampling.
-    least
-        Gain of score that an effect has to bring.
+    Args:
+        found: The attempt.
+        seed: Of folds and resampling.
+        least: Gain of score that an effect has to bring.
     """
     fallen: list[Fallen] = []
     while True:
@@ -126,11 +116,9 @@ def findings_of(
 ) -> tuple[tuple[Finding, ...], Fallen | None]:
     """Judge the chosen effects, each beside all the others, from the weakest up.
 
-    Returns
-    -------
-    findings, weakest
-        All effects in the order of their weight, and the weakest that may not be named: what is
-        stronger is not confirmed then, since it will be judged anew.
+    Returns:
+        findings, weakest: All effects in the order of their weight, and the weakest that may not be
+            named: what is stronger is not confirmed then, since it will be judged anew.
     """
     order = by_weight(found.regression, found.scored)
     findings = [_finding(found, effect) for effect in order]

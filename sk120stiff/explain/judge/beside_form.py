@@ -35,14 +35,10 @@ Try = Callable[[NoiseModel], Attempt]
 def beside_model_form(base: Fit, under: Try, *, seed: int) -> tuple[Attempt, Named]:
     """The attempt beside model-form error, with the effects alone that may be named.
 
-    Parameters
-    ----------
-    base
-        Fit of the base model under the noise of the readings.
-    under
-        Makes an attempt under one noise model.
-    seed
-        Of folds and resampling.
+    Args:
+        base: Fit of the base model under the noise of the readings.
+        under: Makes an attempt under one noise model.
+        seed: Of folds and resampling.
     """
     at, before = base, None
     for _ in range(ROUNDS):

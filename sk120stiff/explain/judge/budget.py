@@ -20,14 +20,10 @@ from sk120stiff.identify import Fit
 class Share:
     """What one effect brings.
 
-    Attributes
-    ----------
-    name
-        ``name:where``.
-    rms
-        Of the displacements that it brings, per axis [m].
-    std
-        Standard error of `rms` [m]; None where nothing tells it.
+    Attributes:
+        name: ``name:where``.
+        rms: Of the displacements that it brings, per axis [m].
+        std: Standard error of `rms` [m]; None where nothing tells it.
     """
 
     name: str
@@ -38,12 +34,9 @@ class Share:
 def error_budget(fit: Fit, situation: Situation | None = None) -> tuple[Share, ...]:
     """Shares of all effects of a fitted model, the largest first.
 
-    Parameters
-    ----------
-    fit
-        The fitted model.
-    situation
-        Poses and loads of a task; None: those that were measured.
+    Args:
+        fit: The fitted model.
+        situation: Poses and loads of a task; None: those that were measured.
     """
     at = fit.problem.situation if situation is None else situation
     _, derivative = fit.model.predict_with_sensitivities(at)

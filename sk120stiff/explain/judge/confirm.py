@@ -36,18 +36,12 @@ def confirm(
 ) -> Confirmation:
     """Cross-validate and resample one effect of a model.
 
-    Parameters
-    ----------
-    regression
-        Linearised readings.
-    model
-        The model, whose laws all keep but that of the effect.
-    effect
-        The one in question, part of `model`.
-    alternatives
-        Candidates that count as the same answer.
-    seed
-        Of the folds and the resampling.
+    Args:
+        regression: Linearised readings.
+        model: The model, whose laws all keep but that of the effect.
+        effect: The one in question, part of `model`.
+        alternatives: Candidates that count as the same answer.
+        seed: Of the folds and the resampling.
     """
     rng = np.random.default_rng(seed)
     per_pose = _held_out_gain(regression, model, effect, rng)

@@ -29,12 +29,9 @@ LAWS = 3  # other laws of one name
 def with_selection_uncertainty(found: Attempt, findings: Sequence[Finding]) -> Fit:
     """The final fit, its standard errors and intervals widened by the models that remain possible.
 
-    Parameters
-    ----------
-    found
-        The attempt with its final fit.
-    findings
-        The named effects with their alternatives.
+    Args:
+        found: The attempt with its final fit.
+        findings: The named effects with their alternatives.
     """
     final = found.final
     place = {parameter.name: k for k, parameter in enumerate(final.parameters)}

@@ -27,16 +27,11 @@ def gap_steps(
     Halfway, where an effect is still missing, a fit may have no answer; that step is told together
     with the next.
 
-    Parameters
-    ----------
-    found
-        The base model, its readings, and the effects that were considered.
-    effects
-        In the order in which they were added.
-    holdout
-        Readings of other poses; without them poses are left out of the fit in turn.
-    seed
-        Of the parts in which poses are left out.
+    Args:
+        found: The base model, its readings, and the effects that were considered.
+        effects: In the order in which they were added.
+        holdout: Readings of other poses; without them poses are left out of the fit in turn.
+        seed: Of the parts in which poses are left out.
     """
     fits: list[Fit] = []
     counts: list[int] = []

@@ -66,18 +66,12 @@ def beam_search(
 ) -> list[Scored]:
     """The best models met, best first; the base model is always among them.
 
-    Parameters
-    ----------
-    regression
-        Linearised readings.
-    sums
-        A choice of poses; all of them by default.
-    width
-        Models kept at each size.
-    max_effects
-        Largest number of effects.
-    fixed
-        Candidates that are part of every model.
+    Args:
+        regression: Linearised readings.
+        sums: A choice of poses; all of them by default.
+        width: Models kept at each size.
+        max_effects: Largest number of effects.
+        fixed: Candidates that are part of every model.
     """
     total = sums or regression.sums()
     seen: dict[tuple[int, ...], Scored] = {}

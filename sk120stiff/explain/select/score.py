@@ -31,18 +31,12 @@ DRAWN_SIZES = (0.7, 1.5, 3.0, 6.0)  # standard deviations tried, in typical size
 class Scored:
     """A set of candidate effects with its score.
 
-    Attributes
-    ----------
-    effects
-        Positions in `Regression.candidates`, ascending.
-    score
-        Extended BIC; lower is better. Differences of 6 are strong, of 10 decisive evidence.
-    solved
-        The least-squares solution.
-    plausible
-        No parameter lies beyond its plausible range.
-    variants
-        By which of its variants each effect entered, see `Regression.variants`.
+    Attributes:
+        effects: Positions in `Regression.candidates`, ascending.
+        score: Extended BIC; lower is better. Differences of 6 are strong, of 10 decisive evidence.
+        solved: The least-squares solution.
+        plausible: No parameter lies beyond its plausible range.
+        variants: By which of its variants each effect entered, see `Regression.variants`.
     """
 
     effects: tuple[int, ...]
@@ -71,18 +65,12 @@ def score_set(
     Of every candidate the variant that scores best counts, found one candidate after the other
     until none changes.
 
-    Parameters
-    ----------
-    regression, sums
-        Linearised readings, and the poses of them that count.
-    effects
-        Candidates in the model.
-    untied
-        One that has to enter with all its parameters.
-    start
-        Variant of each candidate to begin with; the first one of those that are not in it.
-    only
-        Candidates whose variants are tried; the others keep theirs. None: of all.
+    Args:
+        regression, sums: Linearised readings, and the poses of them that count.
+        effects: Candidates in the model.
+        untied: One that has to enter with all its parameters.
+        start: Variant of each candidate to begin with; the first one of those that are not in it.
+        only: Candidates whose variants are tried; the others keep theirs. None: of all.
     """
     chosen = tuple(sorted(effects))
     known = start or {}

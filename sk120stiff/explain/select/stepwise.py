@@ -26,20 +26,13 @@ ROUNDS = 4  # of linearising, searching and refitting
 class Attempt:
     """A base model, the model that the search settled on, and everything to judge it by.
 
-    Attributes
-    ----------
-    base, final
-        Fits of the base model and of the model with the chosen effects.
-    regression
-        Readings linearised at `final`.
-    chosen
-        Candidates in `final`.
-    aside
-        Rows (of the readings given) that were set aside as outliers.
-    candidates
-        All effects considered.
-    total
-        Score of the whole, noise included; attempts under other zero readings compare by it.
+    Attributes:
+        base, final: Fits of the base model and of the model with the chosen effects.
+        regression: Readings linearised at `final`.
+        chosen: Candidates in `final`.
+        aside: Rows (of the readings given) that were set aside as outliers.
+        candidates: All effects considered.
+        total: Score of the whole, noise included; attempts under other zero readings compare by it.
     """
 
     base: Fit
@@ -73,22 +66,14 @@ def attempt(
 ) -> Attempt:
     """Settle on a set of effects under one noise model.
 
-    Parameters
-    ----------
-    model
-        The base model.
-    measurements
-        Readings in use.
-    noise
-        Their noise.
-    candidates
-        Effects that may be missing.
-    max_effects
-        Largest number of them to add.
-    alpha
-        Probability of naming something where nothing is missing.
-    prior
-        Probabilities of effects that the user gave.
+    Args:
+        model: The base model.
+        measurements: Readings in use.
+        noise: Their noise.
+        candidates: Effects that may be missing.
+        max_effects: Largest number of them to add.
+        alpha: Probability of naming something where nothing is missing.
+        prior: Probabilities of effects that the user gave.
     """
     base = fit(model, measurements, noise=noise)
     ids = tuple(effect.id for effect in model.effects)

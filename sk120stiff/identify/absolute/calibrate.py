@@ -33,22 +33,14 @@ REGISTERED = "registered"
 class Calibration:
     """Geometry and springs from positions.
 
-    Attributes
-    ----------
-    fit
-        The fit; its problem is a `PoseProblem`.
-    placed
-        The closed-form placing that came before; None where positions were not whole.
-    frozen
-        Small errors of geometry that these readings cannot tell.
-    still
-        Actuated joints that never move.
-    wild
-        (N,) rows of the readings given that were set aside.
-    waves
-        Transmission errors that show beyond doubt and so are in the model.
-    notes
-        What is to be said, in sentences.
+    Attributes:
+        fit: The fit; its problem is a `PoseProblem`.
+        placed: The closed-form placing that came before; None where positions were not whole.
+        frozen: Small errors of geometry that these readings cannot tell.
+        still: Actuated joints that never move.
+        wild: (N,) rows of the readings given that were set aside.
+        waves: Transmission errors that show beyond doubt and so are in the model.
+        notes: What is to be said, in sentences.
     """
 
     fit: Fit
@@ -96,28 +88,18 @@ def calibrate(
 ) -> Calibration:
     """Register the tracker, and estimate geometry, the marker's place and springs together.
 
-    Parameters
-    ----------
-    model
-        Starting values; its free parameters are estimated beside the geometry.
-    readings
-        Rows of where markers stand.
-    geometry
-        Estimate six small errors of every joint's frame, as far as they can be told.
-    waves
-        Let transmission errors in where the readings show them beyond doubt: what they leave out
-        would be taken for springs.
-    freedom
-        Full names of parameters to keep at their values.
-    catalogue
-        Where effects come from.
+    Args:
+        model: Starting values; its free parameters are estimated beside the geometry.
+        readings: Rows of where markers stand.
+        geometry: Estimate six small errors of every joint's frame, as far as they can be told.
+        waves: Let transmission errors in where the readings show them beyond doubt: what they leave
+            out would be taken for springs.
+        freedom: Full names of parameters to keep at their values.
+        catalogue: Where effects come from.
 
-    Raises
-    ------
-    InputError
-        No such robot gave these positions, or there are too few of them.
-    Refusal
-        The fit did not converge.
+    Raises:
+        InputError: No such robot gave these positions, or there are too few of them.
+        Refusal: The fit did not converge.
     """
     said = readings.absolute
     if said is None:

@@ -25,10 +25,8 @@ ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
 class Independent:
     """Whitening of M channels that are independent of one another.
 
-    Attributes
-    ----------
-    sigma
-        (M,) standard uncertainty of each [m or rad].
+    Attributes:
+        sigma: (M,) standard uncertainty of each [m or rad].
     """
 
     sigma: Array
@@ -43,10 +41,8 @@ class Independent:
 class PoseProblem(Problem):
     """A model and readings of where markers stand.
 
-    Attributes
-    ----------
-    sigma
-        Standard uncertainty of each kind of channel that did not state its own [m or rad].
+    Attributes:
+        sigma: Standard uncertainty of each kind of channel that did not state its own [m or rad].
     """
 
     sigma: Mapping[str, float] = field(default_factory=dict)
