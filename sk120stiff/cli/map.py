@@ -22,7 +22,7 @@ from sk120stiff.cli.options import (
     RobotOrModelArgument,
     ToolOption,
 )
-from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.cli.tables import progress_bars, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_fill, will_write
@@ -183,12 +183,15 @@ def command(
         )
     job = MapJob(arm, points, loads, with_directions=directions)
     shown = _shown(colour, page, job)
-    with progress_bar("Mapping") as report:
-        written = write_map(job, out, scheduler=scheduler, overwrite=overwrite, progress=report)
-    check = verify_map(out)
-    if not check.intact:
-        raise damaged_map(out, check)
-    loads_found, status = summarise_map(out)
+    with progress_bars("Checking what is there", "Mapping") as (found, mapped):
+        written = write_map(
+            job, out, scheduler=scheduler, overwrite=overwrite, progress=mapped, checking=found
+        )
+    with progress_bars("Checking", "Reading") as (checked, read):
+        check = verify_map(out, progress=checked)
+        if not check.intact:
+            raise damaged_map(out, check)
+        loads_found, status = summarise_map(out, progress=read)
     if page is not None:
         _write_page(page, out, believed, pose, shown)
     drawn = [] if figures is None else _draw(figures, out, loads_found)

@@ -180,9 +180,11 @@ def open_data(path: Path, base: str | None = None, tool: str | None = None) -> O
     Raises:
         InputError: The data cannot be read, name no robot, or do not fit it.
     """
+    from sk120stiff.cli.tables import progress_bar
     from sk120stiff.measurements import read_measurements
 
-    data = read_measurements(path)
+    with progress_bar("reading"):
+        data = read_measurements(path)
     if data.robot is None:
         raise InputError(
             "the measurements do not say which robot they are of",

@@ -11,7 +11,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
-from sk120stiff.cli.tables import table
+from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import ToolkitWarning
@@ -45,7 +45,8 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     believed = model_for(robot, model)
     for said in look(believed, readings).sentences:
         warnings.warn(said, ToolkitWarning, stacklevel=2)
-    predicted = predict_what_holds(believed, situation_of(robot, readings))
+    with progress_bar("predict"):
+        predicted = predict_what_holds(believed, situation_of(robot, readings))
     frame = prediction_table(readings, predicted)
     if out is not None:
         write_atomically(out, csv_text(frame))
@@ -57,7 +58,8 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
         gap = measured - predicted.displacement
         rms = _rms(gap[used])
         for label in readings.poses:
-            rows = np.intersect1d(readings.rows_of(label), np.flatnonzero(used))
+            rows = readings.rows_of(label)
+            rows = rows[used[rows]]
             if len(rows):
                 per_pose.append({"pose": label, "rms_um": _rms(gap[rows])})
     document = {

@@ -51,6 +51,13 @@ class _Rate(ProgressColumn):
 @contextmanager
 def progress_bar(doing: str) -> Iterator[Callable[[int, int], None]]:
     """A bar on stderr with rate and remaining time; yields ``report(done, total)``."""
+    with progress_bars(doing) as (report,):
+        yield report
+
+
+@contextmanager
+def progress_bars(*doing: str) -> Iterator[tuple[Callable[[int, int], None], ...]]:
+    """A bar for each step of a work, shown from its first report on; the first one at once."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -59,9 +66,11 @@ def progress_bar(doing: str) -> Iterator[Callable[[int, int], None]]:
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(doing, total=None)
 
-        def report(done: int, total: int) -> None:
-            progress.update(task, completed=done, total=total)
+        def reporting(step: str, *, visible: bool) -> Callable[[int, int], None]:
+            task = progress.add_task(step, total=None, visible=visible)
+            return lambda done, total: progress.update(
+                task, completed=done, total=total, visible=True
+            )
 
-        yield report
+        yield tuple(reporting(step, visible=k == 0) for k, step in enumerate(doing))

@@ -15,6 +15,7 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.workspace.field import STATUS, UNKNOWN_CLASS
 from sk120stiff.workspace.manifest import MANIFEST, as_written, read_manifest
 from sk120stiff.workspace.skeleton import zarr_or_explain
+from sk120stiff.workspace.store import Progress
 
 if TYPE_CHECKING:
     import xarray
@@ -39,12 +40,15 @@ class MapCheck:
         return not self.missing and not self.damaged
 
 
-def verify_map(path: str | os.PathLike[str], *, results: bool = True) -> MapCheck:
+def verify_map(
+    path: str | os.PathLike[str], *, results: bool = True, progress: Progress | None = None
+) -> MapCheck:
     """Compare every file of a finished map with the SHA-256 of when it was written.
 
     Args:
         path: The map.
         results: Read the results too, which are nearly all of it; else only what describes them.
+        progress: Called with (files looked at, files in all).
 
     Raises:
         InputError: There is no finished map.
@@ -61,12 +65,13 @@ def verify_map(path: str | os.PathLike[str], *, results: bool = True) -> MapChec
         return MapCheck(1, (), (MANIFEST,))
     digests = manifest.describing | (manifest.results if results else {})
     missing = tuple(file for file in digests if not (folder / file).is_file())
-    damaged = tuple(
-        file
-        for file, digest in digests.items()
-        if file not in missing and not as_written(folder, file, digest)
-    )
-    return MapCheck(len(digests) + 1, missing, damaged)
+    damaged = []
+    for number, (file, digest) in enumerate(digests.items()):
+        if progress:
+            progress(number, len(digests))
+        if file not in missing and not as_written(folder, file, digest):
+            damaged.append(file)
+    return MapCheck(len(digests) + 1, missing, tuple(damaged))
 
 
 def damaged_map(path: Path, check: MapCheck) -> Refusal:
@@ -127,7 +132,9 @@ class LoadSummary:
     deflection_std_remainder: float | None = None
 
 
-def summarise_map(path: str | os.PathLike[str]) -> tuple[tuple[LoadSummary, ...], dict[str, int]]:
+def summarise_map(
+    path: str | os.PathLike[str], *, progress: Progress | None = None
+) -> tuple[tuple[LoadSummary, ...], dict[str, int]]:
     """Every load's summary, and how many points have which status; read chunk by chunk."""
     dataset = open_map(path)
     stiffness = dataset["minimum_stiffness"]
@@ -137,7 +144,10 @@ def summarise_map(path: str | os.PathLike[str]) -> tuple[tuple[LoadSummary, ...]
     starts = {axis: range(0, stiffness.sizes[axis], size[axis]) for axis in axes}
     counts = dict.fromkeys(STATUS, 0)
     best: list[_Extremes] = [_Extremes() for _ in range(stiffness.sizes["load"])]
-    for corner in itertools.product(*(starts[axis] for axis in axes)):
+    corners = list(itertools.product(*(starts[axis] for axis in axes)))
+    for done, corner in enumerate(corners):
+        if progress:
+            progress(done, len(corners))
         where = {axis: slice(k, k + size[axis]) for axis, k in zip(axes, corner, strict=True)}
         chunk = dataset.isel(where).load()
         if "status" in chunk:

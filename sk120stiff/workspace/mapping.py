@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,9 +12,7 @@ from typing import Any
 from sk120stiff.errors import InputError, MissingPart, Refusal, ToolkitError
 from sk120stiff.workspace.field import MapJob
 from sk120stiff.workspace.lock import only_writer
-from sk120stiff.workspace.store import MapStore
-
-Progress = Callable[[int, int], None]
+from sk120stiff.workspace.store import MapStore, Progress
 
 FAST_POINTS, SLOW_POINTS = 1 << 17, 1 << 12  # of a chunk: for one load, for slow work
 CONNECT_SECONDS = 5  # after which a scheduler counts as unreachable
@@ -53,6 +51,7 @@ def write_map(
     chunk_points: int | None = None,
     overwrite: bool = False,
     progress: Progress | None = None,
+    checking: Progress | None = None,
 ) -> MapReport:
     """Write a map, or what is missing of it.
 
@@ -70,6 +69,8 @@ def write_map(
             many as make about a second's work.
         overwrite: Replace another map of that name.
         progress: Called with (points done, points in all) after every chunk.
+        checking: Called with (chunks looked at, chunks in all) while what an earlier run left is
+            compared with its checksums.
 
     Raises:
         InputError: The place is taken, another run writes there, the disk has not enough room, or
@@ -82,7 +83,7 @@ def write_map(
     with only_writer(store.path):
         client = None if scheduler is None else _connect(scheduler)
         try:
-            found = store.prepare(overwrite=overwrite)
+            found = store.prepare(overwrite=overwrite, progress=checking)
             missing = [chunk for chunk in range(number) if chunk not in found.done]
             counted = size - sum(_points(store, chunk) for chunk in missing)
             computed = 0

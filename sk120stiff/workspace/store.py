@@ -13,7 +13,7 @@ import errno
 import json
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,6 +43,7 @@ from sk120stiff.workspace.skeleton import (
 )
 
 PROGRESS = ".progress"
+Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -77,11 +78,11 @@ class MapStore:
         """How the grid is cut."""
         return Chunks(self.job.points.grid.shape, self.chunk_points)
 
-    def prepare(self, *, overwrite: bool = False) -> Found:
+    def prepare(self, *, overwrite: bool = False, progress: Progress | None = None) -> Found:
         """Make the folder or take up what an earlier run left.
 
         Damaged files that hold no results are made again here; damaged chunks are removed, so
-        that they count as missing.
+        that they count as missing. `progress` is called with (chunks looked at, chunks in all).
 
         Raises:
             InputError: Something else is in that place, or the disk has not enough room.
@@ -103,6 +104,8 @@ class MapStore:
         done: set[int] = set()
         damaged: list[str] = [MANIFEST] if finished and manifest is None else []
         for chunk in range(self.chunks.number):
+            if progress:
+                progress(chunk, self.chunks.number)
             bad = [
                 f for f in self._chunk_files(chunk) if not as_written(self.path, f, files.get(f))
             ]

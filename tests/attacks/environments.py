@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tests.attacks.inputs import desk
@@ -110,27 +110,44 @@ def limits(folder: Path) -> Iterator[Verdict]:
         )
 
 
-def _may_run_python() -> bool:
-    """May another user run this interpreter? Not where it lies in root's own folder."""
+# Without these even root is a stranger where the folder's mode says so.
+STRIPPED = ("setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all")
+
+
+UNWRITABLE = (
+    "identify m.csv", "identify m.csv --out x.yaml", "identify m.csv --out m.csv",
+    "view rob --static v.html", "explain m.csv --out e", "new rob --out mine",
+    "predict mod.yaml m.csv --out mod.yaml", "paper --out p",
+    "map rob --grid joint_2_l=0:9:3deg --out m.zarr",
+)  # fmt: skip
+
+
+def _stranger() -> Sequence[str] | None:
+    """Words that start a program as one who may write only where modes allow; None: no such way."""
+    if os.geteuid() != 0:
+        return ()
     try:
-        subprocess.run([sys.executable, "-c", ""], user=65534, check=True)
-    except (OSError, subprocess.CalledProcessError):
-        return False
-    return True
+        done = subprocess.run([*STRIPPED, sys.executable, "-c", ""], check=False)
+    except OSError:
+        return None
+    return STRIPPED if done.returncode == 0 else None
 
 
 def strangers(folder: Path) -> Iterator[Verdict]:
-    """Another user, who may write nowhere; only where this process may become one."""
+    """A folder in which nothing may be written, and a home that is not there."""
     desk(folder)
-    for path in (folder, *folder.rglob("*")):
-        path.chmod(0o755 if path.is_dir() else 0o644)
-    folder.parent.chmod(0o755)
-    if os.geteuid() != 0 or not _may_run_python():
+    under = _stranger()
+    if under is None:
         return
-    for command in ("identify m.csv", "identify m.csv --out x.yaml", "view rob --static v.html",
-                    "explain m.csv --out e",
-                    "map rob --grid joint_2_l=0:9:3deg --out m.zarr"):  # fmt: skip
-        yield apart(
-            f"nobody in a folder of root: {command}", command.split(), cwd=folder,
-            user=65534, group=65534, environment={"HOME": "/nonexistent"},
-        )  # fmt: skip
+    places = [*folder.rglob("*"), folder]
+    for path in places:
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    try:
+        for command in UNWRITABLE:
+            told = f"in a folder that is write-protected: {command}"
+            yield apart(
+                told, command.split(), cwd=folder, under=under, environment={"HOME": "/nonexistent"}
+            )
+    finally:
+        for path in places[::-1]:
+            path.chmod(0o755 if path.is_dir() else 0o644)

@@ -116,11 +116,13 @@ def apart(
     environment: Mapping[str, str | None] | None = None,
     codes: Sequence[int] = ANSWERS,
     before: str = "",
+    under: Sequence[str] = (),
     **options: object,
 ) -> Verdict:
     """Run a command in a process of its own, with environment variables set (None: removed).
 
-    `before` is Python that runs first in that process: limits, closed descriptors.
+    `before` is Python that runs first in that process: limits, closed descriptors. `under` are the
+    words of a program that starts it.
     """
     variables = {**os.environ, "OMP_NUM_THREADS": "1"}
     for name, value in (environment or {}).items():
@@ -139,7 +141,7 @@ def apart(
         **options,
     }
     done = subprocess.run(
-        [sys.executable, *python, "-c", code, *arguments],
+        [*under, sys.executable, *python, "-c", code, *arguments],
         env=variables,
         check=False,
         **settings,  # type: ignore[call-overload]

@@ -195,3 +195,17 @@ def test_what_a_killed_run_left_beside_the_map_is_cleared(tmp_path: Path) -> Non
     (tmp_path / ".other.zarr.new-abc").mkdir()
     small_map(tmp_path / "m.zarr")
     assert sorted(p.name for p in tmp_path.iterdir()) == [".other.zarr.new-abc", "m.zarr"]
+
+
+def test_checking_what_is_there_tells_its_progress(tmp_path: Path) -> None:
+    path = tmp_path / "m.zarr"
+    report = small_map(path)
+    told: list[tuple[int, int]] = []
+    write_map(job(), path, chunk_points=SMALL, checking=lambda *done: told.append(done))
+    assert told == [(k, report.chunks) for k in range(report.chunks)]
+    told.clear()
+    files = verify_map(path, progress=lambda *done: told.append(done)).files - 1
+    assert told == [(k, files) for k in range(files)]
+    told.clear()
+    summarise_map(path, progress=lambda *done: told.append(done))
+    assert told == [(k, report.chunks) for k in range(report.chunks)]
