@@ -27,8 +27,9 @@ HEAVY = {
     "yaml",
 }
 INFRASTRUCTURE = {
-    "__init__", "environment", "explain_output", "frame", "main", "opening", "options",
-    "map_postures", "plan_wishes", "tables", "uncertainty", "visible", "xacro_option",
+    "__init__", "calibration", "environment", "explain_output", "frame", "identify_rows", "main",
+    "map_postures", "opening", "options", "plan_wishes", "positions", "tables", "uncertainty",
+    "visible", "xacro_option",
 }  # fmt: skip
 
 
