@@ -6,6 +6,7 @@ nothing: all of that is done here, once.
 
 from __future__ import annotations
 
+import errno
 import functools
 import inspect
 import logging
@@ -22,7 +23,7 @@ import typer
 
 from sk120stiff.cli.visible import visible
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
-from sk120stiff.errors import Refusal, ToolkitError
+from sk120stiff.errors import InputError, Refusal, ToolkitError
 from sk120stiff.files import running
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 
@@ -111,6 +112,10 @@ def guarded(*, debug: bool, as_json: bool = False) -> Iterator[None]:
         raise typer.Exit(NOBODY_READS) from None
     except OSError as error:
         place = str(error.filename) if error.filename else None
+        if error.errno == errno.ENAMETOOLONG:
+            bad = InputError("this name is longer than the system allows", where=f"{place}"[:80])
+            failure = Failure(bad.exit_code, bad.kind, bad.what, bad.where)
+            _leave(failure, f"Error: {bad}", trace=debug, as_json=as_json)
         failure = Failure(INTERNAL, "system", str(error.strerror or error), place)
         said = f"Error: {place + ': ' if place else ''}{failure.message}."
         _leave(failure, said, trace=debug, as_json=as_json)

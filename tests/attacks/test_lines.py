@@ -67,6 +67,14 @@ def test_a_negative_seed_is_bad_usage(run, command: str, tmp_path: Path) -> None
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_name_that_no_file_can_have_is_bad_input(run, tmp_path: Path) -> None:
+    data = str(ROOT / "robots/motoman_sk120/data/table2_measured.csv")
+    out = str(tmp_path / "i.csv")
+    outcome = run("import", data, "--robot", "a" * 5000, "--out", out, "--json")
+    assert outcome.code == 2
+    assert outcome.error["kind"] == "input"
+
+
 @pytest.mark.parametrize("place", ["rob", "link"])
 def test_new_replaces_nothing(run, place: str, tmp_path: Path, monkeypatch) -> None:
     """Not the robot's own folder, nor through a link, nor what a link in the folder leads to."""
