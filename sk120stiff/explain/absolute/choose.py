@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.effects import Effect, Elastic
 from sk120stiff.explain.absolute.linear import Linear
 
 CLEAR = 3.0  # logarithm of odds beyond those of one among all candidates
+USUAL = 2.0  # logarithm of odds of what every arm has: frames a little off, joints that yield
 RIVAL = 3.0  # loss of evidence at which another cause explains as much
 SHARE = 0.003  # of the held-out gap that a cause must take off to be named on top of others
 SURE = 2.5  # standard errors of the held-out gain over poses
@@ -54,7 +56,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         noise = linear.noise(chosen)
         now = linear.score(chosen, noise)
         tried = {
-            e: linear.score((*chosen, e), noise) - now
+            e: linear.score((*chosen, e), noise) - now + usual(linear.candidates[e])
             for e in range(len(linear.candidates))
             if e not in chosen and e not in dropped
         }
@@ -63,7 +65,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         best = max(tried, key=lambda e: tried[e])
         if tried[best] < threshold:
             break
-        chosen = _backward(linear, (*chosen, best), threshold)
+        chosen = _backward(linear, _plainer(linear, (*chosen, best)), threshold)
         if frozenset(chosen) in seen:
             break
         seen.add(frozenset(chosen))
@@ -80,6 +82,39 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
             chosen = tuple(c for c in chosen if c != e)
             dropped[e] = f"{linear.candidates[e].id} is not confirmed by poses left out."
     return Chosen(chosen, dropped)
+
+
+def usual(effect: Effect) -> float:
+    """Logarithm of the odds of meeting a cause, over those of one as good as any."""
+    if effect.joint_spring or effect.name == "joint_frame":
+        return USUAL
+    return 0.0
+
+
+def _plainer(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
+    """Springs of joints in the place of other parts that yield, where they explain as much.
+
+    Under weight alone a bearing that tilts, a bent link and the spring of the next joint are often
+    one; the spring is there in any case.
+    """
+    springs = [e for e, effect in enumerate(linear.candidates) if effect.joint_spring]
+    for e in chosen:
+        effect = linear.candidates[e]
+        if effect.joint_spring or not isinstance(effect, Elastic):
+            continue
+        noise = linear.noise(chosen)
+        aim = linear.score(chosen, noise) - RIVAL
+        tried = _less(chosen, e)
+        for _ in range(len(effect.parameters)):
+            rest = [s for s in springs if s not in tried]
+            if not rest:
+                break
+            score, best = max((linear.score((*tried, s), noise), s) for s in rest)
+            tried = (*tried, best)
+            if score >= aim:
+                chosen = tried
+                break
+    return chosen
 
 
 def _confirmed(gained: Gain, linear: Linear) -> bool:
@@ -128,7 +163,12 @@ def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple
     others = {
         c: linear.score((*rest, c), noise) for c in range(len(linear.candidates)) if c not in chosen
     }
-    rivals = tuple(c for c, score in others.items() if score > own - RIVAL and score > nothing)
+    rivals = tuple(
+        c
+        for c, score in others.items()
+        if score + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
+        and score > nothing
+    )
     scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
     weight = np.exp(scores - scores.max())
     return rivals, float(weight[:-1].sum() / weight.sum())
