@@ -1,5 +1,6 @@
 """The house rules that a machine can check, so that one command is the whole truth."""
 
+import re
 import subprocess
 import sys
 import sysconfig
@@ -53,3 +54,13 @@ def test_files_are_short(folder: str) -> None:
 def test_names_say_what_a_file_is() -> None:
     vague = [path for path in python_files("sk120stiff") if path.stem in NAMES_THAT_SAY_NOTHING]
     assert not vague
+
+
+def test_types_of_arrays_live_on_the_ground_floor() -> None:
+    spelled = re.compile(r"NDArray\[np\.(?:float64|intp|int64|bool_)\]")
+    again = [
+        path
+        for path in python_files("sk120stiff")
+        if path.stem != "arrays" and spelled.search(path.read_text(encoding="utf-8"))
+    ]
+    assert not again

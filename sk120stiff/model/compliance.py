@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Situation, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model.model import Model
@@ -37,7 +36,7 @@ class ModelCompliance:
         return self.model.assembly.mechanism
 
     @cached_property
-    def soft(self) -> NDArray[np.intp]:
+    def soft(self) -> Index:
         """See `Compliant`."""
         return self.model.assembly.soft(self.model.values)
 

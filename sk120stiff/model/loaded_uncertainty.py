@@ -7,6 +7,7 @@ drawn: where two are nearly equal, they push each other apart, and no derivative
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,7 +66,8 @@ def loaded_uncertainty(
     model, point = seen_from(model.physical(), frame or model.robot.tool_frame, np.zeros(3))
     load = np.asarray(wrench, dtype=float)
     C = _compliance(model, model.values, a, load, point)
-    change = np.stack(_derivative(model, a, load, point), axis=-1)  # (3, 3, P)
+    derivatives = by_parameters(model, lambda values: _compliance(model, values, a, load, point))
+    change = np.stack(derivatives, axis=-1)  # (3, 3, P)
     change = 0.5 * (change + np.swapaxes(change, 0, 1))
     directions = found.principal.directions  # (3, 3), one per row
     by_parameter = np.einsum("ki,ijp,kj->kp", directions, change, directions)
@@ -107,8 +109,8 @@ def _compliance(model: Model, values: Array, a: ArrayLike, load: Array, point: A
     return under_load(arm, model.robot.coordinates(a), load, ("compliance",)).of("compliance")
 
 
-def _derivative(model: Model, a: ArrayLike, load: Array, point: Array) -> list[Array]:
-    """Derivatives (3, 3) of the compliance by every parameter, by central differences."""
+def by_parameters(model: Model, of: Callable[[Array], Array]) -> list[Array]:
+    """Derivatives of a function of the parameter values by each of them, by central differences."""
     changes = []
     for k, parameter in enumerate(model.parameters):
         step = STEP * max(abs(parameter.internal), parameter.spec.typical)
@@ -116,7 +118,7 @@ def _derivative(model: Model, a: ArrayLike, load: Array, point: Array) -> list[A
         for side in (step, -step):
             values = model.values.copy()
             values[k] += side
-            ends.append(_compliance(model, values, a, load, point))
+            ends.append(of(values))
         changes.append((ends[0] - ends[1]) / (2.0 * step))
     return changes
 

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.stiffness.elastic import Compliant
 from sk120stiff.stiffness.kernel.run import run
@@ -121,7 +121,7 @@ class UnderLoad:
         return Principal(self.of("values"), self.of("directions"))
 
     @property
-    def stable(self) -> NDArray[np.bool_]:
+    def stable(self) -> Mask:
         """(...,) is K positive definite, so that the pose holds under the load?"""
         return np.asarray(
             self.of("stiffness_class") == CLASSES.index(Definiteness.POSITIVE_DEFINITE)

@@ -19,9 +19,8 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import situation_of_load
 from sk120stiff.model import Model, Remainder
+from sk120stiff.model.loaded_uncertainty import by_parameters
 from sk120stiff.model.uncertainty import spread
-
-STEP = 1e-3  # of a usual size; compliances are linear in their parameters
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,15 +84,9 @@ def at_poses(doubt: Doubt, model: Model, poses: Array) -> Doubt:
 
 def _changes(model: Model, poses: Array) -> Array:
     situation = situation_of_load(model.robot, poses, np.zeros(6))
-    changes = []
-    for k, parameter in enumerate(model.parameters):
-        step = STEP * max(abs(parameter.internal), parameter.spec.typical)
-        ends = []
-        for side in (step, -step):
-            values = model.values.copy()
-            values[k] += side
-            ends.append(np.asarray(model.solve(situation, values).rest.compliance))
-        changes.append((ends[0] - ends[1]) / (2.0 * step))
+    changes = by_parameters(
+        model, lambda values: np.asarray(model.solve(situation, values).rest.compliance)
+    )
     n = model.assembly.mechanism.n
     stacked = np.array(changes).reshape(len(changes), -1, n, n)
     return np.asarray(stacked[:, 0] if stacked.shape[1] == 1 else stacked)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,21 +87,6 @@ POSITION = Variable("position", "m", "of the point, base axes", False, extra=_AX
 STATUS_VARIABLE = Variable("status", "", "was the point reached", False, "u1", labels=STATUS)
 
 
-class Poses(Protocol):
-    """What turns points of a grid into joint coordinates."""
-
-    @property
-    def grid(self) -> Grid:
-        """The grid."""
-
-    @property
-    def cartesian(self) -> bool:
-        """Are its points positions?"""
-
-    def poses(self, arm: ElasticArm, begin: int, end: int) -> tuple[Array, NDArray[np.uint8]]:
-        """(N, n) joint coordinates of a stretch of points, and (N,) status of each."""
-
-
 @dataclass(frozen=True, eq=False)
 class JointGrid:
     """A grid whose axes are joints.
@@ -116,7 +101,7 @@ class JointGrid:
     cartesian: bool = field(default=False, init=False)
 
     def poses(self, arm: ElasticArm, begin: int, end: int) -> tuple[Array, NDArray[np.uint8]]:
-        """See `Poses`."""
+        """(N, n) joint coordinates of a stretch of points, and (N,) status of each."""
         a = np.tile(self.rest, (end - begin, 1))
         columns = [arm.joints.index(axis.name) for axis in self.grid.axes]
         a[:, columns] = self.grid.points(begin, end)
@@ -152,7 +137,7 @@ class PositionGrid:
     cartesian: bool = field(default=True, init=False)
 
     def poses(self, arm: ElasticArm, begin: int, end: int) -> tuple[Array, NDArray[np.uint8]]:
-        """See `Poses`."""
+        """(N, n) joint coordinates of a stretch of points, and (N,) status of each."""
         if arm.has_loops:
             raise InputError(
                 "postures of an arm with closed loops are not searched",
