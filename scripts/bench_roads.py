@@ -217,7 +217,7 @@ def frax_arrays(seconds: float, *, count: int = 20_000) -> float:
     import jax.numpy as jnp
     from frax.core.manipulator import Manipulator
 
-    robot = serial_arm()
+    robot = serial_arm(mass=1.0)  # frax wants an inertia of every link
     with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
         file.write(robot.document.xml)
         file.flush()

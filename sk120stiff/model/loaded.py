@@ -23,7 +23,7 @@ from sk120stiff.stiffness import (
     gravity_stiffness,
     under_load,
 )
-from sk120stiff.stiffness.elastic import ZERO
+from sk120stiff.stiffness.elastic import ZERO, stiffness_of
 
 _WANTED = (BY_POSE | BY_LOAD) - {
     "deflection_equilibrium",
@@ -140,7 +140,7 @@ def loaded_stiffness(
         coordinates=names,
         soft=tuple(names[k] for k in np.flatnonzero(C_theta.any(axis=0))),
         jacobian=found.of("jacobian"),
-        K_theta=_joint_stiffness(C_theta),
+        K_theta=stiffness_of(C_theta),
         K_C=complementary_stiffness(screws, load),
         K_gravity=np.zeros((n, n)) if own is None else gravity_stiffness(screws, own.gravity),
         compliance_conventional=C_conventional,
@@ -179,13 +179,3 @@ def _inverse(compliance: Array) -> Array:
     if values[-1] <= ZERO * values[0]:
         return np.full_like(compliance, np.nan)
     return np.asarray(np.linalg.inv(compliance))
-
-
-def _joint_stiffness(C_theta: Array) -> Array:
-    soft = C_theta.any(axis=0)
-    K_theta = np.diag(np.where(soft, 0.0, np.inf))
-    C = C_theta[np.ix_(soft, soft)]
-    values = np.abs(np.linalg.eigvalsh(C))
-    full = values.min() > ZERO * values.max()
-    K_theta[np.ix_(soft, soft)] = np.linalg.inv(C) if full else np.nan
-    return K_theta

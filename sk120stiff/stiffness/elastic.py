@@ -137,10 +137,9 @@ class ConstantCompliance:
     def fold(self) -> Fold | None:
         """See `Compliant`: linear couplings, and compliances that springs can make."""
         coupling = self.mechanism.elastic or self.mechanism.coupling
-        C = self.compliance[np.ix_(self.soft, self.soft)]
-        if not isinstance(coupling, LinearCoupling) or not _is_of_springs(C):
+        K_theta = stiffness_of(self.compliance)[np.ix_(self.soft, self.soft)]
+        if not isinstance(coupling, LinearCoupling) or not are_springs(K_theta):
             return None
-        K_theta = symmetric_part(np.asarray(np.linalg.inv(C), dtype=float))
         return fold(self.mechanism, self.soft, K_theta, self.point, self.shift, self.gravity)
 
     def start(self, a: Array) -> Array:
@@ -163,12 +162,25 @@ class ConstantCompliance:
         return lambda torques: (torques @ self.compliance, self.compliance)
 
 
-def _is_of_springs(C: Array) -> bool:
-    """Is a compliance (s, s) positive definite, so that there is a K_θ?"""
-    if not len(C):
-        return False
-    values = np.linalg.eigvalsh(symmetric_part(C))
-    return bool(values[0] > ZERO * values[-1])
+def stiffness_of(compliance: Array) -> Array:
+    """(n, n) K_θ of a symmetric compliance, infinite on the diagonal where nothing yields.
+
+    What yields is NaN where some of it does so only together with others: no K_θ exists.
+    """
+    soft = compliance.any(axis=0)
+    K_theta = np.diag(np.where(soft, 0.0, np.inf))
+    C = compliance[np.ix_(soft, soft)]
+    sizes = np.abs(np.linalg.eigvalsh(C))
+    exists = sizes.min(initial=np.inf) > ZERO * sizes.max(initial=0.0)
+    K_theta[np.ix_(soft, soft)] = (
+        symmetric_part(np.asarray(np.linalg.inv(C), dtype=float)) if exists else np.nan
+    )
+    return K_theta
+
+
+def are_springs(K_theta: Array) -> bool:
+    """Is a K_θ (s, s) positive definite, so that springs can make it?"""
+    return bool(len(K_theta) and np.isfinite(K_theta).all() and np.linalg.eigvalsh(K_theta)[0] > 0)
 
 
 def _compliance_of(springs: Array, n: int) -> Array:

@@ -13,7 +13,7 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model, ModelCompliance, model_compliance, probing_poses
 from sk120stiff.robot import LinearCoupling, Robot
-from sk120stiff.stiffness import ConstantCompliance, UnderLoad, symmetric_part, under_load
+from sk120stiff.stiffness import ConstantCompliance, UnderLoad, under_load
 from sk120stiff.workspace.bending import Bending, Doubt, at_poses, bending, doubt_of
 
 BENDING = ("jacobian", "K_C", "K_gravity", "deflection_enhanced")  # what `bending` needs
@@ -166,24 +166,3 @@ def elastic_arm(
         robot=robot if robot.closures else None,
         doubt=doubt_of(physical, probing_poses(robot)),
     )
-
-
-def springs_of(compliance: Array, name: str) -> Array | None:
-    """(n, n) stiffness of a compliance, infinite on the diagonal where nothing yields.
-
-    None where the compliance of what yields is singular or negative in some direction.
-    """
-    soft = np.flatnonzero(compliance.any(axis=0))
-    if not len(soft):
-        raise InputError(
-            "nothing in this model yields under load",
-            where=name,
-            remedy="Give a model with joint_springs or another elastic effect.",
-        )
-    part = symmetric_part(compliance[np.ix_(soft, soft)])
-    values = np.linalg.eigvalsh(part)
-    if values[0] <= 1e-12 * values[-1]:
-        return None
-    springs = np.diag(np.where(compliance.any(axis=0), 0.0, np.inf))
-    springs[np.ix_(soft, soft)] = symmetric_part(np.asarray(np.linalg.inv(part), dtype=float))
-    return springs

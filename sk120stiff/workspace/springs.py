@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError
-from sk120stiff.model import Model, seen_from
+from sk120stiff.model import Model, model_compliance
 from sk120stiff.robot import LinearCoupling
-from sk120stiff.workspace.arm import springs_of
+from sk120stiff.stiffness.elastic import are_springs, stiffness_of
 
 _SMALL = 1e-12  # share of a row below which a number is a zero that was computed
 
@@ -119,8 +118,8 @@ def spring_arm(model: Model, pose: ArrayLike, *, frame: str | None = None) -> Sp
             that yields.
     """
     name = frame or model.robot.tool_frame
-    physical, point = seen_from(model.physical(), name, np.zeros(3))
-    robot, mechanism = physical.robot, physical.assembly.mechanism
+    arm = model_compliance(model, name)
+    robot, mechanism, point = arm.model.robot, arm.mechanism, arm.point
     coupling = mechanism.elastic or mechanism.coupling
     if not isinstance(coupling, LinearCoupling):
         raise InputError(
@@ -128,21 +127,19 @@ def spring_arm(model: Model, pose: ArrayLike, *, frame: str | None = None) -> Sp
             where=robot.name,
             remedy="Declare parallelograms as couplings in robot.yaml.",
         )
-    a = robot.coordinates(pose)
-    situation = situation_of_load(robot, a[None], np.zeros(6))
-    compliance = np.asarray(physical.solve(situation).rest.compliance)
-    springs = springs_of(compliance.reshape(-1, *compliance.shape[-2:])[0], robot.name)
-    if springs is None:
+    a = robot.coordinates(pose)[None]
+    springs = stiffness_of(arm.compliance_at(a).reshape(-1, mechanism.n, mechanism.n)[0])
+    soft = np.flatnonzero(~np.isposinf(np.diagonal(springs)))
+    if not are_springs(springs[np.ix_(soft, soft)]):
         raise InputError(
             "the compliances of this model cannot be made of springs",
             where=robot.name,
             remedy="A coupling of joints is larger than their own compliances allow.",
         )
-    z = physical.assembly.start(situation, physical.values)[0]
+    z = arm.start(a)[0]
     chain = mechanism.chain
     rows = coupling.A[chain.coordinates]
     values = rows @ z + coupling.b[chain.coordinates]
-    soft = np.flatnonzero(np.isfinite(np.diagonal(springs)))
     own = _owners(rows, soft, chain.names, robot.name)
     limits = dict(zip(robot.actuated, zip(robot.lower, robot.upper, strict=True), strict=True))
     bodies: list[Body] = []
