@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import Situation, situation_of_load
+from sk120stiff.effects import Elastic, LinearElastic, Situation, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Mechanism, Robot
@@ -63,6 +63,12 @@ class ModelCompliance:
         shift[: robot.n] -= poses[0]
         gravity = None if weight is None else weight.gravity
         return ConstantCompliance(self.mechanism, first, self.point, shift, gravity)
+
+    @property
+    def linear(self) -> bool:
+        """Is every law linear in the load, so that `constant`, where it is one, is all there is?"""
+        elastic = [effect for effect in self.model.effects if isinstance(effect, Elastic)]
+        return all(isinstance(effect, LinearElastic) for effect in elastic)
 
     def start(self, a: Array) -> Array:
         """See `Compliant`."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal, ToolkitWarning
-from sk120stiff.model.compliance import ModelCompliance, model_compliance
+from sk120stiff.model.compliance import model_compliance
 from sk120stiff.model.holding import warn_of_far_bend
 from sk120stiff.model.model import Model
 from sk120stiff.stiffness import (
@@ -117,7 +117,16 @@ def loaded_stiffness(
     arm = model_compliance(model, frame)
     n, load = arm.mechanism.n, np.asarray(wrench, dtype=float)
     rows = model.robot.coordinates(a)[None]
-    found = under_load(arm, rows[0], load, _WANTED)
+    missing: dict[str, str] = {}
+    equilibrium = np.full(3, np.nan)
+    try:
+        found = under_load(arm, rows[0], load, _WANTED | {"deflection_equilibrium"})
+        equilibrium = found.of("deflection_equilibrium")
+        warn_of_far_bend(model, equilibrium)
+    except Refusal as refusal:
+        found = under_load(arm, rows[0], load, _WANTED)
+        warnings.warn(str(refusal), ToolkitWarning, stacklevel=2)
+        missing["equilibrium"] = refusal.what
     if np.isnan(found.of("compliance")).any():
         raise Refusal(
             "K_θ − K_C is singular: this load is exactly critical and the deflection has no bound",
@@ -125,8 +134,6 @@ def loaded_stiffness(
         )
     screws = arm.mechanism.screws(found.of("coordinates"), arm.point)
     C_theta, own = arm.compliance_at(rows).reshape(-1, n, n)[0], arm.weight_at(rows)
-    equilibrium, refused = _at_equilibrium(model, arm, rows[0], load)
-    missing = {"equilibrium": refused} if refused else {}
     stable = CLASSES[int(found.of("stiffness_class"))]
     if not found.stable:
         missing["enhanced"] = (
@@ -158,19 +165,6 @@ def loaded_stiffness(
         deflection_equilibrium=equilibrium,
         no_deflection=missing,
     )
-
-
-def _at_equilibrium(
-    model: Model, arm: ModelCompliance, a: Array, load: Array
-) -> tuple[Array, str | None]:
-    """(3,) deflection, or NaN and the reason."""
-    try:
-        found = under_load(arm, a, load, ("deflection_equilibrium",)).of("deflection_equilibrium")
-    except Refusal as refusal:
-        warnings.warn(str(refusal), ToolkitWarning, stacklevel=3)
-        return np.full(3, np.nan), refusal.what
-    warn_of_far_bend(model, found)
-    return found, None
 
 
 def _inverse(compliance: Array) -> Array:

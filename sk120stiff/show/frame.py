@@ -49,14 +49,13 @@ class Frame:
         links: (L, 4, 4) placement of every link before the load.
         deflected: (L, 4, 4) the same under load, displacements exaggerated; None beyond the
             critical load.
-        found: Stiffness under the load, the quantities of `BEFORE`.
-        at_rest: Exact equilibrium, the quantities of `AT_REST`; None where none exists.
+        found: Stiffness under the load, the quantities of `BEFORE`; and of `AT_REST` where the arm
+            finds an exact equilibrium.
     """
 
     links: Array
     deflected: Array | None
     found: UnderLoad
-    at_rest: UnderLoad | None
 
 
 def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
@@ -70,13 +69,14 @@ def compute_frame(tree: LinkTree, elastic: Elastic, request: Request) -> Frame:
     def place(z: Array) -> Array:
         return nodes.place(elastic.joint_values(z))[: len(tree.names)]
 
-    found = under_load(arm, request.a, request.wrench, BEFORE)
+    try:
+        found = under_load(arm, request.a, request.wrench, BEFORE + AT_REST)
+    except Refusal:  # the page says so; every other number still holds
+        found = under_load(arm, request.a, request.wrench, BEFORE)
     if np.isnan(found.of("compliance_enhanced")).any():
         raise Refusal("this load is exactly critical: K_θ − K_C is singular")
     z = found.of("coordinates")
-    try:
-        at_rest = under_load(arm, request.a, request.wrench, AT_REST)
-    except Refusal:  # the page says so; every other number still holds
-        return Frame(place(z), None, found, None)
-    moved = z + request.exaggeration * (at_rest.of("loaded_coordinates") - z)
-    return Frame(place(z), place(moved), found, at_rest)
+    if found.loaded_coordinates is None:
+        return Frame(place(z), None, found)
+    moved = z + request.exaggeration * (found.loaded_coordinates - z)
+    return Frame(place(z), place(moved), found)

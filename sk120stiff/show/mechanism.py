@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Elastic as ElasticEffect
 from sk120stiff.effects import LinearElastic, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model import ModelCompliance, probing_poses
@@ -77,8 +76,7 @@ def follows_pose_and_load(arm: ConstantCompliance | ModelCompliance) -> bool:
     """Does the serialised mechanism hold all that the arm does?"""
     if isinstance(arm, ConstantCompliance):
         return True
-    elastic = [e for e in arm.model.effects if isinstance(e, ElasticEffect)]
-    return all(isinstance(e, LinearElastic) for e in elastic) and _series(arm) is not None
+    return arm.linear and _series(arm) is not None
 
 
 def _compliance(

@@ -76,11 +76,11 @@ def _source(scene: Scene, *, live: bool) -> str:
 
 def frame_payload(frame: Frame) -> dict[str, Any]:
     """A computed frame in the form in which the page's own engine returns it."""
-    found, rest = frame.found, frame.at_rest
+    found = frame.found
     deflection = {
         "conventional": found.deflection_conventional,
         "enhanced": found.deflection_enhanced if found.stable else None,
-        "equilibrium": None if rest is None else rest.deflection_equilibrium,
+        "equilibrium": found.deflection_equilibrium,
     }
     critical = float(found.of("critical"))
     stands = critical > 0.0  # else the arm is unstable before any load, and nothing has a share

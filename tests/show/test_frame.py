@@ -134,7 +134,7 @@ def test_exaggeration_scales_what_is_drawn_and_nothing_else() -> None:
     tool = link_tree(sk120()).names.index("tool0")
     moved = one.deflected[tool, :3, 3] - one.links[tool, :3, 3]
     exaggerated = many.deflected[tool, :3, 3] - many.links[tool, :3, 3]
-    rest, again = (frame.at_rest.of("deflection_equilibrium") for frame in (one, many))
+    rest, again = (frame.found.of("deflection_equilibrium") for frame in (one, many))
     np.testing.assert_allclose(moved, rest, atol=1e-12)
     np.testing.assert_allclose(exaggerated, 10.0 * moved, atol=3e-4)
     np.testing.assert_array_equal(rest, again)
