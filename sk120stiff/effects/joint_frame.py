@@ -12,7 +12,7 @@ from sk120stiff.effects.geometry import length_error
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_joint, arm_joints
+from sk120stiff.robot.anatomy import arm_joint, free_joints
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,7 @@ class JointFrame(Geometric):
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every joint on the way to the tool that moves."""
-        return tuple(
-            joint.name
-            for joint in arm_joints(robot)
-            if joint.actuated is not None or joint.name in robot.dependent
-        )
+        return free_joints(robot)
 
     def applies_to(self, situation: Situation) -> bool:
         """Displacements hardly show it."""

@@ -12,7 +12,7 @@ from sk120stiff.effects.base import LinearElastic, unit_vectors
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_joint, arm_joints
+from sk120stiff.robot.anatomy import arm_joint, free_joints
 
 
 @dataclass(frozen=True)
@@ -62,11 +62,7 @@ class JointTilt(LinearElastic):
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every joint on the way to the tool that a motor drives or a closed loop determines."""
-        return tuple(
-            joint.name
-            for joint in arm_joints(robot)
-            if joint.actuated is not None or joint.name in robot.dependent
-        )
+        return free_joints(robot)
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """One joint for each tilt axis, at the joint's origin."""

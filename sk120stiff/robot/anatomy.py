@@ -129,6 +129,12 @@ def _drawn(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     )
 
 
+def free_joints(robot: Robot) -> tuple[str, ...]:
+    """Joints on the way to the tool that a motor drives or a closed loop determines."""
+    joints = arm_joints(robot)
+    return tuple(j.name for j in joints if j.actuated is not None or j.name in robot.dependent)
+
+
 def arm_links(robot: Robot) -> tuple[ArmJoint, ...]:
     """Joints whose link is long enough to bend, twist or have the wrong length."""
     return tuple(joint for joint in arm_joints(robot) if joint.length > SHORTEST_LINK)
