@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from sk120stiff.cli.explain_output import page_or_warning
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import provenance
@@ -11,9 +13,10 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import Elastic
 from sk120stiff.errors import InputError
 from sk120stiff.explain import Options
-from sk120stiff.explain.absolute.document import save_positions
+from sk120stiff.explain.absolute.document import gaps_frame, save_positions
 from sk120stiff.explain.absolute.run import Explained, explain_positions, heldout_on
 from sk120stiff.files import write_atomically
+from sk120stiff.identify.absolute.calibrate import in_gravity
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model
@@ -61,6 +64,38 @@ def positions_answer(
             "distance."
         )
     document = {**document, "holdout": held, "out": out, "model": out / "model.yaml", **pages}
+    return Answer(document, parts)
+
+
+def predicted_positions(model: Model, readings: Measurements, out: Path | None) -> Answer:
+    """Where a model has the marker at every reading, and how far the readings are off."""
+    if readings.absolute is None:
+        raise InputError("there are no positions")
+    if readings.absolute.frame == "unknown" and "tracker_frame:tracker" not in {
+        effect.id for effect in model.effects
+    }:
+        raise InputError(
+            "the model does not know where the tracker stands",
+            remedy="Give a model that 'identify' or 'explain' wrote from readings of this tracker.",
+        )
+    model = in_gravity(model, readings.absolute.gravity)
+    frame = gaps_frame(model, readings)
+    if out is not None:
+        write_atomically(out, frame.to_csv(index=False))
+    document: dict[str, object] = {"rows": frame.to_dict(orient="records"), "out": out}
+    parts: list[object] = []
+    names = [f"gap_{axis}[um]" for axis in "xyz"]
+    if names[0] in frame:
+        gap = frame.loc[frame["use"] == 1, names].to_numpy(dtype=float)
+        gap = gap[np.isfinite(gap).all(axis=1)]
+        document["rms_um"] = float(np.sqrt(np.mean(gap**2)))
+        document["mean_distance_um"] = float(np.linalg.norm(gap, axis=1).mean())
+        parts.append(
+            f"Gap over {len(gap)} positions: {document['rms_um']:.4g} µm rms per axis, "
+            f"{document['mean_distance_um']:.4g} µm mean distance."
+        )
+    if out is not None:
+        parts.append(f"Written to {out}.")
     return Answer(document, parts)
 
 

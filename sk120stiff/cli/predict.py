@@ -11,6 +11,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
+from sk120stiff.cli.positions import predicted_positions
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.effects import situation_of
@@ -43,6 +44,8 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     will_write(out)
     readings, robot = open_data(data)
     believed = model_for(robot, model)
+    if readings.absolute is not None:
+        return predicted_positions(believed, readings, out)
     for said in look(believed, readings).sentences:
         warnings.warn(said, ToolkitWarning, stacklevel=2)
     with progress_bar("predict"):

@@ -31,3 +31,5 @@ def test_the_command_writes_its_folder(run, tmp_path: Path) -> None:
     told = run("identify", str(path), "--json", "--out", str(tmp_path / "m.yaml")).document
     assert told["mean_distance_um"] < 60 and told["frozen"]
     assert told["robot"] == "six"
+    again = run("predict", str(out / "model.yaml"), str(path), "--json").document
+    assert again["rms_um"] < 30 and len(again["rows"]) == 40

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sk120stiff.arrays import Mask
 from sk120stiff.effects import situation_of
 from sk120stiff.explain.absolute.run import Explained, Named
 from sk120stiff.explain.answer.saving import VERDICT, replacing_results
@@ -20,6 +20,9 @@ from sk120stiff.identify.absolute.words import findings, gap_sentence, known_cal
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter, write_model
 from sk120stiff.model.pose_reading import read_poses
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SURE = 1.0 - 1e-9
 
@@ -91,12 +94,12 @@ def save_positions(
     fitted = replace(known_calibration(answer.final), provenance=dict(provenance))
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
-        write_atomically(out / "gaps.csv", gaps_text(fitted, readings, answer.final.wild))
+        write_atomically(out / "gaps.csv", _csv(fitted, readings, answer.final.wild))
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
     return document
 
 
-def gaps_text(model: Model, readings: Measurements, wild: np.ndarray | None = None) -> str:
+def gaps_frame(model: Model, readings: Measurements, wild: Mask | None = None) -> pd.DataFrame:
     """Predicted position, measured one and gap of every row, in axes of the instrument."""
     import pandas as pd
 
@@ -113,9 +116,11 @@ def gaps_text(model: Model, readings: Measurements, wild: np.ndarray | None = No
             columns[f"gap_{axis}[um]"] = (x - seen.position)[:, k] * 1e6
     used = readings.use if wild is None else readings.use & ~wild
     columns["use"] = used.astype(int)
-    text = io.StringIO()
-    pd.DataFrame(columns).to_csv(text, index=False)
-    return text.getvalue()
+    return pd.DataFrame(columns)
+
+
+def _csv(model: Model, readings: Measurements, wild: Mask) -> str:
+    return str(gaps_frame(model, readings, wild).to_csv(index=False))
 
 
 def _um(metres: float | None) -> float | None:
