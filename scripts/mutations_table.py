@@ -1,0 +1,219 @@
+"""Faults for `scripts/mutations.py`: what a slip of the hand could make of one line."""
+
+# ruff: noqa: E501
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One text that another replaces.
+
+    Attributes
+    ----------
+    name
+        What is wrong then.
+    file
+        Where, from the root.
+    old, new
+        The text, found exactly once, and what replaces it.
+    tests
+        Files or folders of tests that own the file.
+    """
+
+    name: str
+    file: str
+    old: str
+    new: str
+    tests: tuple[str, ...]
+
+
+def _of(file: str, *tests: str, **faults: tuple[str, str]) -> tuple[Fault, ...]:
+    """Faults of one file, by a name in which underscores stand for blanks."""
+    return tuple(
+        Fault(name.replace("_", " "), f"sk120stiff/{file}", old, new, tests)
+        for name, (old, new) in faults.items()
+    )
+
+
+def _tests(folder: str, *names: str) -> tuple[str, ...]:
+    return tuple(f"tests/{folder}/test_{name}.py" for name in names)
+
+
+STIFFNESS = _tests("stiffness", "complementary", "cartesian", "critical", "principal", "energy")
+FIT = _tests("identify", "fit", "uncertainty", "lack_of_fit", "noise")
+EXPLAIN = _tests("explain", "regression", "judging", "localise")
+
+FAULTS: tuple[Fault, ...] = (
+    *_of(
+        "stiffness/complementary.py", *STIFFNESS,
+        sign_of_K_C_of_a_force=("np.triu(np.cross(force, w) @", "np.triu(np.cross(w, force) @"),
+        sign_of_K_C_of_a_moment=("np.cross(moment, w) @", "np.cross(w, moment) @"),
+        K_C_of_a_moment_not_transposed=("K_C = K_C + np.swapaxes(turned, -1, -2)",
+                                        "K_C = K_C + turned"),
+        K_C_without_the_curvature_of_a_loop=("K_Cz = K_Cz + screws.second",
+                                             "K_Cz = K_Cz - screws.second"),
+        symmetric_part_not_halved=("return 0.5 * (matrix + np", "return 1.0 * (matrix + np"),
+    ),
+    *_of(
+        "stiffness/complementary.py", *_tests("model", "model"), *_tests("effects", "contract"),
+        coordinates_in_a_wrong_order=("row = there.argmax(axis=0)", "row = there.argmax(axis=1)"),
+    ),
+    *_of(
+        "stiffness/cartesian.py", *STIFFNESS,
+        K_X_without_a_transpose=("K_X = np.swapaxes(inverse, -1, -2) @ joint_stiffness",
+                                 "K_X = inverse @ joint_stiffness"),
+        K_X_at_singular_poses=("smallest > 1e-12 *", "smallest >= 0.0 *"),
+    ),
+    *_of(
+        "stiffness/principal.py", *STIFFNESS,
+        principal_directions_not_transposed=("directions = np.swapaxes(vectors[..., ::-1], -1, -2)",
+                                             "directions = vectors[..., ::-1]"),
+        softest_last=("np.nan, values[..., ::-1])", "np.nan, values)"),
+        negative_stiffness_made_positive=("1.0 / np.where(rigid, 1.0, found.values)",
+                                          "1.0 / np.abs(np.where(rigid, 1.0, found.values))"),
+        semidefinite_taken_for_definite=("positive & zero | ~positive", "~positive"),
+        indefinite_taken_for_negative=("[4, 3, 2, 1]", "[2, 3, 2, 1]"),
+    ),
+    *_of(
+        "stiffness/energy.py", *STIFFNESS,
+        energy_without_a_half=("linear + 0.5 * quadratic(K_X", "linear + quadratic(K_X"),
+        energy_with_K_C_added=("quadratic(K_theta - K_C, d_theta)",
+                               "quadratic(K_theta + K_C, d_theta)"),
+    ),
+    *_of(
+        "stiffness/equilibrium.py", *_tests("stiffness", "equilibrium", "deflection", "weight"),
+        Newton_with_the_wrong_sign_of_K_C=("feedback = compliance @ K_C", "feedback = -compliance @ K_C"),
+        weight_without_its_stiffness=("feedback = feedback + sag @ hanging", "feedback = feedback"),
+        balance_never_lost=("good = good & _stable(inner) &", "good = good &"),
+        equilibrium_that_need_not_settle=("good = good & (largest[..., 0] <= tolerance)",
+                                          "good = good & (largest[..., 0] <= 1e9)"),
+    ),
+    *_of(
+        "robot/kinematics/screws.py", *_tests("robot", "kinematics"), *STIFFNESS,
+        twist_about_the_wrong_side=("np.cross(self.axes, self.position[..., None, :] - self.origins)",
+                                    "np.cross(self.position[..., None, :] - self.origins, self.axes)"),
+    ),
+    *_of(
+        "measurements/noise.py", *_tests("measurements", "noise", "repeats"),
+        zero_reading_without_noise=("self.sigma**2 / measurements.zero_count[:, None], 3",
+                                    "0.0 * self.sigma**2 / measurements.zero_count[:, None], 3"),
+        zero_readings_not_averaged=("self.sigma**2 / measurements.zero_count[:, None], 3",
+                                    "self.sigma**2 / measurements.zero_count[:, None] ** 0, 3"),
+        growth_not_squared=("own + (self.growth * _sizes(measurements, sizes)) ** 2",
+                            "own + self.growth * _sizes(measurements, sizes)"),
+        separate_zeros_shared=('if self.zero == "separate":\n            own',
+                               'if self.zero == "never":\n            own'),
+        weights_upside_down=("own = own / weights[:, None]", "own = own * weights[:, None]"),
+    ),
+    *_of(
+        "measurements/whitening.py", *_tests("measurements", "noise"), *FIT,
+        shared_zero_counted_too_little=("gain = c / (1.0 + c *", "gain = c / (2.0 + c *"),
+        variance_without_the_shared_part=("variance = own[rows] + gain", "variance = own[rows]"),
+        whitening_with_the_wrong_sign=("block = block - gain", "block = block + gain"),
+    ),
+    *_of(
+        "model/assembly.py", *_tests("model", "model"), *_tests("effects", "contract"),
+        adjoint_not_transposed=("np.swapaxes(newton, -1, -2), np.swapaxes(J", "newton, np.swapaxes(J"),
+        sensitivity_of_geometry_without_the_unloaded_arm=(
+            "out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(situation)",
+            "out[:, :, part] -= 0.0 * adjoint_0[:, :, index] @ shifted.shifts(situation)"),
+        tangent_of_a_nonlinear_law_forgotten=("+= found.by_torque", "+= 0.0 * found.by_torque"),
+        reading_axes_the_wrong_way=("return np.swapaxes(situation.reading_axes, -1, -2) @ out",
+                                    "return situation.reading_axes @ out"),
+        load_errors_without_compliance=("per_wrench = adjoint @ rest.compliance @",
+                                        "per_wrench = adjoint @"),
+        standing_without_its_weight=("torques = torques + rest.weights", "torques = torques"),
+    ),
+    *_of(
+        "effects/closure.py", *_tests("effects", "laws", "contract", "recovery"),
+        coupling_one_way_only=("[[[0.0, 1.0], [1.0, 0.0]]]", "[[[0.0, 1.0], [0.0, 0.0]]]"),
+        rod_softer_when_unfolded=("1.0 / np.maximum(lever, folded)", "np.maximum(lever, folded)"),
+    ),
+    *_of(
+        "effects/force_sensor.py", *_tests("effects", "laws", "contract", "recovery"),
+        force_bias_with_the_wrong_sign=("np.broadcast_to(-np.eye(6)[:, :3]", "np.broadcast_to(np.eye(6)[:, :3]"),
+    ),
+    *_of(
+        "identify/fit.py", *FIT,
+        intervals_not_scaled_by_the_noise=("covariance * self.unit**2 +", "covariance +"),
+        degrees_of_freedom_off_by_one=("return len(self.residual) - self.estimated",
+                                       "return len(self.residual) - self.estimated - 1"),
+        noise_not_divided_by_its_freedom=("self.chi_square / max(self.degrees_of_freedom, 1)",
+                                          "self.chi_square / max(len(self.residual), 1)"),
+        pure_error_not_taken_off=("max(self.chi_square - repeats, 0.0) / (freedom - repeats)",
+                                  "max(self.chi_square, 0.0) / (freedom - repeats)"),
+        likelihood_without_its_determinant=("self.problem.whitener.logdet + count", "count"),
+        AIC_without_its_two=("return 2.0 * self._counted - 2.0 *", "return self._counted - 2.0 *"),
+        noise_not_counted_as_a_parameter=("(0 if self.sigma_known else 1)", "0"),
+    ),
+    *_of(
+        "identify/solve/covariance.py", *FIT,
+        covariance_of_single_singular_values=("(V / singular**2) @ V.T", "(V / singular) @ V.T"),
+        covariance_without_its_scale=("block = block * np.outer(over, over)", "block = block * over"),
+        unseen_parameters_get_a_number=("block[lost, lost] = np.inf", "block[lost, lost] *= 1.0"),
+    ),
+    *_of(
+        "identify/checks/lack_of_fit.py", *FIT,
+        pure_error_in_the_wrong_place=("/ taken / (square / freedom)", "/ freedom / (square / taken)"),
+    ),
+    *_of(
+        "identify/checks/held_out.py", *_tests("identify", "held_out", "comparison"),
+        folds_that_leak=("learn(used.select(~rows))", "learn(used)"),
+        last_fold_never_scored=("for k in range(count):\n        rows = part == k",
+                                "for k in range(count - 1):\n        rows = part == k"),
+        postures_torn_apart=("np.random.default_rng(seed))[posture]",
+                             "np.random.default_rng(seed))[posture * 0 + np.arange(len(posture)) % number]"),
+    ),
+    *_of(
+        "identify/robust.py", *_tests("identify", "robust"),
+        reading_trusted_to_judge_itself=("information = sums[0][group] - trust",
+                                         "information = sums[0][group]"),
+    ),
+    *_of(
+        "identify/uncertainty/variance_components.py", *_tests("identify", "variance_components"),
+        REML_without_the_information=("return logdet + information + square", "return logdet + square"),
+        REML_without_its_log_determinant=("return logdet + information + square",
+                                          "return information + square"),
+        REML_log_determinant_halved=("logdet = 2.0 * np.log(", "logdet = np.log("),
+        REML_freedom_of_plain_likelihood=("self.rows - len(self.xx) + 1, 1)", "self.rows, 1)"),
+    ),
+    *_of(
+        "explain/localise/places.py", *EXPLAIN,
+        Holm_dropped=("corrected = holm([suspicion.probability for suspicion, _ in found])",
+                      "corrected = [suspicion.probability for suspicion, _ in found]"),
+    ),
+    *_of(
+        "explain/judge/adequacy.py", *EXPLAIN,
+        adequacy_without_Bonferroni=("min(1.0, len(tests) * min(", "min(1.0, min("),
+        named_effects_explain_what_the_base_does=("signature - base @ (base.T @ signature)",
+                                                  "signature"),
+    ),
+    *_of(
+        "explain/judge/confirm.py", *EXPLAIN,
+        confirmation_folds_that_leak=("regression.sums((fold != k).astype(float))",
+                                      "regression.sums(np.ones(regression.poses))"),
+        last_confirmation_fold_never_scored=(
+            "for k in range(int(fold.max(initial=0)) + 1):\n        train",
+            "for k in range(int(fold.max(initial=0))):\n        train"),
+        resampling_without_replacement=("rng.integers(0, regression.poses, regression.poses)",
+                                        "rng.permutation(regression.poses)"),
+        rivals_never_counted=("rival_frequency=max(rivals, default=0) / count", "rival_frequency=0.0"),
+    ),
+    *_of(
+        "explain/candidates/regression.py", *EXPLAIN,
+        candidates_judged_as_one=("self.alpha / max(len(self.candidates), 1), 1)", "self.alpha, 1)"),
+    ),
+    *_of(
+        "explain/select/score.py", *EXPLAIN,
+        sizes_for_nothing=("price += price_of_sizes(gain, len(own), n)", "price += 0.0"),
+        looking_for_nothing=("price = len(parts) * price_of_looking(regression, n) +", "price ="),
+    ),
+    *_of(
+        "explain/judge/posterior.py", *EXPLAIN,
+        evidence_counted_twice=("np.exp(-0.5 * (values", "np.exp(-1.0 * (values"),
+        none_never_likely=("weights / weights.sum()", "weights / weights[1:].sum()"),
+    ),
+)  # fmt: skip
