@@ -42,7 +42,12 @@ class Verdict:
 
 
 def judged(
-    attack: str, code: int, said: str, seconds: float, codes: Sequence[int] = ANSWERS
+    attack: str,
+    code: int,
+    said: str,
+    seconds: float,
+    codes: Sequence[int] = ANSWERS,
+    limit: float = LIMIT,
 ) -> Verdict:
     """Held, or the reason why not."""
     for word in LOST:
@@ -53,7 +58,7 @@ def judged(
         return Verdict(attack, f"exit code {code}: {said.strip()[-200:]}", seconds)
     if code and not said.strip() and 141 not in codes:
         return Verdict(attack, f"exit code {code} without a word", seconds)
-    if seconds > LIMIT:
+    if seconds > limit:
         return Verdict(attack, f"{seconds:.0f} s of processor time", seconds)
     return Verdict(attack, "", seconds)
 
@@ -117,6 +122,7 @@ def apart(
     codes: Sequence[int] = ANSWERS,
     before: str = "",
     under: Sequence[str] = (),
+    limit: float = LIMIT,
     **options: object,
 ) -> Verdict:
     """Run a command in a process of its own, with environment variables set (None: removed).
@@ -149,7 +155,7 @@ def apart(
     now = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = now.ru_utime + now.ru_stime - used.ru_utime - used.ru_stime
     said = (done.stderr or b"").decode("utf-8", "replace")
-    return judged(attack, done.returncode, said, seconds, codes)
+    return judged(attack, done.returncode, said, seconds, codes, limit)
 
 
 def leftovers(folder: Path) -> list[str]:

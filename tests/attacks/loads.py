@@ -16,6 +16,7 @@ from tests.slips.drawn import drawn
 
 ROBOT = "motoman_sk120"
 MEMORY = 1.0e9  # bytes at most
+LIMIT = 180.0  # s of processor time: thirty joints have hundreds of candidates
 READINGS, PATH_POINTS, JOINTS = 100_000, 100_000, 30
 # The last words of a process: what it has used at most, in kB.
 PEAK = (
@@ -86,7 +87,9 @@ def measured(attack: str, words: list[str], folder: Path, memory: float = MEMORY
     """Run in a process of its own; the peak of its memory counts too."""
     said = folder / "said.txt"
     with said.open("wb") as stream:
-        found = apart(attack, words, before=PEAK, cwd=folder, codes=(0,), stderr=stream)
+        found = apart(
+            attack, words, before=PEAK, cwd=folder, codes=(0,), limit=LIMIT, stderr=stream
+        )
     text = said.read_text(encoding="utf-8", errors="replace")
     told = re.search(r"peak (\d+)", text)
     peak = 1024.0 * int(told[1]) if told else np.inf
