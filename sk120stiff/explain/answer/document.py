@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.findings import Finding
-from sk120stiff.explain.judge.posterior import LISTED
+from sk120stiff.explain.judge.posterior import LISTED, NONE
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -108,8 +108,16 @@ def remainder_document(answer: Explanation) -> dict[str, Any]:
 
 
 def probabilities(answer: Explanation) -> list[dict[str, Any]]:
-    """Every candidate above a hundredth, the likeliest first."""
+    """Every candidate above a hundredth, the likeliest first, with ``none`` and ``something_else``.
+
+    None: no effect of the catalogue is at work, and nothing else is.
+    """
     found: dict[str, float] = dict(answer.odds)
+    something_else = answer.remainder.something_else
+    found[NONE] = found.get(NONE, 1.0) * (1.0 - something_else)
+    for finding in answer.findings:
+        found[NONE] *= 1.0 - finding.probability
+    found["something_else"] = something_else
     for finding in answer.findings:
         for name, share in finding.evidence.odds.items():
             found[name] = max(share, found.get(name, 0.0))

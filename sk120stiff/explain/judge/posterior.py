@@ -16,6 +16,7 @@ from sk120stiff.explain.select.beam import gains
 from sk120stiff.explain.select.score import score_set
 
 LISTED = 0.01  # probability from which on a candidate is worth a line
+NONE = "none"  # of the catalogue
 LOOKED_AT = 24  # candidates that are scored
 
 
@@ -36,7 +37,7 @@ def posterior(scores: Mapping[str, float], *, none: float) -> dict[str, float]:
 
 
 def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]:
-    """Probability of every candidate as one effect more, above a hundredth."""
+    """Probability of every candidate as one effect more, above a hundredth, and of `NONE`."""
     sums = regression.sums()
     base = score_set(regression, sums, model)
     promise = gains(regression, sums, base.solved)
@@ -45,4 +46,5 @@ def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]
     scored = {e: score_set(regression, sums, (*model, e), start=start, only=(e,)) for e in order}
     fair = {regression.candidates[e].id: m.score for e, m in scored.items() if m.plausible}
     found = posterior(fair, none=base.score)
-    return {name: share for name, share in found.items() if share > LISTED}
+    listed = {name: share for name, share in found.items() if share > LISTED}
+    return {NONE: 1.0 - sum(found.values()), **listed}

@@ -11,9 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
+from scipy.special import expit
 
+from sk120stiff.explain.priors import SOMETHING_ELSE
 from sk120stiff.identify import Fit
-from sk120stiff.identify.uncertainty.variance_components import Deviance, variance_components
+from sk120stiff.identify.uncertainty.variance_components import (
+    Components,
+    Deviance,
+    variance_components,
+)
 from sk120stiff.measurements.model_form import ModelForm
 
 LEVEL = 1e-3  # below this probability of noise alone something is left
@@ -32,6 +38,7 @@ class Remainder:
         probability: Probability that noise alone leaves as much.
         form: How it goes with the load.
         where: Where it lives, in sentences.
+        something_else: Probability that a cause is at work which no effect in the model is.
     """
 
     rms: float
@@ -39,6 +46,7 @@ class Remainder:
     probability: float
     form: ModelForm
     where: tuple[str, ...] = ()
+    something_else: float = 0.0
 
     @property
     def significant(self) -> bool:
@@ -84,4 +92,18 @@ def remainder_of(fit: Fit) -> Remainder:
     else:
         low = 0.0
     high *= float(np.exp(brentq(rise, 0.0, WIDEST))) if rise(WIDEST) > 0.0 else np.inf
-    return Remainder(rms, (low, high), found.probability, found.form)
+    return Remainder(
+        rms,
+        (low, high),
+        found.probability,
+        found.form,
+        something_else=_something_else(found, len(readings.poses)),
+    )
+
+
+def _something_else(found: Components, poses: int) -> float:
+    """By the gain of random effects, each of whose sizes costs ln of the number of poses (BIC)."""
+    sizes = max(int(found.form.proportional > 0.0) + int(found.form.constant > 0.0), 1)
+    logit = np.log(SOMETHING_ELSE / (1.0 - SOMETHING_ELSE))
+    logit += 0.5 * (max(found.gain, 0.0) - sizes * np.log(max(poses, 2)))
+    return float(expit(logit))

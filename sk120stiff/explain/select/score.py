@@ -23,7 +23,7 @@ from sk120stiff.explain.candidates.regression import Regression, Solved, Sums, s
 
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
 PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit
-SWEEPS = 3  # over the candidates of a model, to settle their variants
+SWEEPS = 2  # over the candidates of a model, to settle their variants
 DRAWN_SIZES = (0.7, 1.5, 3.0, 6.0)  # standard deviations tried, in typical sizes
 
 
@@ -170,8 +170,11 @@ def _with_draws(
         rest, score = _with_parts(regression, left.sums, parts)
         return score + left.price + flat, rest
 
-    tried = {size: at(size) for size in DRAWN_SIZES}
+    # The size hardly goes with the laws of the other effects: the first of as many tells it.
+    key = b"size" + np.append(members, len(parts)).tobytes()
+    tried = {size: at(size) for size in sums.scores.get(key, DRAWN_SIZES)}
     size = min(tried, key=lambda each: tried[each][0])
+    sums.scores[key] = (size,)
     score, rest = tried[size]
     return sums.marginal(members, size).joined(sums, rest), score
 

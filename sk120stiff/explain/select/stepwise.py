@@ -19,6 +19,7 @@ from sk120stiff.identify import Fit, Problem, fit, solve
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
+TRIED = 2  # models whose fit may be refused before smaller ones are tried
 ROUNDS = 4  # of linearising, searching and refitting
 
 
@@ -166,10 +167,15 @@ def _first_that_fits(
     base: Fit, regression: Regression, ranked: Sequence[Scored]
 ) -> tuple[list[Effect], Fit]:
     """The best model that can be fitted at exact equilibrium too."""
+    refused, most = 0, max((len(model.effects) for model in ranked), default=0)
     for model in ranked:
+        if len(model.effects) > most:
+            continue
         effects = laws_of(regression, model)
         try:
             return effects, refit(base, effects)
         except Refusal:
-            continue
+            refused += 1
+            if refused >= TRIED:  # what is so large does not converge, whatever is in it
+                most = len(effects) - 1
     return [], base
