@@ -32,6 +32,13 @@ class Problem:
 
     def __post_init__(self) -> None:
         where = str(self.measurements.path or "measurements")
+        if self.measurements.absolute is not None:
+            raise InputError(
+                "these readings say where a marker stands, not how far a load moved it",
+                where=where,
+                remedy="Use 'sk120stiff identify' or 'sk120stiff explain', or calibrate of "
+                "sk120stiff.identify.absolute.calibrate.",
+            )
         if self.measurements.displacement is None:
             raise InputError(
                 "there are no measured displacements",
