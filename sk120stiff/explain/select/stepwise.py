@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 from sk120stiff.arrays import Index
 from sk120stiff.effects import Effect
@@ -15,11 +16,11 @@ from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.outliers import outlying_rows
 from sk120stiff.explain.select.score import Scored, score_set
-from sk120stiff.identify import Fit, Problem, fit, solve
+from sk120stiff.identify import Fit, Problem, fit, solve, solve_near
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
-TRIED = 2  # models whose fit may be refused before smaller ones are tried
+TRIED = 1  # models whose fit may be refused before smaller ones are tried
 ROUNDS = 4  # of linearising, searching and refitting
 
 
@@ -128,7 +129,14 @@ def refit(base: Fit, effects: Sequence[Effect]) -> Fit:
     model = base.model
     for effect in effects:
         model = model + effect
-    return solve(Problem(model, base.problem.measurements, base.problem.noise))
+    problem = Problem(model, base.problem.measurements, base.problem.noise)
+    residual, jacobian = problem.first_order
+    size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
+    bounds = (problem.bounds[0] * size, problem.bounds[1] * size)
+    try:  # from the best first-order values, most of them on their bounds, it is not far
+        return solve_near(problem, lsq_linear(jacobian / size, -residual, bounds).x / size)
+    except Refusal:
+        return solve(problem)
 
 
 def positions(regression: Regression, effects: Sequence[Effect]) -> tuple[int, ...]:
