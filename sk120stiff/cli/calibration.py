@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,10 +10,27 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
+from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, write_model
+
+
+def refuse_unused(data: Path, given: Mapping[str, object]) -> None:
+    """Refuse options that do nothing for positions, rather than pass them over.
+
+    Raises:
+        InputError: One of them was given.
+    """
+    unused = [name for name, value in given.items() if value]
+    if unused:
+        raise InputError(
+            f"{listed(unused)} {'is' if len(unused) == 1 else 'are'} for displacements, and these "
+            "readings are positions",
+            where=str(data),
+            remedy="Leave it out." if len(unused) == 1 else "Leave them out.",
+        )
 
 
 def calibration_answer(

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from sk120stiff.cli.calibration import refuse_unused
 from sk120stiff.cli.explain_output import (
     Task,
     check_folder,
@@ -54,7 +55,7 @@ def command(
     alpha: Annotated[
         float,
         typer.Option(min=1e-6, max=0.5, help="Largest chance of a name where nothing is missing."),
-    ] = 0.01,
+    ] = Options.alpha,
     prior: Annotated[
         list[str] | None,
         typer.Option(
@@ -92,6 +93,10 @@ def command(
         seed=seed,
     )
     if readings.absolute is not None:
+        refuse_unused(data, {
+            "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,
+            "--alpha": alpha != Options.alpha, "--prior": prior,
+        })  # fmt: skip
         base = Model(robot) if model is None else start_model(robot, model)
         return positions_answer(base, readings, others, options, data, out, report=not no_report)
     inputs = [data, data.with_suffix(".yaml"), *(file for file in (holdout, model) if file)]

@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from sk120stiff.cli.calibration import calibration_answer
+from sk120stiff.cli.calibration import calibration_answer, refuse_unused
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import Interval, parameter_rows
 from sk120stiff.cli.opening import model_for, open_data, provenance, start_model
@@ -101,6 +101,10 @@ def command(
     for name in effects or ():
         start = with_effect(start, name, readings)
     if readings.absolute is not None:
+        refuse_unused(data, {
+            "--method": method is not Method.trf, "--free": free, "--robust": robust,
+            "--profile": profile, "--held-out": leave_out, "--compare": others,
+        })  # fmt: skip
         return calibration_answer(start, readings, data, fix or (), out)
     start = with_freedom(start, fix or (), free)
     doubts = look(plain, readings)

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from tests.absolute.arm import Arm, poses, tracked, write
 
@@ -33,3 +34,25 @@ def test_the_command_writes_its_folder(run, tmp_path: Path) -> None:
     assert told["robot"] == "six"
     again = run("predict", str(out / "model.yaml"), str(path), "--json").document
     assert again["rms_um"] < 30 and len(again["rows"]) == 40
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        ("identify", "--robust"),
+        ("identify", "--held-out"),
+        ("identify", "--compare", "base_rocking"),
+        ("explain", "--max-effects", "2", "--out", "out"),
+        ("explain", "--assume", "base_rocking", "--out", "out"),
+    ],
+)
+def test_options_that_do_nothing_for_positions_are_refused(
+    asked: tuple[str, ...], run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    a = poses(12, 70)
+    path = write(tmp_path, a, tracked(Arm().stands(a)[0]), FIT + NOISE)
+    command, option, *rest = asked
+    outcome = run(command, str(path), option, *rest)
+    assert outcome.code == 2
+    assert option in outcome.stderr and "positions" in outcome.stderr
