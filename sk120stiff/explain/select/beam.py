@@ -95,7 +95,8 @@ def beam_search(
             promised = promises(regression, total, model.solved)
             promise = largest(promised)
             order = [int(e) for e in np.argsort(-promise) if int(e) not in model.effects]
-            steps: list[tuple[int, ...]] = [(e,) for e in order[: 2 * width]]
+            room = len(model.effects) < max_effects  # gears that joined together took more
+            steps: list[tuple[int, ...]] = [(e,) for e in order[: 2 * width]] if room else []
             steps += _all_gears(regression, model, promise, max_effects)
             for step in steps:
                 likely = {e: likeliest(regression, total, e, promised[e]) for e in step}
