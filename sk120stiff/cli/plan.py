@@ -34,6 +34,7 @@ from sk120stiff.robot import Robot
 from sk120stiff.units import parse_size, parse_values
 
 DRAWS = 50  # random and well-spread choices that a plan is held against
+MOST_CANDIDATES = 1_000_000
 
 
 def command(
@@ -101,8 +102,12 @@ def command(
             help="Box in the base frame for the measured point: '0.8,-1,0, 2.2,1,1.5 m'.",
         ),
     ] = None,
-    candidates: Annotated[int, typer.Option(min=10, help="Poses to choose from.")] = 400,
-    directions: Annotated[int, typer.Option(min=1, help="Load directions at each pose.")] = 12,
+    candidates: Annotated[
+        int, typer.Option(min=10, max=MOST_CANDIDATES, help="Poses to choose from.")
+    ] = 400,
+    directions: Annotated[
+        int, typer.Option(min=1, max=10_000, help="Load directions at each pose.")
+    ] = 12,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="CSV", help="Where to write them, for the measurement."),
