@@ -114,7 +114,7 @@ def explain(
         readings=measurements,
         adequacy=left,
         remainder=remainder,
-        unnamed=named.reasons,
+        unnamed=(*named.reasons, *_where_it_binds(found, options)),
         limits=options.limits,
         suspects=suspects,
         guess=guess,
@@ -125,12 +125,12 @@ def explain(
     return completed(answer, found.regression, seed=options.seed)
 
 
-def _where_it_binds(found: Attempt, wish: Options) -> tuple[str, ...]:
+def _where_it_binds(found: Attempt, options: Options) -> tuple[str, ...]:
     """That more effects might have been found, had more been looked for."""
-    if len(found.chosen) < wish.max_effects or not wish.max_effects:
+    if len(found.chosen) < options.max_effects or not options.max_effects:
         return ()
     return (
-        f"All {wish.max_effects} effects that may be named at most were found; there may be more: "
+        f"All {options.max_effects} effects that may be named at most were found; there may be more: "
         "ask for more with --max-effects.",
     )
 
