@@ -130,8 +130,8 @@ def _where_it_binds(found: Attempt, options: Options) -> tuple[str, ...]:
     if len(found.chosen) < options.max_effects or not options.max_effects:
         return ()
     return (
-        f"All {options.max_effects} effects that may be named at most were found; there may be more: "
-        "ask for more with --max-effects.",
+        f"All {options.max_effects} effects that may be named at most were found; there may be "
+        "more: ask for more with --max-effects.",
     )
 
 

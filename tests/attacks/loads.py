@@ -18,10 +18,10 @@ ROBOT = "motoman_sk120"
 MEMORY = 1.0e9  # bytes at most
 LIMIT = 180.0  # s of processor time: thirty joints have hundreds of candidates
 READINGS, PATH_POINTS, JOINTS = 100_000, 100_000, 30
-# The last words of a process: what it has used at most, in kB.
+# The last words of a process: what it has used at most [kB]. (`ru_maxrss` counts the parent too.)
 PEAK = (
-    "import atexit, resource; atexit.register(lambda: print('peak', resource.getrusage("
-    "resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr))"
+    "import atexit; atexit.register(lambda: print('peak', next(line.split()[1] for line in "
+    "open('/proc/self/status') if line.startswith('VmHWM')), file=sys.stderr))"
 )
 
 

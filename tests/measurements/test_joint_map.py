@@ -42,9 +42,11 @@ def test_columns_become_joints(tmp_path: Path) -> None:
     path.write_text("pose,J1[deg],J2[deg],M3[deg],dx[mm],dy[mm],dz[mm],fx[N],fy[N],fz[N]\n"
                     "A,10,20,300,0,0,1,0,0,5\n")  # fmt: skip
     path.with_suffix(".yaml").write_text("joints: {a: J1, b: -(J1 + J2), c: M3/100}\n")
-    found = read_measurements(path)
+    found = read_measurements(path, ("a", "b", "c"))
     assert found.joint_names == ("a", "b", "c")
     assert np.degrees(found.joints[0]) == pytest.approx([10, -30, 3])
+    # Without a robot nobody knows which columns are joints of their own.
+    assert set(read_measurements(path).spare) == {"J1", "J2", "M3"}
     path.with_suffix(".yaml").write_text("joints: {a: J1 + J9}\n")
     with pytest.raises(InputError, match="no column is called 'J9'"):
         read_measurements(path)
