@@ -44,7 +44,10 @@ class Tabular:
         texts = {*WORDS, *readings.extra}
         for name in frame.columns:
             if name not in texts:
-                frame[name] = pd.to_numeric(frame[name])
+                kind = pd.to_numeric(frame[name]).dtype
+                # Digit by digit: pandas before 3 rounds a third of all texts to a neighbour.
+                exact = [float(cell) if cell else float("nan") for cell in own[name]]
+                frame[name] = pd.Series(exact).astype(kind)
         return frame
 
     @classmethod
