@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import ClassVar, Self
 
 import numpy as np
@@ -30,8 +31,9 @@ PLANES = ("in_plane", "out_of_plane")
 NAME = re.compile(r"EI(_in_plane|_out_of_plane)?(_roll_axis)?(?:_taper_(minus_)?(\d+))?")
 
 
+@cache
 def shares(taper: float) -> Array:
-    """(3,) weights of `STATIONS` along a beam, which add up to one.
+    """(3,) weights of `STATIONS` along a beam, which add up to one; not to be written to.
 
     The flexibility ρ(s) goes with (1 − taper · s)⁻³, the cube of the section's depth. The weights
     have its moments up to the second.
@@ -40,7 +42,9 @@ def shares(taper: float) -> Array:
     s = 0.5 * (nodes + 1.0)
     rho = weights * (1.0 - taper * s) ** -3
     moments = np.vander(s, 3, increasing=True).T @ (rho / rho.sum())
-    return np.asarray(np.linalg.solve(np.vander(STATIONS, 3, increasing=True).T, moments))
+    found = np.linalg.solve(np.vander(STATIONS, 3, increasing=True).T, moments)
+    found.setflags(write=False)  # every caller is given the same
+    return np.asarray(found)
 
 
 @dataclass(frozen=True, eq=False)

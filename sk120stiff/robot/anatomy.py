@@ -12,6 +12,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.robot.loops.coupling import LoopCoupling
 from sk120stiff.robot.robot import Robot
 
+_JOINTS: WeakKeyDictionary[Robot, tuple[ArmJoint, ...]] = WeakKeyDictionary()
 _SAMPLES: WeakKeyDictionary[Robot, dict[tuple[int, int], Array]] = WeakKeyDictionary()
 CLEAR_OF_DEAD_POINTS = 0.02  # see `LoopCoupling.closes`
 SHORTEST_LINK = 1e-3  # m; what is shorter has no length to bend along
@@ -68,7 +69,14 @@ class ArmJoint:
 
 
 def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
-    """Joints from base to tool, coupled ones included."""
+    """Joints from base to tool, coupled ones included; worked out once for a robot."""
+    known = _JOINTS.get(robot)
+    if known is None:
+        known = _JOINTS[robot] = _on_the_way(robot)
+    return known
+
+
+def _on_the_way(robot: Robot) -> tuple[ArmJoint, ...]:
     chain = robot.mechanism().chain
     moved = {joint.name: joint.child for joint in robot.document.joints}
     position = {name: k for k, name in enumerate(robot.actuated)}

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -134,6 +135,11 @@ class Chain:
             np.array(centres).reshape(-1, 3),
         )
 
+    @cached_property
+    def _crosses(self) -> Array:
+        """(m, 3, 3) cross products with the joint axes."""
+        return crossed(self.axes)
+
     def sweep(self, q: Array) -> Sweep:
         """Forward kinematics that keeps every joint on the way.
 
@@ -157,7 +163,7 @@ class Chain:
             rotation = _times(rotation, self.placements[k, :3, :3])
             axes[:, k] = rotation @ self.axes[k]
             if self.revolute[k]:
-                cross = crossed(self.axes[k])
+                cross = self._crosses[k]
                 swept = _times(rotation, cross)
                 rotation = (
                     rotation
