@@ -13,6 +13,7 @@ import numpy as np
 from sk120stiff.arrays import Mask
 from sk120stiff.effects import situation_of
 from sk120stiff.explain.absolute.run import Explained, Named
+from sk120stiff.explain.answer.document import parameter_entry
 from sk120stiff.explain.answer.saving import VERDICT, replacing_results
 from sk120stiff.files import guarded_cell, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
@@ -155,16 +156,4 @@ def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[
 
 def _parameter(p: Parameter, reasons: Mapping[str, str]) -> dict[str, Any]:
     reason = reasons.get(p.name) or (None if p.free else "counted in others, see weak_directions")
-    shown = reason is None
-    return {
-        "name": p.name,
-        "value": p.value if shown else None,
-        "std": p.std if shown else None,
-        "unit": p.spec.unit,
-        "meaning": p.spec.meaning,
-        "internal_value": p.internal if shown else None,
-        "internal_std": p.internal_std if shown else None,
-        "internal_unit": p.spec.internal_unit,
-        "plausible": abs(p.internal) <= p.spec.plausible,
-        "reason": reason or p.note or None,
-    }
+    return {**parameter_entry(p, reason), "plausible": abs(p.internal) <= p.spec.plausible}

@@ -144,7 +144,7 @@ def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
     hidden = unseen_reasons(answer.base)
     return [
         {
-            **_parameter(p, unseen.get(p.name)),
+            **parameter_entry(p, unseen.get(p.name)),
             "before": before[p.name].value if p.name in before and p.name not in hidden else None,
         }
         for p in answer.final.model.parameters
@@ -162,7 +162,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "exact_aliases": list(finding.exact),
         "probability": finding.probability,
         "share_um": _um(share_of(answer, finding)),
-        "parameters": [_parameter(p, unseen.get(p.name)) for p in found],
+        "parameters": [parameter_entry(p, unseen.get(p.name)) for p in found],
         "sentence": finding.effect.sentence(),
         "equation": finding.effect.equation,
         "axes": finding.effect.axes,
@@ -182,7 +182,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
     }
 
 
-def _parameter(p: Parameter, unseen: str | None = None) -> dict[str, Any]:
+def parameter_entry(p: Parameter, unseen: str | None = None) -> dict[str, Any]:
     """Value and error; null, with the reason, for what the readings do not show."""
     shown = unseen is None
     return {
