@@ -70,6 +70,8 @@ def calibration_answer(
         "model": out,
     }
     parts: list[object] = [_table(found), *findings(found, readings)]
+    if fit.exceeds:
+        parts.append("What is missing is what 'sk120stiff explain' looks for.")
     if out is not None:
         parts.append(f"Written to {out}.")
     return Answer(document, parts)

@@ -151,6 +151,6 @@ def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]
         )
     shown += findings(answer.final, readings)
     shown += answer.dropped
-    shown += answer.where
+    shown += answer.left_over()
     shown.append(f"Results are in {out}.")
     return shown

@@ -29,6 +29,9 @@ def test_the_command_writes_its_folder(run, tmp_path: Path) -> None:
     assert verdict["gap"]["steps"][-1]["heldout_rms"] < 30
     for name in ("report.html", "scene.html", "model.yaml", "gaps.csv"):
         assert (out / name).stat().st_size > 1000
+    assert verdict["remainder"]["interval_95"][0] < 10.0  # beside a noise of 20 µm, which is stated
+    assert "Left beyond the stated noise" in outcome.stdout
+    assert "looks for" not in outcome.stdout
     told = run("identify", str(path), "--json", "--out", str(tmp_path / "m.yaml")).document
     assert told["mean_distance_um"] < 60 and told["frozen"]
     assert told["robot"] == "six"

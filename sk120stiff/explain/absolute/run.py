@@ -86,6 +86,14 @@ class Explained:
     chance: float | None
     where: tuple[str, ...]
 
+    def left_over(self) -> tuple[str, ...]:
+        """What is left beyond the stated noise and where it lives, in sentences."""
+        if self.remainder is None:
+            return self.where
+        rms, low, high = (1e6 * size for size in self.remainder)
+        told = f"Left beyond the stated noise are {rms:.3g} µm rms per axis"
+        return (f"{told} (95 %: {low:.3g} to {high:.3g}).", *self.where)
+
 
 def explain_positions(
     model: Model,

@@ -39,8 +39,8 @@ def gap_sentence(found: Calibration) -> str:
         return f"{said} No uncertainty is stated; the gap itself is taken for it."
     if fit.exceeds:
         return (
-            f"{said} That is {fit.noise_factor:.3g} times the stated uncertainty: something is "
-            "missing ('explain' looks for it), and the standard errors are larger by as much."
+            f"{said} That is {fit.noise_factor:.3g} times the stated uncertainty: more is at work "
+            "than is in the model, and the standard errors are larger by as much."
         )
     return f"{said} That agrees with the stated uncertainty."
 

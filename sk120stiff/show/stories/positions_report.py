@@ -81,7 +81,7 @@ def positions_report(
             Section("Values", [_values(answer)]),
             Section(
                 "What else was found",
-                [Items([*findings(answer.final, readings), *answer.dropped, *answer.where])],
+                [Items([*findings(answer.final, readings), *answer.dropped, *answer.left_over()])],
             ),
         ],
         lead=VERDICTS[answer.verdict],
