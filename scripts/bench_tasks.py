@@ -111,9 +111,9 @@ def table_2_identification(budget: float) -> float:
 
 def live_frame(budget: float) -> float:
     """From a request of the live page to the answer, without the network [s]."""
-    from sk120stiff.show.building import scene_of_model
     from sk120stiff.show.live.messages import read_request
     from sk120stiff.show.live.server import LiveServer
+    from sk120stiff.show.scene.building import scene_of_model
 
     server = LiveServer(scene_of_model(sk120_model()), port=0)
     request = {

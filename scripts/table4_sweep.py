@@ -23,7 +23,7 @@ from sk120stiff import load_robot
 from sk120stiff.files import write_atomically
 from sk120stiff.paper.printed import COMPONENT, LOWER, UPPER, printed_counts
 from sk120stiff.show.figures import definiteness_map
-from sk120stiff.show.saving import save_figure
+from sk120stiff.show.figures.saving import save_figure
 from sk120stiff.stiffness import CLASSES, ConstantCompliance, under_load
 
 SPRINGS = np.array([1.4098e6, 4.0076e5, 9.3528e5, np.inf, np.inf, np.inf])  # N·m/rad

@@ -235,7 +235,7 @@ def command(
 
 def _shown(colour: str | None, page: Path | None, job: MapJob) -> str:
     """The variable that colours the page, before anything is computed."""
-    from sk120stiff.show.cloud import SHOWN
+    from sk120stiff.show.scene.cloud import SHOWN
 
     there = [variable.name for variable in job.variables if variable.name in SHOWN]
     if colour is not None and page is None:

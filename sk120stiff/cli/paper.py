@@ -78,7 +78,7 @@ def _refuse_foreign(out: Path, names: list[str]) -> None:
 
 def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> list[Path]:
     from sk120stiff.show import save_figure
-    from sk120stiff.show.paper_report import figures_of, report_of
+    from sk120stiff.show.stories.paper_report import figures_of, report_of
 
     with progress_bar("writing the report") as report, together(last=out / REPORT):
         figures = figures_of(found)

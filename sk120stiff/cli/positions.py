@@ -102,7 +102,7 @@ def predicted_positions(model: Model, readings: Measurements, out: Path | None) 
 def _pages(answer: Explained, readings: Measurements, data: Path, out: Path) -> dict[str, Path]:
     """Scene and report, each where it can be made."""
     from sk120stiff.show import reproducibility, scene_html
-    from sk120stiff.show.building import scene_of_model
+    from sk120stiff.show.scene.building import scene_of_model
     from sk120stiff.show.stories import positions_report
 
     model = answer.final.fit.model

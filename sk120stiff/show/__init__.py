@@ -21,7 +21,7 @@ Scene (`sk120stiff.show.scene`)
     ``static_scene(path, scene)`` for a self-contained page with sliders, ``scene_html(scene)`` for
     its text, and the scene itself shows in a notebook.
 
-Map (`sk120stiff.show.cloud`)
+Map (`sk120stiff.show.scene.cloud`)
     ``cloud_page(path, scene, cloud_of_map(open_map("map.zarr"), robot))``: the robot among the
     coloured points of a map. ``figures_of_map(dataset)``: slices of it as figures.
 
@@ -36,10 +36,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sk120stiff.show.building import scene_of_model
-    from sk120stiff.show.cloud import Cloud, cloud_html, cloud_of_map, cloud_page
-    from sk120stiff.show.elastic import Elastic
-    from sk120stiff.show.map_figures import MapFigure, figures_of_map
+    from sk120stiff.show.figures.of_map import MapFigure, figures_of_map
+    from sk120stiff.show.figures.saving import inline_svg, save_figure
     from sk120stiff.show.report import (
         Code,
         Items,
@@ -53,37 +51,39 @@ if TYPE_CHECKING:
         Table,
         reproducibility,
     )
-    from sk120stiff.show.saving import inline_svg, save_figure
-    from sk120stiff.show.scene import Reading, Scene, ScenePose
-    from sk120stiff.show.static import scene_html, static_scene
+    from sk120stiff.show.scene.building import scene_of_model
+    from sk120stiff.show.scene.cloud import Cloud, cloud_html, cloud_of_map, cloud_page
+    from sk120stiff.show.scene.elastic import Elastic
+    from sk120stiff.show.scene.scene import Reading, Scene, ScenePose
+    from sk120stiff.show.scene.static import scene_html, static_scene
 
 _HOME = {
-    "Cloud": "cloud",
+    "Cloud": "scene.cloud",
     "Code": "report",
-    "Elastic": "elastic",
+    "Elastic": "scene.elastic",
     "Items": "report",
     "KeyFigure": "report",
     "KeyFigures": "report",
-    "MapFigure": "map_figures",
+    "MapFigure": "figures.of_map",
     "Note": "report",
     "Picture": "report",
-    "Reading": "scene",
+    "Reading": "scene.scene",
     "Report": "report",
-    "Scene": "scene",
+    "Scene": "scene.scene",
     "SceneFrame": "report",
-    "ScenePose": "scene",
+    "ScenePose": "scene.scene",
     "Section": "report",
     "Table": "report",
-    "cloud_html": "cloud",
-    "cloud_of_map": "cloud",
-    "cloud_page": "cloud",
-    "figures_of_map": "map_figures",
-    "inline_svg": "saving",
-    "save_figure": "saving",
+    "cloud_html": "scene.cloud",
+    "cloud_of_map": "scene.cloud",
+    "cloud_page": "scene.cloud",
+    "figures_of_map": "figures.of_map",
+    "inline_svg": "figures.saving",
+    "save_figure": "figures.saving",
     "reproducibility": "report",
-    "scene_html": "static",
-    "scene_of_model": "building",
-    "static_scene": "static",
+    "scene_html": "scene.static",
+    "scene_of_model": "scene.building",
+    "static_scene": "scene.static",
 }
 
 __all__ = [

@@ -12,8 +12,8 @@ from selenium.webdriver.common.keys import Keys
 from sk120stiff import load_robot
 from sk120stiff.model import base_model
 from sk120stiff.show import Elastic, Report, Scene, SceneFrame, Section, static_scene
-from sk120stiff.show.frame import Request, compute_frame
-from sk120stiff.show.payload import frame_payload
+from sk120stiff.show.scene.frame import Request, compute_frame
+from sk120stiff.show.scene.payload import frame_payload
 from sk120stiff.stiffness import POSITIONS
 from tests.show.browser import DESKTOP, PHONE, Page, browser, changed, colours
 from tests.show.scenes import TWO_SLIDES, random_pose, sk120, sk120_scene

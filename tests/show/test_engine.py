@@ -15,9 +15,9 @@ from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model import Model, base_model, joint_spring_model
 from sk120stiff.robot import load_robot
 from sk120stiff.show import Elastic, Scene
-from sk120stiff.show.frame import Request, compute_frame
-from sk120stiff.show.mechanism import follows_pose_and_load, serialised
-from sk120stiff.show.payload import frame_payload
+from sk120stiff.show.scene.frame import Request, compute_frame
+from sk120stiff.show.scene.mechanism import follows_pose_and_load, serialised
+from sk120stiff.show.scene.payload import frame_payload
 from tests.oracles.sample_urdfs import six_axis_arm
 from tests.show.scenes import TWO_SLIDES, random_pose
 from tests.stiffness.test_kernel import ROBOTS

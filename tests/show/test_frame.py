@@ -14,9 +14,9 @@ from sk120stiff.model import (
 )
 from sk120stiff.robot import load_robot
 from sk120stiff.show import Elastic, Scene, scene_html
-from sk120stiff.show.frame import Frame, Request, compute_frame
-from sk120stiff.show.links import link_tree
-from sk120stiff.show.payload import frame_payload
+from sk120stiff.show.scene.frame import Frame, Request, compute_frame
+from sk120stiff.show.scene.links import link_tree
+from sk120stiff.show.scene.payload import frame_payload
 from tests.oracles.sample_urdfs import six_axis_arm
 from tests.show.scenes import sk120, springs
 

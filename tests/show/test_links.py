@@ -5,7 +5,7 @@ import pytest
 
 from sk120stiff import load_robot
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.show.links import link_tree
+from sk120stiff.show.scene.links import link_tree
 from tests.show.scenes import TWO_SLIDES, random_pose, sk120
 
 SOURCES = ["motoman_sk120", TWO_SLIDES]

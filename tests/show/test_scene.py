@@ -9,11 +9,11 @@ from sk120stiff import load_robot
 from sk120stiff.errors import InputError
 from sk120stiff.model import base_model
 from sk120stiff.show import Elastic, Reading, Scene, ScenePose, scene_html, static_scene
-from sk120stiff.show.bodies import bodies_of
-from sk120stiff.show.links import link_tree
-from sk120stiff.show.payload import scene_payload
-from sk120stiff.show.shapes import Mesh, capsules, simplified, welded
-from sk120stiff.show.static import json_for_script, viewer_script
+from sk120stiff.show.scene.bodies import bodies_of
+from sk120stiff.show.scene.links import link_tree
+from sk120stiff.show.scene.payload import scene_payload
+from sk120stiff.show.scene.shapes import Mesh, capsules, simplified, welded
+from sk120stiff.show.scene.static import json_for_script, viewer_script
 from tests.show.scenes import TWO_SLIDES, sk120, sk120_scene
 
 

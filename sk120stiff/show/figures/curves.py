@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import hide_spare, styled, subplots
+from sk120stiff.show.figures.style import hide_spare, styled, subplots
 
 _DASHES: tuple[Literal["-", "--", ":", "-."], ...] = ("-", "--", ":", "-.")
 _MARKERS = ("o", "s", "^")

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import FROM_SI, hide_spare, styled, subplots
+from sk120stiff.show.figures.style import FROM_SI, hide_spare, styled, subplots
 from sk120stiff.stiffness import CLASSES
 
 # In the order of CLASSES. Lightness differs too, so that the map survives a grey printer.
@@ -34,7 +34,7 @@ def definiteness_map(
         classes: (ny, nx) or (cases, ny, nx) indices into `sk120stiff.stiffness.CLASSES`; any other
             number is a pose without a class and stays white.
         titles: One per case.
-        units: Units of the two axes as they are drawn: one of `sk120stiff.show.style.FROM_SI`.
+        units: Units of the two axes as they are drawn: keys of `figures.style.FROM_SI`.
     """
     x, y = FROM_SI[units[0]] * np.asarray(x), FROM_SI[units[1]] * np.asarray(y)
     found = np.asarray(classes)

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import new_figure, styled
+from sk120stiff.show.figures.style import new_figure, styled
 from sk120stiff.stiffness import symmetric_part
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import new_figure, styled
+from sk120stiff.show.figures.style import new_figure, styled
 
 _BEFORE_AFTER = (palette.NOISE, palette.BLUE, palette.GREEN, palette.ORANGE, palette.PURPLE)
 _INSIDE = (palette.INK, palette.PAPER)  # text on the first bar and on the later ones

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import new_figure, styled
+from sk120stiff.show.figures.style import new_figure, styled
 from sk120stiff.show.wording import with_error
 
 VAGUE = 1.0  # two standard errors over the value beyond which a value is hardly known

@@ -11,7 +11,7 @@ from matplotlib.patheffects import withStroke
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import styled, subplots
+from sk120stiff.show.figures.style import styled, subplots
 
 COMPONENTS = ("Fx", "Fy", "Fz")
 DIVERGING = "PuOr"  # its two hues are told apart with every kind of colour vision

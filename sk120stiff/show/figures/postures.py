@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import new_figure, styled
+from sk120stiff.show.figures.style import new_figure, styled
 
 FLAT = 0.1  # smallest height of a panel, relative to its middle
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show.figures.parts import COMPONENTS, DIVERGING
-from sk120stiff.show.style import styled, subplots
+from sk120stiff.show.figures.style import styled, subplots
 
 _VIEW = {"elev": 28.0, "azim": -58.0}  # degrees
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import hide_spare, styled, subplots
+from sk120stiff.show.figures.style import hide_spare, styled, subplots
 
 
 @dataclass(frozen=True, eq=False)

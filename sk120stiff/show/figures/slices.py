@@ -11,7 +11,7 @@ from matplotlib.patheffects import withStroke
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.style import FROM_SI, new_figure, styled
+from sk120stiff.show.figures.style import FROM_SI, new_figure, styled
 
 
 def stiffness_slice(
@@ -34,7 +34,7 @@ def stiffness_slice(
         values: (ny, nx) quantity in SI, e.g. the least principal stiffness [N/m]; NaN stays white.
         scale: Factor from SI to the unit that `value_label` names.
         marks: Label → (x, y) [rad or m] of poses to mark.
-        units: Units of the two axes as they are drawn: one of `sk120stiff.show.style.FROM_SI`.
+        units: Units of the two axes as they are drawn: keys of `figures.style.FROM_SI`.
     """
     x, y = FROM_SI[units[0]] * np.asarray(x), FROM_SI[units[1]] * np.asarray(y)
     shown = scale * np.asarray(values, dtype=float)

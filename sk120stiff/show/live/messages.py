@@ -12,7 +12,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.show.frame import Request
+from sk120stiff.show.scene.frame import Request
 
 MAX_BYTES = 16_384  # a request of a hundred joints needs a third of it
 _KEYS = frozenset({"id", "a", "wrench", "point", "exaggeration"})

@@ -6,11 +6,11 @@ from typing import Any
 
 from tornado.websocket import WebSocketHandler
 
-from sk120stiff.show.frame import Request, compute_frame
 from sk120stiff.show.live.messages import Bounds
-from sk120stiff.show.payload import frame_payload, scene_payload
-from sk120stiff.show.scene import Scene
-from sk120stiff.show.static import render_page, viewer_script
+from sk120stiff.show.scene.frame import Request, compute_frame
+from sk120stiff.show.scene.payload import frame_payload, scene_payload
+from sk120stiff.show.scene.scene import Scene
+from sk120stiff.show.scene.static import render_page, viewer_script
 
 
 class Served:

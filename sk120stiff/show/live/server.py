@@ -22,7 +22,7 @@ from sk120stiff.show.live.handlers import (
 )
 from sk120stiff.show.live.messages import MAX_BYTES
 from sk120stiff.show.live.served import Served
-from sk120stiff.show.scene import Scene
+from sk120stiff.show.scene.scene import Scene
 
 LOOPBACK = "127.0.0.1"
 FIRST_PORT = 7400

@@ -11,7 +11,7 @@ from sk120stiff.errors import InputError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from sk120stiff.show.scene import Scene
+    from sk120stiff.show.scene.scene import Scene
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from markupsafe import Markup
 
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
+from sk120stiff.show.figures.saving import inline_svg
 from sk120stiff.show.report.attempts import failure
 from sk120stiff.show.report.blocks import Block, Picture, SceneFrame, Section, Table
-from sk120stiff.show.saving import inline_svg
 
 _COLOURS = {
     name.lower(): value
@@ -152,6 +152,6 @@ def _page(frame: SceneFrame) -> str:
     """The text of the scene's page; autoescape turns it into an attribute."""
     if isinstance(frame.scene, str):
         return frame.scene
-    from sk120stiff.show.static import scene_html
+    from sk120stiff.show.scene.static import scene_html
 
     return scene_html(frame.scene)

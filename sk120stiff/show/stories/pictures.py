@@ -15,7 +15,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.explain import Localisation
 from sk120stiff.explain.localise.localisation import Suspicion
 from sk120stiff.show import palette
-from sk120stiff.show.style import hide_spare, styled, subplots
+from sk120stiff.show.figures.style import hide_spare, styled, subplots
 
 LONGEST_ARROW = 0.22  # share of the picture's width
 MOST_POINTS = 500  # in one panel; more would only make the page heavy

@@ -9,8 +9,8 @@ import numpy as np
 from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
-from sk120stiff.show.building import scene_of_model
-from sk120stiff.show.scene import Scene
+from sk120stiff.show.scene.building import scene_of_model
+from sk120stiff.show.scene.scene import Scene
 from sk120stiff.show.stories.pictures import ArmView
 
 

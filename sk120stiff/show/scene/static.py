@@ -19,8 +19,8 @@ from markupsafe import Markup
 from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
-from sk120stiff.show.payload import scene_payload
-from sk120stiff.show.scene import Scene
+from sk120stiff.show.scene.payload import scene_payload
+from sk120stiff.show.scene.scene import Scene
 
 #: Order matters: each file uses what the ones before it define.
 SCRIPTS = (
@@ -114,7 +114,7 @@ def _not_finite(value: object, key: str = "") -> str:
 @cache
 def script(name: str) -> str:
     """One of our own scripts."""
-    return (files("sk120stiff.show") / "page" / name).read_text(encoding="utf-8")
+    return (files("sk120stiff.show.scene") / "page" / name).read_text(encoding="utf-8")
 
 
 @cache
@@ -132,7 +132,7 @@ def viewer_script() -> str:
 def environment() -> Environment:
     """The templates of pages with a 3-D scene."""
     return Environment(
-        loader=PackageLoader("sk120stiff.show", "page"),
+        loader=PackageLoader("sk120stiff.show.scene", "page"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -12,8 +12,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
-from sk120stiff.show.elastic import Elastic
-from sk120stiff.show.links import LinkTree
+from sk120stiff.show.scene.elastic import Elastic
+from sk120stiff.show.scene.links import LinkTree
 from sk120stiff.stiffness import UnderLoad, under_load
 
 BEFORE = (

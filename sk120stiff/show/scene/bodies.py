@@ -6,8 +6,8 @@ import numpy as np
 
 from sk120stiff.robot import Robot
 from sk120stiff.robot.visuals import Visual, visuals
-from sk120stiff.show.links import LinkTree
-from sk120stiff.show.shapes import PLAIN, Body, Mesh, capsules, reach_of, simplified, welded
+from sk120stiff.show.scene.links import LinkTree
+from sk120stiff.show.scene.shapes import PLAIN, Body, Mesh, capsules, reach_of, simplified, welded
 
 TRIANGLES = 120_000  # for a whole robot; a page stays below some 4 MB and turns smoothly
 

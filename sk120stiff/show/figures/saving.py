@@ -58,7 +58,7 @@ def inline_svg(figure: Figure, alt: str) -> str:
 
 
 def _rendered(figure: Figure, kind: str, dpi: int) -> bytes:
-    from sk120stiff.show.style import styled
+    from sk120stiff.show.figures.style import styled
 
     stamp = {"svg": {"Date": None, "Creator": "sk120stiff"}, "pdf": {"CreationDate": None}}
     buffer = io.BytesIO()

@@ -15,10 +15,10 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
-from sk120stiff.show.frame import Request, compute_frame
-from sk120stiff.show.payload import frame_payload, scene_payload
-from sk120stiff.show.scene import Scene
-from sk120stiff.show.static import environment, json_for_script, script, viewer_script
+from sk120stiff.show.scene.frame import Request, compute_frame
+from sk120stiff.show.scene.payload import frame_payload, scene_payload
+from sk120stiff.show.scene.scene import Scene
+from sk120stiff.show.scene.static import environment, json_for_script, script, viewer_script
 from sk120stiff.show.wording import load_in_words
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
-from sk120stiff.show.elastic import Elastic
-from sk120stiff.show.scene import Reading, Scene, ScenePose
+from sk120stiff.show.scene.elastic import Elastic
+from sk120stiff.show.scene.scene import Reading, Scene, ScenePose
 
 if TYPE_CHECKING:
     from sk120stiff.effects import Situation

@@ -12,7 +12,7 @@ from sk120stiff.effects import LinearElastic, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model import ModelCompliance, probing_poses
 from sk120stiff.robot import LinearCoupling
-from sk120stiff.show.scene import Scene
+from sk120stiff.show.scene.scene import Scene
 from sk120stiff.stiffness import ConstantCompliance
 
 HELD = "effects that change with pose or load are held as they are at the first pose, unloaded"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array
 from sk120stiff.robot import Robot
-from sk120stiff.show.links import FIXED, LinkTree
+from sk120stiff.show.scene.links import FIXED, LinkTree
 
 Colour = tuple[float, float, float, float]
 

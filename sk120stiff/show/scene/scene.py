@@ -11,8 +11,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
-from sk120stiff.show.elastic import Elastic
-from sk120stiff.show.links import LinkTree, link_tree
+from sk120stiff.show.scene.elastic import Elastic
+from sk120stiff.show.scene.links import LinkTree, link_tree
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +118,7 @@ class Scene:
         return np.zeros(6)
 
     def _repr_html_(self) -> str:
-        from sk120stiff.show.static import notebook_html
+        from sk120stiff.show.scene.static import notebook_html
 
         return notebook_html(self)
 
