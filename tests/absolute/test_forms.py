@@ -93,7 +93,7 @@ def test_markers_series_and_payloads(tmp_path: Path) -> None:
     rough = settings.replace("mm}", "mm, fit: true}").replace("50, -80", "48, -79")
     agrees(calibrated(write(tmp_path, A, x, rough, more=",marker", cells=list(names))))
     swapped = [{"A": "B", "B": "A"}[n] for n in names]
-    with pytest.raises(InputError, match="Two markers look exchanged"):
+    with pytest.raises(InputError, match="2 markers look exchanged"):
         calibrated(write(tmp_path, A, x, settings, more=",marker", cells=swapped))
 
 

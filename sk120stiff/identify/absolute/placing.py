@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import permutations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
@@ -20,7 +22,9 @@ FAR = 8.0  # times the median distance: a wild row
 WILD = 0.2  # share of rows beyond which they are no outliers
 LEAST = 2e-4  # m; no row is wild for less
 FITS = 0.03  # of the spread of the positions: what no calibrated arm leaves after placing
+SUSPECT = 1e-3  # of the spread of the positions: what is worth a look for slips of the pen
 BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
+MARKERS = 4  # up to which every exchange of markers is tried
 LOOKED_AT = 150  # rows that slips are looked for in
 TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
 MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
@@ -63,9 +67,12 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     if len(whole) < FEWEST:
         return None
     free = said.fit_point
-    cloud = _Cloud(robot, readings.joints[whole], x[whole], said.point[whole])
+    names = np.array(said.markers)[whole]
+    cloud = _Cloud(robot, readings.joints[whole], x[whole], said.point[whole], names)
     found, kept = cloud.placed(fit_marker=True)
     spread = float(np.sqrt(((x[whole] - x[whole].mean(axis=0)) ** 2).sum(axis=1).mean()))
+    if found.rms > SUSPECT * spread:
+        _refuse_slips(cloud, found, readings)
     if found.rms > FITS * spread:
         raise _no_such_arm(cloud, found, readings, whole)
     notes: list[str] = []
@@ -98,12 +105,13 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
 
 @dataclass(frozen=True, eq=False)
 class _Cloud:
-    """Positions (N, 3) [m], joint values (N, n) and stated markers (N, 3) that belong to them."""
+    """Positions (N, 3) [m], joint values (N, n), stated markers (N, 3) and their names (N,)."""
 
     robot: Robot
     a: Array
     x: Array
     point: Array
+    marker: NDArray[np.str_]
 
     def placed(self, *, fit_marker: bool) -> tuple[Registration, Mask]:
         """The best placing, and the rows that it rests on (N,)."""
@@ -135,42 +143,51 @@ class _Cloud:
     def some(self) -> _Cloud:
         """A part of the rows, spread over all."""
         pick = np.unique(np.linspace(0, len(self.x) - 1, LOOKED_AT).astype(int))
-        return replace(self, a=self.a[pick], x=self.x[pick], point=self.point[pick])
+        return replace(
+            self, a=self.a[pick], x=self.x[pick], point=self.point[pick], marker=self.marker[pick]
+        )
+
+
+def _refuse_slips(cloud: _Cloud, found: Registration, readings: Measurements) -> None:
+    """Refuse positions that one slip of the pen explains far better."""
+    where = str(readings.path or "measurements")
+    told = _left(found)
+    few = cloud.some()
+    base = few.placed(fit_marker=True)[0].rms
+    tried = min(_slips(few, readings.joint_names), key=lambda item: item[0])
+    if tried[0] < BETTER * base:
+        _, rms, what, remedy = tried
+        raise InputError(
+            f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
+        )
+    rest, mapping = _zeros_and_signs(few, readings.joint_names)
+    if mapping and rest < BETTER * base:
+        raise InputError(
+            f"{told}. With other zeros or signs of joints {1e3 * rest:.3g} mm are left",
+            where=where,
+            remedy=f"Check the controller's convention. If it is so, write into the YAML file: "
+            f"joints: {{{mapping}}}",
+        )
+
+
+def _left(found: Registration) -> str:
+    return (
+        f"these positions are not where this robot's marker goes: {1e3 * found.rms:.4g} mm are "
+        "left after the best placing of the tracker"
+    )
 
 
 def _no_such_arm(
     cloud: _Cloud, found: Registration, readings: Measurements, whole: Index
 ) -> InputError:
-    """What would explain positions that no placing of this robot gives."""
-    where = str(readings.path or "measurements")
-    left = f"{1e3 * found.rms:.4g} mm are left after the best placing of the tracker"
-    few = cloud.some()
-    tried = sorted(_slips(few, readings.joint_names), key=lambda item: item[0])
-    base = few.placed(fit_marker=True)[0].rms
-    if tried and tried[0][0] < BETTER * base:
-        _, rms, what, remedy = tried[0]
-        return InputError(
-            f"these positions are not where this robot's marker goes: {left}. {what}: then "
-            f"{1e3 * rms:.3g} mm are left",
-            where=where,
-            remedy=remedy,
-        )
-    rest, mapping = _zeros_and_signs(few, readings.joint_names)
-    if mapping and rest < BETTER * base:
-        return InputError(
-            f"these positions are not where this robot's marker goes: {left}. With other zeros or "
-            f"signs of joints {1e3 * rest:.3g} mm are left",
-            where=where,
-            remedy=f"Check the controller's convention. If it is so, write into the YAML file: "
-            f"joints: {{{mapping}}}",
-        )
+    """Positions that no placing of this robot gives."""
     distance = cloud.left(found)
     worst = np.argsort(-distance)[:3]
     lines = ", ".join(str(readings.line[whole[k]]) for k in worst)
     return InputError(
-        f"these positions are not where this robot's marker goes: {left}, of positions that "
-        f"spread over {1e3 * float(np.ptp(cloud.x, axis=0).max()):.4g} mm",
-        where=f"{where}, worst in lines {lines}",
+        f"{_left(found)}, of positions that spread over "
+        f"{1e3 * float(np.ptp(cloud.x, axis=0).max()):.4g} mm",
+        where=f"{readings.path or 'measurements'}, worst in lines {lines}",
         remedy="Check that they are of this robot, that rows of joints and positions belong "
         "together, and units, signs and order of the joint columns.",
     )
@@ -191,6 +208,12 @@ def _slips(cloud: _Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float
         rms = left(a=a)
         said = f"The joint angles look like {was}"
         yield rms, rms, said, f"Write [{unit}] in their headers."
+        for k in np.flatnonzero(turning):
+            a = cloud.a.copy()
+            a[:, k] *= factor
+            rms = left(a=a)
+            said = f"The column of {names[k]} looks like {was}"
+            yield rms, rms, said, f"Write [{unit}] in its header."
     for factor, unit in ((1e-3, "mm"), (1e3, "m"), (0.0254, "in"), (25.4, "in"), (1e-6, "um")):
         rms = left(x=cloud.x * factor)
         yield (
@@ -221,19 +244,33 @@ def _slips(cloud: _Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float
 
 
 def _markers(cloud: _Cloud) -> Iterator[tuple[float, float, str, str]]:
-    kinds = np.unique(cloud.point, axis=0)
-    for i in range(len(kinds)):
-        for j in range(i + 1, len(kinds)):
-            point = cloud.point.copy()
-            one, other = (np.all(cloud.point == kinds[k], axis=1) for k in (i, j))
-            point[one], point[other] = kinds[j], kinds[i]
-            rms = replace(cloud, point=point).placed(fit_marker=True)[0].rms
-            yield (
-                rms,
-                rms,
-                "Two markers look exchanged",
-                "Check the column marker against points.",
-            )
+    """Names of markers exchanged: all ways of a few, pairs of many."""
+    kinds, first = np.unique(cloud.marker, return_index=True)
+    place, count = cloud.point[first], len(kinds)
+    ways = permutations(range(count)) if count <= MARKERS else _pairs(count)
+    for way in ways:
+        moved = [k for k in range(count) if way[k] != k]
+        if not moved:
+            continue
+        point = cloud.point.copy()
+        for k in moved:
+            point[cloud.marker == kinds[k]] = place[way[k]]
+        rms = replace(cloud, point=point).placed(fit_marker=True)[0].rms
+        yield (
+            rms,
+            rms,
+            f"{len(moved)} markers look exchanged: what is written as "
+            + ", ".join(f"{kinds[k]} is {kinds[way[k]]}" for k in moved),
+            "Check the column marker against points.",
+        )
+
+
+def _pairs(count: int) -> Iterator[tuple[int, ...]]:
+    for i in range(count):
+        for j in range(i + 1, count):
+            way = list(range(count))
+            way[i], way[j] = j, i
+            yield tuple(way)
 
 
 def _zeros_and_signs(cloud: _Cloud, names: tuple[str, ...]) -> tuple[float, str]:

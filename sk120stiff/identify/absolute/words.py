@@ -75,8 +75,14 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     rows = np.flatnonzero(found.wild)
     if len(rows):
         said.append(f"{len(rows)} rows lie far off all others and were set aside:")
-        said += _some([f"  line {readings.line[row]} (pose {readings.pose[row]})" for row in rows])
+        said += _some([_wild(found, readings, int(row)) for row in rows])
     return said
+
+
+def _wild(found: Calibration, readings: Measurements, row: int) -> str:
+    off = np.nan if found.placed is None else found.placed.distance[row]
+    far = f": {1e3 * off:.3g} mm off the placed rigid robot" if np.isfinite(off) else ""
+    return f"  line {readings.line[row]} (pose {readings.pose[row]}){far}"
 
 
 def _some(lines: Sequence[str]) -> list[str]:
