@@ -7,8 +7,9 @@ import pytest
 
 from sk120stiff.effects import situation_of
 from sk120stiff.identify import Fit, fit
-from sk120stiff.identify.uncertainty.variance_components import variance_components
+from sk120stiff.identify.uncertainty.variance_components import Deviance, variance_components
 from sk120stiff.measurements import Measurements, ModelForm, NoiseModel
+from sk120stiff.measurements.model_form import EXACT
 from sk120stiff.model import Model
 from tests.identify.conftest import readings_of
 
@@ -81,3 +82,14 @@ def test_a_sigma_that_is_too_small_is_told_from_structure(springs):
     for each in fits(springs, ModelForm(0.1, 0.0), noise=NoiseModel(SIGMA), count=3):
         found = variance_components(each)
         assert found.gain > found.inflation_gain + 20.0
+
+
+def test_parameters_are_taken_off_the_freedom_of_an_unknown_noise(springs):
+    """Few readings: sigma comes from χ² over rows less parameters, as least squares have it."""
+    data = readings_of(springs, poses=3, sigma=SIGMA, seed=1)
+    found = fit(springs, data, noise=NoiseModel(3e-5, freedom=0, zero=data.zero))
+    sums = Deviance.of(found)
+    assert sums.freedom == found.degrees_of_freedom == len(found.residual) - len(found.x)
+    assert sums.noise_factor(EXACT) == pytest.approx(
+        np.sqrt(found.chi_square / found.degrees_of_freedom), rel=1e-6
+    )

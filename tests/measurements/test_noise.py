@@ -154,6 +154,26 @@ def test_a_displacement_with_its_own_zero_has_root_two_sigma() -> None:
     )
 
 
+def test_zeros_that_nobody_described_are_as_the_model_says() -> None:
+    """Rows of one pose subtract one zero reading, or each its own: σ² more in the variance."""
+    m = make(["a", "a", "b"], zero="unknown")
+    x = np.full((3, 3), SIGMA)
+    own = NoiseModel(SIGMA, zero="separate").whitener(m)
+    np.testing.assert_allclose(own.apply(x), 0.5**0.5)
+    assert own.logdet == pytest.approx(9 * np.log(2 * SIGMA**2))
+    shared = NoiseModel(SIGMA, zero="shared").whitener(m)
+    assert shared.logdet == pytest.approx(np.log(3.0 * 2.0) * 3 + 9 * np.log(SIGMA**2))
+
+
+def test_a_reading_of_a_quarter_of_the_weight_has_twice_the_sigma() -> None:
+    weights = np.array([1.0, 0.25, 1.0, 1.0, 0.04, 1.0, 1.0, 1.0])
+    stated = SIGMA / np.sqrt(weights)[:, None] * np.ones(3)
+    x = np.random.default_rng(2).normal(size=(8, 3)) * SIGMA
+    weighted = NoiseModel(SIGMA).whitener(make(MIXED, zero_count=COUNTS), weights=weights)
+    rows_own = NoiseModel(SIGMA).whitener(make(MIXED, zero_count=COUNTS, sigma=stated))
+    np.testing.assert_allclose(weighted.apply(x), rows_own.apply(x), rtol=1e-12)
+
+
 def test_large_data_are_whitened_in_milliseconds() -> None:
     rng = np.random.default_rng(0)
     m = make([str(i // 5) for i in range(2000)], displacement=rng.normal(size=(2000, 3)) * 1e-4)
