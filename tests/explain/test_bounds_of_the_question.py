@@ -8,12 +8,15 @@ import pytest
 from sk120stiff import InputError, Model, Refusal, ToolkitWarning, base_model, load_robot
 from sk120stiff.effects import effect
 from sk120stiff.explain import explain
+from sk120stiff.explain.advise import consequences
 from sk120stiff.explain.candidates.aliases import exact_aliases
 from sk120stiff.explain.judge import steps
 from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.options import with_assumed
+from sk120stiff.explain.select import stepwise
 from sk120stiff.explain.select.stepwise import Attempt, attempt, refit
 from tests.explain.readings import NOISE, POINT, hidden
+from tests.hidden.generator.causes_elastic import BaseRocking
 
 
 @pytest.fixture(scope="module")
@@ -110,3 +113,43 @@ def test_a_step_that_has_no_answer_is_told_together_with_the_next(springs, monke
     assert [step.label for step in told] == [
         "joint_springs", "+ base_rocking:base_link + joint_tilt:joint_2_l",
     ]  # fmt: skip
+
+
+def test_rounding_of_the_first_order_is_no_size(springs, monkeypatch):
+    """A tracker that is turned shows nothing while nothing yields: its angle starts at zero."""
+    readings = hidden(poses=8, loads=3)
+    base = attempt(springs, readings, NOISE, [], max_effects=0, alpha=0.01).base
+    turned = effect(springs.robot, "reading_rotation")
+    plain = refit(base, [turned])
+    solver = stepwise.lsq_linear
+
+    def rounded(*given, **more):
+        found = solver(*given, **more)
+        found.x = found.x + 1e-17
+        return found
+
+    monkeypatch.setattr(stepwise, "lsq_linear", rounded)
+    again = refit(base, [turned])
+    assert np.isfinite(again.model.values).all()
+    assert again.chi_square == pytest.approx(plain.chi_square, rel=1e-6)
+
+
+def test_loads_that_the_found_curve_does_not_hold_are_taken_smaller(springs, monkeypatch):
+    """What to measure next is asked again at a part of the load; the answer is not lost."""
+    rocking = BaseRocking("base_link", {"x": 1 / 4e6, "y": 1 / 4e6})
+    answer = explain(springs, hidden(rocking, poses=10, loads=2))
+    (finding,) = answer.findings
+    open_question = replace(finding, alternatives=("joint_tilt:joint_1_s",), exact=())
+    asked = []
+    choose = consequences.discriminating_readings
+
+    def choosy(model, effect, rival, pool, **more):
+        asked.append(np.abs(pool.situation.wrench).max())
+        if len(asked) < 3:
+            raise Refusal("the arm gives way")
+        return choose(model, effect, rival, pool, **more)
+
+    monkeypatch.setattr(consequences, "discriminating_readings", choosy)
+    found = consequences.next_poses(replace(answer, findings=(open_question,)), seed=0)
+    assert np.array(asked) == pytest.approx(asked[0] * np.array([1.0, 0.5, 0.25]))
+    assert np.abs(found[1]).max() <= asked[2]

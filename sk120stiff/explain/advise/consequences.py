@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.errors import Refusal
 from sk120stiff.explain.advise.detectable import detectable
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.candidates.regression import Regression
@@ -14,6 +15,7 @@ from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.plan import Region, discriminating_readings, feasible_pool, lowest_points
 
 READINGS_TO_MEASURE = 10
+SHARES_OF_LOAD = (1.0, 0.5, 0.25, 0.1)  # tried until the model holds the load at every pose
 
 
 def completed(answer: Explanation, regression: Regression, *, seed: int) -> Explanation:
@@ -60,14 +62,16 @@ def next_poses(
             region=Region(lowest=floor),
         )
         rival = answer.effect(rivals[0])
-        choice = discriminating_readings(
-            model,
-            finding.effect,
-            rival,
-            pool,
-            count=count,
-            sigma=answer.noise.sigma * answer.final.noise_factor,
-        )
-        rows = list(choice.rows)
-        return pool.situation.a[rows], pool.situation.wrench[rows], pool.remarks
+        sigma = answer.noise.sigma * answer.final.noise_factor
+        for share in SHARES_OF_LOAD:
+            weaker = replace(pool.situation, wrench=share * pool.situation.wrench)
+            held = replace(pool, situation=weaker)
+            try:
+                choice = discriminating_readings(
+                    model, finding.effect, rival, held, count=count, sigma=sigma
+                )
+            except Refusal:  # a curve beyond the torques at which it was measured may not hold
+                continue
+            rows = list(choice.rows)
+            return weaker.a[rows], weaker.wrench[rows], pool.remarks
     return None

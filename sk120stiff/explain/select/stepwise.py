@@ -22,6 +22,7 @@ from sk120stiff.model import Model
 
 TRIED = 1  # models whose fit may be refused before smaller ones are tried
 ROUNDS = 4  # of linearising, searching and refitting
+ROUNDING = 1e-12  # of the largest column: what is smaller is no first-order effect of a parameter
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,10 +132,14 @@ def refit(base: Fit, effects: Sequence[Effect]) -> Fit:
         model = model + effect
     problem = Problem(model, base.problem.measurements, base.problem.noise)
     residual, jacobian = problem.first_order
-    size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
-    bounds = (problem.bounds[0] * size, problem.bounds[1] * size)
+    size = np.linalg.norm(jacobian, axis=0)
+    seen = size > ROUNDING * size.max(initial=0.0)  # a misread displacement shows once there is one
+    jacobian, size = jacobian[:, seen], size[seen]
+    low, high = (end[seen] * size for end in problem.bounds)
+    start = np.zeros(len(seen))
     try:  # from the best first-order values, most of them on their bounds, it is not far
-        return solve_near(problem, lsq_linear(jacobian / size, -residual, bounds).x / size)
+        start[seen] = lsq_linear(jacobian / size, -residual, (low, high)).x / size
+        return solve_near(problem, start)
     except Refusal:
         return solve(problem)
 
