@@ -8,10 +8,12 @@ from sk120stiff.effects import effect, situation_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.budget import error_budget
+from sk120stiff.explain.judge.gear_curve import STEPS, gear_curves
 from sk120stiff.explain.priors import PRIORS, USUAL, price, priors_from
 from sk120stiff.identify import fit
 from tests.explain.readings import NOISE, hidden
 from tests.hidden.generator.causes_curves import MaxwellSlip, SmoothPlay
+from tests.hidden.generator.sk120 import sk120
 
 GEARS = Options(
     only=("lost_motion", "gear_hardening", "friction_hysteresis", "zero_offset", "joint_tilt")
@@ -23,11 +25,13 @@ def springs():
     return base_model(load_robot("motoman_sk120"))
 
 
+#: 100 µrad whose flanks close over 60 and 20 N·m, far above the noise
+PLAY = SmoothPlay("joint_1_s", {"half_width": 1e-4}, {"flank": 40.0, "skew": 0.5})
+
+
 @pytest.fixture(scope="module")
 def skewed(springs):
-    """Play of 100 µrad whose flanks close over 60 and 20 N·m, far above the noise."""
-    play = SmoothPlay("joint_1_s", {"half_width": 1e-4}, {"flank": 40.0, "skew": 0.5})
-    return explain(springs, hidden(play, sigma=4e-6), options=GEARS)
+    return explain(springs, hidden(PLAY, sigma=4e-6), options=GEARS)
 
 
 def test_skewed_play_with_flanks_has_one_name(skewed):
@@ -40,7 +44,34 @@ def test_a_maxwell_slip_gear_is_friction_and_nothing_else(springs):
         "joint_1_s", {"half_width": 9e-5}, {"shares": (0.5, 0.3, 0.2), "reach": (2e-5, 8e-5, 2e-4)}
     )
     answer = explain(springs, hidden(gear, schedule="up_down", sigma=4e-6), options=GEARS)
-    assert [finding.effect.id for finding in answer.findings] == ["friction_hysteresis:joint_1_s"]
+    names = [finding.effect.id for finding in answer.findings]
+    assert names == ["friction_hysteresis:joint_1_s"]
+    (curve,) = gear_curves(answer.final, names)
+    # round the bench once: the loop's area is the work that friction takes, 2 h by 2 T less corners
+    whole = slice(STEPS - 1, None)
+    lost = -np.trapezoid(curve.twist[whole], curve.torque[whole])
+    box = 4.0 * 9e-5 * curve.torque.max()
+    assert 0.6 * box < lost < box
+
+
+def test_the_found_curve_is_that_of_the_gear(skewed):
+    """Spring and skewed flanks as the generator has them; no loop; the plain law is another."""
+    (curve,) = gear_curves(skewed.final, ["lost_motion:joint_1_s"])
+    compliance = 1.0 / sk120().typical.joint["joint_1_s"]
+    true = compliance * curve.torque + PLAY.curve(curve.torque, compliance)
+    off = np.abs(curve.twist - true)
+    assert off.max() < 6e-6  # of 820 µrad
+    assert (off <= 2.0 * curve.band + 2e-6).mean() > 0.9
+    whole = slice(STEPS - 1, None)
+    assert np.abs(np.trapezoid(curve.twist[whole], curve.torque[whole])) < 1e-9
+    assert np.abs(curve.ideal - true).max() > 3e-5
+    read = np.interp(curve.measured[:, 0], np.sort(curve.torque), np.sort(curve.twist))
+    assert len(curve.measured) > 30
+    assert np.sqrt(np.mean((curve.measured[:, 1] - read) ** 2)) < 1.5e-5
+
+
+def test_no_gear_has_no_curve(skewed):
+    assert gear_curves(skewed.final, ["joint_tilt:joint_2_l"]) == ()
 
 
 def test_the_budget_adds_up_as_vectors(skewed):

@@ -21,6 +21,7 @@ from sk120stiff.show.report import (
 from sk120stiff.show.stories.budget_section import budget_section
 from sk120stiff.show.stories.evidence_section import evidence_section
 from sk120stiff.show.stories.gap_section import gap_section
+from sk120stiff.show.stories.gear_section import gear_section
 from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
 from sk120stiff.show.stories.parameters_section import parameters_section
 from sk120stiff.show.stories.verdicts import FEW, lead_of, title_of
@@ -60,6 +61,7 @@ def explain_report(
         ),
         "Where it lives": lambda: where_section(answer),
         "The evidence": lambda: evidence_section(answer),
+        "The curve of the gear": lambda: gear_section(answer),
         "Parameters": lambda: parameters_section(answer),
         "What moves the point": lambda: budget_section(answer),
         "What is left, and the noise": lambda: left_section(answer, readings),
