@@ -144,4 +144,4 @@ def _measured(fit: Fit, gear: GearEffect, parts: Sequence[Elastic]) -> Array:
         values = fit.model.values[[p.effect == part for p in fit.model.parameters]]
         twist = twist + _shapes(part, weight, alone) @ values
         twist = twist + part.elongation(load, situation, values).value[:, 0]
-    return np.stack([(load + weight)[:, 0], twist], axis=1)[told]
+    return np.asarray(np.stack([(load + weight)[:, 0], twist], axis=1)[told])

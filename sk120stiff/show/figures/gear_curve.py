@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from sk120stiff.explain.judge.gear_curve import GearCurve
 from sk120stiff.show import palette
-from sk120stiff.show.style import styled, subplots
+from sk120stiff.show.figures.style import styled, subplots
 
 LIMIT = 1.6  # of the curve's own range: readings beyond it are not drawn
 
