@@ -22,6 +22,8 @@ Evaluate = Callable[[Array], tuple[Array, Array]]
 
 FAINTEST = 0.1  # a change by all that is plausible that shows by less of the noise is not seen
 STEPS = 100
+PATIENCE = 20  # steps after which the misfit must have fallen
+FALLEN = 1e-4  # by more than this share of what one reading adds to it
 FINE = 1e-12
 LEARNED = 1e-6  # relative step below which rounding hides the curvature
 SOUND = 0.1  # least curvature over that of Gauss and Newton for which the learned one is trusted
@@ -75,7 +77,12 @@ def polish(
     count, last = 1, np.inf
     held = _pushed_out(x, residual, jacobian, bounds)
     curvature = np.zeros((len(x), len(x)))
-    for _ in range(STEPS + 4 * len(x)):
+    misfit = np.inf
+    for number in range(STEPS + 4 * len(x)):
+        if number % PATIENCE == 0:  # a law with jumps lets the steps creep on for ever
+            fallen, misfit = misfit - float(residual @ residual), float(residual @ residual)
+            if fallen < FALLEN * misfit / max(len(residual), 1):
+                break
         step = _newton(jacobian, residual, held, span, curvature)
         size = _size(step, x)
         if size <= fine or _rounding(size, last, jacobian @ step):
