@@ -6,8 +6,9 @@ or the work was done and its honest answer is "no" (`Refusal`, exit code 1).
 
 from __future__ import annotations
 
+import importlib.util
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, Final
 
 
 class ToolkitError(Exception):
@@ -50,12 +51,36 @@ class Refusal(ToolkitError):
 class MissingPart(InputError):
     """An optional part of the toolkit is not installed; the remedy is the install command."""
 
-    def __init__(self, library: str, extra: str | None, *, needed_for: str) -> None:
-        name = f'"sk120stiff[{extra}]"' if extra else library
+    def __init__(self, library: str, *, needed_for: str) -> None:
         super().__init__(
             f"{needed_for} needs the library {library!r}, which is not installed",
-            remedy=f"Install it with: pip install {name}",
+            remedy=f'Install it with: pip install "sk120stiff[{EXTRA_OF[library]}]"',
         )
+
+
+#: Library that the plain install lacks → the extra of the package that brings it.
+EXTRA_OF: Final = {
+    "distributed": "cluster",
+    "matplotlib": "view",
+    "meshcat": "view",
+    "numba": "map",
+    "pandas": "map",
+    "tornado": "view",
+    "trimesh": "view",
+    "xacro": "xacro",
+    "xarray": "map",
+    "zarr": "map",
+}
+
+
+def require(library: str, *, needed_for: str) -> None:
+    """Stop where a library that the plain install lacks is about to be used and is not there.
+
+    Raises:
+        MissingPart: It is not installed.
+    """
+    if importlib.util.find_spec(library) is None:
+        raise MissingPart(library, needed_for=needed_for)
 
 
 class ToolkitWarning(UserWarning):

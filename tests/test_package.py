@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import sk120stiff
+from sk120stiff.errors import EXTRA_OF
 from sk120stiff.robot.bundled import bundled_robots
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -61,7 +62,6 @@ def test_the_checkout_finds_its_robots() -> None:
 
 
 OTHER_NAMES = {"pinocchio": "pin", "yaml": "pyyaml"}  # import → package
-OPTIONAL = {"distributed": "cluster", "xacro": "xacro"}  # import → extra
 # Not imported here, but without it a library of ours cannot do what we ask of it.
 THROUGH = {"pycollada": "trimesh"}
 
@@ -78,8 +78,8 @@ def libraries_in(folder: str) -> dict[str, Path]:
             modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             if isinstance(node, ast.ImportFrom) and not node.level:
                 modules = [node.module or ""]
-            if isinstance(node, ast.Call) and "find_spec" in ast.unparse(node.func):
-                modules = [str(a.value) for a in node.args if isinstance(a, ast.Constant)]
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("find_spec", "require"):
+                modules = [a.value for a in node.args if isinstance(a, ast.Constant)]
             found |= {module.partition(".")[0]: path for module in modules}
     known = {*sys.stdlib_module_names, "sk120stiff"}
     return {top: path for top, path in found.items() if top not in known}
@@ -91,11 +91,11 @@ def test_libraries_that_are_imported_are_those_that_are_declared() -> None:
     extras = {extra: names(entries) for extra, entries in project["optional-dependencies"].items()}
     imported = libraries_in("sk120stiff")
     for top, path in imported.items():
-        where = extras[OPTIONAL[top]] if top in OPTIONAL else named
+        where = extras[EXTRA_OF[top]] if top in EXTRA_OF else named
         assert OTHER_NAMES.get(top, top) in where, f"{path} imports {top}"
     for library, user in THROUGH.items():
         assert user in imported and library in names(requires(user) or ())
-    declared = named | extras["xacro"] | extras["cluster"]
+    declared = named.union(*(extras[extra] for extra in set(EXTRA_OF.values()))) - {"sk120stiff"}
     assert declared == {OTHER_NAMES.get(top, top) for top in imported} | set(THROUGH)
 
 

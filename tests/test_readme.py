@@ -61,7 +61,7 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_two_commands_are_those_that_ci_runs() -> None:
     lines = [line for line in README.splitlines() if line.startswith("python3 -m venv")]
     demo, tests = lines
-    assert demo == f"{VENV}.venv/bin/pip install . && .venv/bin/sk120stiff demo"
+    assert demo == f'{VENV}.venv/bin/pip install ".[view]" && .venv/bin/sk120stiff demo'
     assert tests == f'{VENV}.venv/bin/pip install -e ".[test]" && .venv/bin/python -m pytest'
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
     patterns = re.findall(r"grep -E '(.*?)' README\.md", script)

@@ -11,6 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.arrays import Array
+from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.map_postures import postures
 from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
@@ -161,6 +162,7 @@ def command(
     """
     will_fill(out)
     will_write(page, "--page")
+    will_draw(page, figures)
     believed = open_model(robot, model, base=base, tool=tool)
     arm_robot = believed.robot
     arm = elastic_arm(believed, frame=at)

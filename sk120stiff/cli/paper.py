@@ -9,6 +9,7 @@ from rich import box
 from rich.padding import Padding
 from rich.table import Table
 
+from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer, note
 from sk120stiff.cli.options import OutFolderOption
 from sk120stiff.cli.tables import progress_bar
@@ -36,6 +37,7 @@ def command(out: OutFolderOption = None) -> Answer:
     """
     if out is not None:
         _check_writable(out)
+        will_draw(out)
     with progress_bar("recomputing the paper") as report:
         found = reproduce(report)
     tables = side_by_side(found)

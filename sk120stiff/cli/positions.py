@@ -13,13 +13,14 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import Elastic
 from sk120stiff.errors import InputError
 from sk120stiff.explain import Options
-from sk120stiff.explain.absolute.document import gaps_frame, save_positions
+from sk120stiff.explain.absolute.document import gaps_table, save_positions
 from sk120stiff.explain.absolute.run import Explained, explain_positions, heldout_on
-from sk120stiff.files import write_atomically
+from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.identify.absolute.calibrate import in_gravity
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model
+from sk120stiff.model.prediction_table import rows_of
 
 SAID = {
     "none": "Model and data agree: nothing is missing that these positions show.",
@@ -79,14 +80,14 @@ def predicted_positions(model: Model, readings: Measurements, out: Path | None) 
             remedy="Give a model that 'identify' or 'explain' wrote from readings of this tracker.",
         )
     model = in_gravity(model, readings.absolute.gravity)
-    frame = gaps_frame(model, readings)
+    columns = gaps_table(model, readings)
     if out is not None:
-        write_atomically(out, frame.to_csv(index=False))
-    document: dict[str, object] = {"rows": frame.to_dict(orient="records"), "out": out}
+        write_atomically(out, csv_text(columns.items()))
+    document: dict[str, object] = {"rows": rows_of(columns), "out": out}
     parts: list[object] = []
     names = [f"gap_{axis}[um]" for axis in "xyz"]
-    if names[0] in frame:
-        gap = frame.loc[frame["use"] == 1, names].to_numpy(dtype=float)
+    if names[0] in columns:
+        gap = np.array([columns[name] for name in names], dtype=float).T[readings.use]
         gap = gap[np.isfinite(gap).all(axis=1)]
         document["rms_um"] = float(np.sqrt(np.mean(gap**2)))
         document["mean_distance_um"] = float(np.linalg.norm(gap, axis=1).mean())

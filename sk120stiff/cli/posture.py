@@ -11,6 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.arrays import Array
+from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
@@ -132,6 +133,7 @@ def command(
     will_write(out)
     will_write(picture, "--picture")
     will_write(page, "--page")
+    will_draw(picture, page)
     believed = open_model(model)
     robot = believed.robot
     given = read_path(path, robot)

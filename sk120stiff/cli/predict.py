@@ -16,16 +16,16 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import ToolkitWarning
-from sk120stiff.files import will_write, write_atomically
+from sk120stiff.files import csv_text, will_write, write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import (
     Predicted,
     warn_of_far_bend,
 )
 from sk120stiff.model.prediction_table import (
-    csv_text,
     predict_what_holds,
     prediction_table,
+    rows_of,
     unknown_reasons,
 )
 from sk120stiff.slips import look
@@ -50,9 +50,9 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
         warnings.warn(said, ToolkitWarning, stacklevel=2)
     with progress_bar("predict"):
         predicted = predict_what_holds(believed, situation_of(robot, readings))
-    frame = prediction_table(readings, predicted)
+    columns = prediction_table(readings, predicted)
     if out is not None:
-        write_atomically(out, csv_text(frame))
+        write_atomically(out, csv_text(columns.items()))
     measured = readings.displacement
     per_pose: list[dict[str, object]] = []
     rms: float | None = None
@@ -66,7 +66,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
             if len(rows):
                 per_pose.append({"pose": label, "rms_um": _rms(gap[rows])})
     document = {
-        "rows": frame.to_dict(orient="records"),
+        "rows": rows_of(columns),
         "rms_um": rms,
         "per_pose": per_pose,
         "uncertainty": uncertainty_keys(believed),
@@ -77,7 +77,8 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     warn_of_far_bend(believed, predicted.displacement)
     lost = [reason for reason in unknown_reasons(predicted) if reason]
     if lost:
-        parts.append(f"{len(lost)} of {len(frame)} rows have no known uncertainty: {lost[0]}.")
+        count = f"{len(lost)} of {readings.n_readings} rows"
+        parts.append(f"{count} have no known uncertainty: {lost[0]}.")
     return Answer(document, parts)
 
 

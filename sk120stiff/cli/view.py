@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer, note
 from sk120stiff.cli.opening import model_file, model_for, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
@@ -89,6 +90,7 @@ def command(
     Example: sk120stiff view motoman_sk120 --wrench '0,0,-490 N' --static scene.html
     """
     will_write(static, "--static")
+    will_draw(robot)
     measured = None if data is None else _read(data)
     if measured is not None:  # the frames that the readings are about
         base, tool = base or measured.base_frame, tool or measured.tool_frame

@@ -4,7 +4,7 @@ Every reader of the package notes what it reads, and every writer looks there fi
 (`ledger`); nobody ever meets half a file (`writing`), nor half a set of files (`file_set`).
 """
 
-from sk120stiff.files.cells import guarded_cell, plain_cell
+from sk120stiff.files.cells import csv_text, guarded_cell, plain_cell
 from sk120stiff.files.file_set import together
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
 from sk120stiff.files.reading import read_bytes, read_text
@@ -12,6 +12,7 @@ from sk120stiff.files.writing import write_atomically
 from sk120stiff.files.yaml_text import parse_yaml, read_yaml
 
 __all__ = [
+    "csv_text",
     "guarded_cell",
     "note_read",
     "parse_yaml",

@@ -1,8 +1,37 @@
-"""Labels of others in cells of a CSV file: a spreadsheet must not take them for formulas."""
+"""CSV files that we write; a spreadsheet must not take labels of others for formulas."""
 
 from __future__ import annotations
 
+import csv
+import io
+from collections.abc import Iterable
+
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+def csv_text(columns: Iterable[tuple[str, Iterable[object]]]) -> str:
+    """Columns of one length under their headers, as the text of a CSV file.
+
+    Numbers carry all digits of a float, NaN is an empty cell, and labels (under a header without a
+    unit) are guarded.
+    """
+    named = list(columns)
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow([guarded_cell(header) for header, _ in named])
+    guards = ["[" not in header for header, _ in named]
+    for row in zip(*(cells for _, cells in named), strict=True):
+        texts = map(_text, row)
+        cells = zip(texts, guards, strict=True)
+        writer.writerow([guarded_cell(text) if guard else text for text, guard in cells])
+    return stream.getvalue()
+
+
+def _text(cell: object) -> str:
+    """The shortest text that reads back as the same float; anything else as it prints."""
+    if isinstance(cell, float):
+        return "" if cell != cell else repr(float(cell))
+    return str(cell)
 
 
 def guarded_cell(text: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -10,6 +11,7 @@ import numpy as np
 from scipy import stats
 
 from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.errors import MissingPart
 from sk120stiff.identify.solve.covariance import (
     condition_of,
     correlation_of,
@@ -68,10 +70,12 @@ class Fit:
         more = ", …" if len(self.parameters) > SHOWN else ""
         return f"<Fit: {1e6 * self.rms:.3g} µm rms; {values}{more}>"
 
-    def _repr_html_(self) -> str:
-        """What a notebook shows."""
-        table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
-        return f"<div><p>Gap {1e6 * self.rms:.3g} µm rms per axis</p>{table}</div>"
+    def _repr_html_(self) -> str | None:
+        """What a notebook shows; without pandas it is the line of `repr`."""
+        with suppress(MissingPart):
+            table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
+            return f"<div><p>Gap {1e6 * self.rms:.3g} µm rms per axis</p>{table}</div>"
+        return None
 
     def to_frame(self) -> pd.DataFrame:
         """One row per estimated parameter in its public unit: value, std, 95 % interval, note.

@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from sk120stiff.errors import MissingPart, require
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -31,6 +33,7 @@ class Tabular:
             >>> list(frame.columns[:3]), len(frame)
             (['pose', 'joint_1_s[deg]', 'joint_2_l[deg]'], 15)
         """
+        require("pandas", needed_for="a data frame")
         import pandas as pd
 
         from sk120stiff.measurements.columns import DISPLACEMENTS
@@ -89,11 +92,15 @@ class Tabular:
         found = reading.assembled(table, settings_of(settings, NOWHERE), told.hexdigest(), actuated)
         return replace(found, path=None)
 
-    def _repr_html_(self) -> str:
-        """What a notebook shows: the first rows."""
+    def _repr_html_(self) -> str | None:
+        """What a notebook shows: the first rows; without pandas the line of `repr`."""
         from html import escape
 
-        shown = self.to_frame().head(SHOWN).to_html(index=False, float_format="{:.6g}".format)
+        try:
+            frame = self.to_frame().head(SHOWN)
+        except MissingPart:
+            return None
+        shown = frame.to_html(index=False, float_format="{:.6g}".format)
         more = cast("Measurements", self).n_readings - SHOWN
         rest = f"<p>… {more} more rows</p>" if more > 0 else ""
         return f"<div><p>{escape(repr(self))}</p>{shown}{rest}</div>"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -60,22 +58,13 @@ def write_measurements(
     target = Path(path)
     check_name(target)
     measured = POSITIONS if as_positions else DISPLACEMENTS
-    columns = list(columns_of(measurements, angle, length, measured))
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([files.guarded_cell(header) for header, _ in columns])
-    writer.writerows(zip(*(_guarded(header, cells) for header, cells in columns), strict=True))
+    text = files.csv_text(columns_of(measurements, angle, length, measured))
     settings = yaml.safe_dump(
         _settings(measurements, target.parent, length), sort_keys=False, allow_unicode=True
     )
     with files.together():
         files.write_atomically(target.with_suffix(".yaml"), settings)
-        return files.write_atomically(target, stream.getvalue())
-
-
-def _guarded(header: str, cells: Iterable[str]) -> Iterable[str]:
-    """Cells that hold text of others, so that no spreadsheet takes one for a formula."""
-    return cells if "[" in header else map(files.guarded_cell, cells)
+        return files.write_atomically(target, text)
 
 
 def check_name(target: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
@@ -19,7 +20,7 @@ from sk120stiff.effects import (
     Situation,
     situation_of_load,
 )
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.model.assembly import Assembly, Solution
 from sk120stiff.model.parameter import Parameter, parameter_frame
 from sk120stiff.model.uncertainty import Uncertainty
@@ -56,10 +57,12 @@ class Model:
         held = "; ".join(f"{name} at {', '.join(where)}" for name, where in places.items())
         return f"<Model of {self.robot.name}: {held or 'rigid'}>"
 
-    def _repr_html_(self) -> str:
-        """What a notebook shows."""
-        table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
-        return f"<div><p>Model of {escape(self.robot.name)}</p>{table}</div>"
+    def _repr_html_(self) -> str | None:
+        """What a notebook shows; without pandas it is the line of `repr`."""
+        with suppress(MissingPart):
+            table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
+            return f"<div><p>Model of {escape(self.robot.name)}</p>{table}</div>"
+        return None
 
     def to_frame(self) -> pd.DataFrame:
         """One row per parameter in its public unit: name, value, std, unit, free, note."""

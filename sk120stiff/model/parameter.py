@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff.effects import Effect, ParameterSpec
+from sk120stiff.errors import require
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,6 +81,7 @@ class Parameter:
 
 def parameter_frame(parameters: Sequence[Parameter]) -> pd.DataFrame:
     """One row per parameter: name, value, std, unit, free, note; NaN where there is no std."""
+    require("pandas", needed_for="a data frame")
     import pandas as pd
 
     return pd.DataFrame(

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import io
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 
 from sk120stiff.effects import Situation
 from sk120stiff.errors import Refusal, ToolkitWarning
-from sk120stiff.files import guarded_cell
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
 from sk120stiff.model.predicted import Predicted, predict_with_uncertainty
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 AXES = "xyz"
 UNHELD = "no static equilibrium: the springs cannot hold this load"
@@ -44,13 +39,23 @@ def predict_what_holds(model: Model, situation: Situation) -> Predicted:
     return predict_with_uncertainty(model, situation.rows(held)).among(held)
 
 
-def prediction_table(readings: Measurements, predicted: Predicted) -> pd.DataFrame:
+Columns = dict[str, list[object]]
+
+
+def rows_of(columns: Mapping[str, list[object]]) -> list[dict[str, object]]:
+    """The rows of a table, each a mapping from header to cell."""
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
     """One row per reading: pose, prediction ± its uncertainty, measurement and gap if any [mm, µm].
+
+    Header → cells.
 
     A column `reason` says why a prediction is missing, `std_reason` why an uncertainty is unknown,
     if any is.
     """
-    columns: dict[str, object] = {"pose": readings.pose}
+    columns: dict[str, object] = {"pose": list(readings.pose)}
     for k, axis in enumerate(AXES):
         columns[f"predicted_d{axis}[mm]"] = predicted.displacement[:, k] * 1e3
     for name, std in (
@@ -73,21 +78,12 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> pd.DataFra
     reasons = unknown_reasons(predicted)
     if any(reasons):
         columns["std_reason"] = reasons
-    import pandas as pd
-
-    return pd.DataFrame(columns)
+    return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
 
 
 def unknown_reasons(predicted: Predicted) -> list[str]:
     """Why the uncertainty of each row is unknown; empty where it is known."""
     return [blame_reason(names) for names in predicted.blame]
-
-
-def csv_text(frame: pd.DataFrame) -> str:
-    """The table as CSV; labels that a spreadsheet would take for formulas are written as text."""
-    text = io.StringIO()
-    frame.assign(pose=[guarded_cell(label) for label in frame["pose"]]).to_csv(text, index=False)
-    return text.getvalue()
 
 
 def blame_reason(names: tuple[str, ...]) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.arrays import Array, Integers
+from sk120stiff.errors import require
 from sk120stiff.files import note_read
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.urdf import Finding, UrdfDocument, VisualSpec, resolve
@@ -145,6 +146,7 @@ def _unit(collada: bytes) -> float:
 
 
 def _load(data: bytes, kind: str, unit: float) -> _Mesh | str:
+    require("trimesh", needed_for="reading meshes")
     import trimesh
 
     loaded: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind)  # textures are not followed

@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.stiffness.elastic import Compliant
-from sk120stiff.stiffness.kernel.run import run
+from sk120stiff.stiffness.kernel.run import compiles, run
 from sk120stiff.stiffness.on_arrays import on_arrays
 from sk120stiff.stiffness.principal import CLASSES, Definiteness, Principal, principal_compliance
 from sk120stiff.stiffness.quantities import BY_LOAD, COMPILED, QUANTITIES, shape_of
@@ -175,7 +175,7 @@ def under_load(
     many = poses.ndim == 2 and load.ndim < 4
     many = many and (load.ndim < 2 or load.shape[-2] in (1, len(poses)))
     folded = arm.fold if many and COMPILED.issuperset(want) else None
-    if folded is not None:
+    if folded is not None and compiles():
         found = run(folded, poses, load, frozenset(want), threads)
         return UnderLoad(soft=folded.soft, **found)
     if poses.ndim == 2 and len(poses) > BLOCK:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sk120stiff.errors import InputError, Refusal
+from sk120stiff.errors import InputError, Refusal, require
 from sk120stiff.workspace.field import STATUS, UNKNOWN_CLASS
 from sk120stiff.workspace.manifest import MANIFEST, as_written, read_manifest
 from sk120stiff.workspace.skeleton import zarr_or_explain
@@ -94,6 +94,7 @@ def open_map(path: str | os.PathLike[str]) -> xarray.Dataset:
         Refusal: Its loads, coordinates or descriptions are not as they were written. The results
             are not looked at here, see `verify_map`.
     """
+    require("xarray", needed_for="a map")
     import xarray
 
     zarr_or_explain()

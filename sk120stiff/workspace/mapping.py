@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sk120stiff.errors import InputError, MissingPart, Refusal, ToolkitError
+from sk120stiff.errors import InputError, Refusal, ToolkitError, require
 from sk120stiff.workspace.field import MapJob
 from sk120stiff.workspace.lock import only_writer
 from sk120stiff.workspace.store import MapStore, Progress
@@ -119,10 +119,9 @@ def _points(store: MapStore, chunk: int) -> int:
 
 
 def _connect(address: str) -> Any:
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise MissingPart("distributed", "cluster", needed_for="a cluster") from error
+    require("distributed", needed_for="a cluster")
+    from distributed import Client
+
     try:
         connect: Any = Client
         return connect(address, timeout=CONNECT_SECONDS)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from sk120stiff.errors import InputError, MissingPart
+from sk120stiff.errors import InputError, require
 from sk120stiff.model import ModelCompliance
 from sk120stiff.workspace.field import UNKNOWN_CLASS, MapJob, Numbers, Variable
 from sk120stiff.workspace.grid import Chunks
@@ -114,10 +114,9 @@ def stored_identities(folder: Path) -> frozenset[str]:
 
 def zarr_or_explain() -> Any:
     """The library zarr, or a message that says how to install it."""
-    try:
-        import zarr
-    except ImportError as error:
-        raise MissingPart("zarr", None, needed_for="a map") from error
+    require("zarr", needed_for="a map")
+    import zarr
+
     return zarr
 
 

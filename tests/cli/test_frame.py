@@ -76,7 +76,7 @@ def test_the_answer_goes_to_stdout_and_the_rest_to_stderr(run, teach) -> None:
         ),
         (Refusal("the arm is unstable"), (1, "refusal"), "Error: the arm is unstable.\n"),
         (
-            MissingPart("distributed", "cluster", needed_for="map"),
+            MissingPart("distributed", needed_for="map"),
             (2, "input"),
             'pip install "sk120stiff[cluster]"',
         ),

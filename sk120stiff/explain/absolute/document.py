@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,15 +15,13 @@ from sk120stiff.effects import situation_of
 from sk120stiff.explain.absolute.run import Explained, Named
 from sk120stiff.explain.answer.document import parameter_entry
 from sk120stiff.explain.answer.saving import VERDICT, replacing_results
-from sk120stiff.files import guarded_cell, write_atomically
+from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter, write_model
 from sk120stiff.model.pose_reading import read_poses
-
-if TYPE_CHECKING:
-    import pandas as pd
+from sk120stiff.model.prediction_table import Columns
 
 SURE = 1.0 - 1e-9
 
@@ -93,19 +91,18 @@ def save_positions(
     """Write verdict, model and gaps, all in one moment; the content of verdict.json."""
     document = verdict_of_positions(answer, readings)
     fitted = replace(known_calibration(answer.final), provenance=dict(provenance))
+    table = gaps_table(fitted, readings, answer.final.wild)
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
-        write_atomically(out / "gaps.csv", _csv(fitted, readings, answer.final.wild))
+        write_atomically(out / "gaps.csv", csv_text(table.items()))
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
     return document
 
 
-def gaps_frame(model: Model, readings: Measurements, wild: Mask | None = None) -> pd.DataFrame:
+def gaps_table(model: Model, readings: Measurements, wild: Mask | None = None) -> Columns:
     """Predicted position, measured one and gap of every row, in axes of the instrument."""
-    import pandas as pd
-
     seen = read_poses(model, situation_of(model.robot, readings))
-    columns: dict[str, object] = {"pose": [guarded_cell(label) for label in readings.pose]}
+    columns: dict[str, object] = {"pose": list(readings.pose)}
     for k, axis in enumerate("xyz"):
         columns[f"predicted_{axis}[mm]"] = seen.position[:, k] * 1e3
     said = readings.absolute
@@ -117,11 +114,7 @@ def gaps_frame(model: Model, readings: Measurements, wild: Mask | None = None) -
             columns[f"gap_{axis}[um]"] = (x - seen.position)[:, k] * 1e6
     used = readings.use if wild is None else readings.use & ~wild
     columns["use"] = used.astype(int)
-    return pd.DataFrame(columns)
-
-
-def _csv(model: Model, readings: Measurements, wild: Mask) -> str:
-    return str(gaps_frame(model, readings, wild).to_csv(index=False))
+    return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
 
 
 def _um(metres: float | None) -> float | None:

@@ -15,12 +15,12 @@ import numpy as np
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.explain.answer.document import BEST_GUESS, verdict_document
-from sk120stiff.files import together, write_atomically
+from sk120stiff.files import csv_text, together, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model, write_model
-from sk120stiff.model.prediction_table import csv_text, predict_what_holds, prediction_table
+from sk120stiff.model.prediction_table import predict_what_holds, prediction_table
 
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
@@ -77,7 +77,7 @@ def _gaps(fitted: Model, readings: Measurements) -> str | None:
     """Prediction and gap of every row; None, with a warning, where there is none."""
     try:
         predicted = predict_what_holds(fitted, situation_of(fitted.robot, readings))
-        return csv_text(prediction_table(readings, predicted))
+        return csv_text(prediction_table(readings, predicted).items())
     except Exception as error:  # noqa: BLE001  (an answer is never lost to its table)
         warnings.warn(
             f"The page gaps.csv could not be made ({type(error).__name__}: {error}). Everything "

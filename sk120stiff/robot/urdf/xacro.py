@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import re
@@ -16,7 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from sk120stiff.errors import MissingPart
+from sk120stiff.errors import require
 from sk120stiff.files import note_read
 from sk120stiff.robot.urdf.findings import Notebook, close_name, listed, shown
 from sk120stiff.robot.urdf.source import MAX_BYTES, RawSource
@@ -90,8 +89,7 @@ def expand(
             than `TIME_LIMIT`, or grows beyond `MEMORY_LIMIT` or `MAX_BYTES`; the message carries
             what xacro said.
     """
-    if importlib.util.find_spec("xacro") is None:
-        raise MissingPart("xacro", "xacro", needed_for=f"reading the xacro in {raw.label}")
+    require("xacro", needed_for=f"reading the xacro in {raw.label}")
     if "<!ENTITY" in text:
         notes.refuse(
             "the file defines entities; they are never expanded",

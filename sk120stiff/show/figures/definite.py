@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import FROM_SI, hide_spare, styled, subplots
 from sk120stiff.stiffness import CLASSES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # In the order of CLASSES. Lightness differs too, so that the map survives a grey printer.
 _COLOURS = (palette.GREEN, "#8FD6BF", palette.VERMILION, "#F2B58A", "#DDE3E9")
@@ -45,6 +47,9 @@ def definiteness_map(
     rows = -(-len(cases) // columns)
     tall = 1.9 if columns > 2 else 2.7
     with styled():
+        from matplotlib.colors import BoundaryNorm, ListedColormap
+        from matplotlib.patches import Patch
+
         figure, axes = subplots(
             rows, columns, height=0.8 + tall * rows if columns > 1 else 3.4,
             width=7.2 if columns > 1 else 4.6, sharex=True, sharey=True,

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import new_figure, styled
 from sk120stiff.stiffness import symmetric_part
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +96,8 @@ def _span(ellipses: Sequence[PlaneEllipse], centres: Array, u: int, v: int) -> f
 def _key(
     ellipses: Sequence[PlaneEllipse], names: tuple[str, str], per_metre: float
 ) -> list[Line2D]:
+    from matplotlib.lines import Line2D
+
     shown, reference = names[0] or "compliance", names[1] or "reference"
     scale = 0.1 / per_metre * 1e6
     handles = [

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import new_figure, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _BEFORE_AFTER = (palette.NOISE, palette.BLUE, palette.GREEN, palette.ORANGE, palette.PURPLE)
 _INSIDE = (palette.INK, palette.PAPER)  # text on the first bar and on the later ones

@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import new_figure, styled
 from sk120stiff.show.wording import with_error
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 VAGUE = 1.0  # two standard errors over the value beyond which a value is hardly known
 

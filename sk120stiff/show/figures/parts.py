@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import styled, subplots
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 COMPONENTS = ("Fx", "Fy", "Fz")
 DIVERGING = "PuOr"  # its two hues are told apart with every kind of colour vision
@@ -34,6 +36,8 @@ def surface_parts(
         raise InputError(f"parts have shape {values.shape}, not (3, {len(y)}, {len(x)})")
     bound = float(np.max(np.abs(values))) or 1.0
     with styled():
+        from matplotlib.patheffects import withStroke
+
         figure, axes = subplots(1, 3, height=2.75, sharey=True)
         drawn = [
             panel.pcolormesh(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show.figures.parts import COMPONENTS, DIVERGING
 from sk120stiff.show.figures.style import styled, subplots
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _VIEW = {"elev": 28.0, "azim": -58.0}  # degrees
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import FROM_SI, new_figure, styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def stiffness_slice(
@@ -46,6 +48,8 @@ def stiffness_slice(
     low = float(finite.min()) if finite.size else 0.0
     top = top if top > low else low + 1.0
     with styled():
+        from matplotlib.patheffects import withStroke
+
         figure = new_figure(3.9, width=5.4)
         panel = figure.subplots()
         levels = np.linspace(low, top, 15)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import pi
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-
+from sk120stiff.errors import require
 from sk120stiff.show import palette
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 #: Factor from SI to a unit that axes are drawn in.
 FROM_SI: Final = {"deg": 180.0 / pi, "rad": 1.0, "mm": 1e3, "m": 1.0}
@@ -60,13 +61,22 @@ _RC: Final[Any] = {
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Draw in the house style, without touching the settings of the caller."""
+    """Draw in the house style, without touching the settings of the caller.
+
+    Raises:
+        MissingPart: matplotlib is not installed.
+    """
+    require("matplotlib", needed_for="a picture")
+    from matplotlib import rc_context
+
     with rc_context(_RC):
         yield
 
 
 def new_figure(height: float, *, width: float = WIDTH) -> Figure:
     """An empty figure of the given size in inches, free of any window system."""
+    from matplotlib.figure import Figure
+
     return Figure(figsize=(width, height))
 
 

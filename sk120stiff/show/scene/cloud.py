@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, require
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
 from sk120stiff.show.scene.frame import Request, compute_frame
@@ -161,6 +161,7 @@ def cloud_page(path: str | os.PathLike[str], scene: Scene, cloud: Cloud) -> Path
 
 
 def _cloud_payload(cloud: Cloud) -> dict[str, Any]:
+    require("matplotlib", needed_for="a picture")
     import matplotlib as mpl
 
     values = np.asarray(cloud.values, dtype=np.float32)  # as the page sees them

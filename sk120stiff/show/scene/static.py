@@ -16,7 +16,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from sk120stiff.errors import InputError, MissingPart
+from sk120stiff.errors import InputError, require
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
 from sk120stiff.show.scene.payload import scene_payload
@@ -121,9 +121,8 @@ def script(name: str) -> str:
 def viewer_script() -> str:
     """Meshcat's viewer as it lies in the installed package."""
     # Importing meshcat would start ZeroMQ; the script alone is needed.
-    found = find_spec("meshcat")
-    if found is None or not found.submodule_search_locations:
-        raise MissingPart("meshcat", None, needed_for="the 3-D scene")
+    require("meshcat", needed_for="the 3-D scene")
+    found: Any = find_spec("meshcat")
     source = Path(found.submodule_search_locations[0]) / "viewer" / "dist" / "main.min.js"
     return source.read_text(encoding="utf-8").replace("</script", "<\\/script")
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from sk120stiff.arrays import Array
 from sk120stiff.paper import Reproduction, Verdict
@@ -35,6 +35,9 @@ from sk120stiff.show.report import (
     Table,
     reproducibility,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _KINDS = {
     Verdict.REPRODUCED: "result",

@@ -5,17 +5,19 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from sk120stiff.arrays import Array
 from sk120stiff.explain import Localisation
 from sk120stiff.explain.localise.localisation import Suspicion
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import hide_spare, styled, subplots
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 LONGEST_ARROW = 0.22  # share of the picture's width
 MOST_POINTS = 500  # in one panel; more would only make the page heavy
@@ -48,6 +50,8 @@ def gap_vectors(views: Sequence[ArmView]) -> Figure:
     largest = max(float(np.linalg.norm(gap)) for view in views for gap in view.gaps.values())
     scale = LONGEST_ARROW * span / largest if largest else 1.0
     with styled():
+        from matplotlib.lines import Line2D
+
         figure, axes = subplots(1, 2, height=4.0)
         for panel, side in zip(axes, (False, True), strict=True):
             for view in views:

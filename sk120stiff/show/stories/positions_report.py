@@ -19,6 +19,7 @@ from sk120stiff.show.report import (
     Section,
     Table,
 )
+from sk120stiff.show.style import new_figure, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -102,13 +103,12 @@ def _values(answer: Explained) -> Table:
 
 
 def _bars(answer: Explained) -> Figure:
-    from matplotlib.figure import Figure as New
-
-    figure = New(figsize=(7.0, 0.32 * len(answer.steps) + 0.8), layout="constrained")
-    axes = figure.add_subplot()
-    place = np.arange(len(answer.steps))
-    axes.barh(place, [1e6 * step.heldout_distance for step in answer.steps], color="#4477aa")
-    axes.set_yticks(place, [step.label for step in answer.steps], fontsize=7)
-    axes.invert_yaxis()
-    axes.set_xlabel("mean distance at poses left out [µm]")
+    with styled():
+        figure = new_figure(0.32 * len(answer.steps) + 0.8)
+        axes = figure.add_subplot()
+        place = np.arange(len(answer.steps))
+        axes.barh(place, [1e6 * step.heldout_distance for step in answer.steps], color="#4477aa")
+        axes.set_yticks(place, [step.label for step in answer.steps], fontsize=7)
+        axes.invert_yaxis()
+        axes.set_xlabel("mean distance at poses left out [µm]")
     return figure

@@ -8,13 +8,15 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import cache
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.stiffness.kernel.folding import Fold
 from sk120stiff.stiffness.quantities import BY_LOAD, COMPILED, shape_of
 
@@ -62,6 +64,16 @@ def run(
                 one.result()
     single = wrench.ndim < 3
     return {name: arrays[name][0] if single and name in BY_LOAD else arrays[name] for name in want}
+
+
+@cache
+def compiles() -> bool:
+    """Is numba there? Without it NumPy gives the same numbers, and says once that it is slow."""
+    if find_spec("numba") is not None:
+        return True
+    missing = MissingPart("numba", needed_for="the fast way through many poses")
+    logger.info("Many poses go through NumPy, some fifty times slower: %s", missing)
+    return False
 
 
 def available_cores() -> int:
