@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from sk120stiff.explain.judge.gear_curve import GearCurve
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import styled, subplots
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 LIMIT = 1.6  # of the curve's own range: readings beyond it are not drawn
 

@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.explain.absolute.run import Explained
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.measurements import Measurements
+from sk120stiff.show.figures.style import new_figure, styled
 from sk120stiff.show.report import (
     Items,
     KeyFigure,
@@ -19,7 +20,6 @@ from sk120stiff.show.report import (
     Section,
     Table,
 )
-from sk120stiff.show.style import new_figure, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
