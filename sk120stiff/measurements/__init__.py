@@ -3,7 +3,6 @@
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements, NoiseStatement
-from sk120stiff.measurements.importing import Imported, read_figaroh
 from sk120stiff.measurements.joining import join_measurements
 from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.noise import NoiseModel, candidates, decided
@@ -17,7 +16,6 @@ __all__ = [
     "Absolute",
     "Channels",
     "FormWhitener",
-    "Imported",
     "Measurements",
     "ModelForm",
     "NoiseModel",
@@ -27,7 +25,6 @@ __all__ = [
     "decided",
     "join_measurements",
     "pure_error",
-    "read_figaroh",
     "read_measurements",
     "write_measurements",
 ]

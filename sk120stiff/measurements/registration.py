@@ -1,4 +1,4 @@
-"""Are marker positions those of this robot, in its base axes, and in the unit that was told?"""
+"""Where the instrument stands: marker positions laid onto those of the rigid robot."""
 
 from __future__ import annotations
 
@@ -9,12 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.robot.rotations import crossed
 
-# A marker that sits off the assumed point turns and stretches the cloud a little; beyond these
-# bounds a turned tracker or a wrong unit is likelier.
-_TURNED = np.radians(15.0)
-_STRETCHED = 20.0
-_WIDE = 0.1  # the second extent of a cloud that shows a rotation, against the first
-
+_TOLD = 1e-6  # the least singular value, of columns of length one, that determines a frame
 
 MARKER_POSES = 5  # from here on the marker's place is fitted too
 _STEPS = 100  # of Gauss and Newton
@@ -33,6 +28,9 @@ class Registration:
         turn, shift: (3, 3) and (3,) base axes as the instrument sees them, x = turn · X + shift
             [m].
         distance: (P,) what remains at each pose [m].
+        covariance: (6, 6) of a small turn of the base about its origin, axes of the instrument
+            [rad], and of `shift` [m], as far as what remains is independent noise; infinite where
+            the positions do not tell the frame.
     """
 
     rms: float
@@ -44,6 +42,16 @@ class Registration:
     turn: Array
     shift: Array
     distance: Array
+    covariance: Array
+
+    @property
+    def std(self) -> Array:
+        """(6,) standard errors of turn [rad] and shift [m]."""
+        return np.asarray(np.sqrt(np.diagonal(self.covariance)))
+
+    def in_base(self, measured: Array) -> Array:
+        """(P, 3) positions of the instrument in base axes."""
+        return np.asarray((measured - self.shift) @ self.turn)
 
 
 def register(
@@ -76,13 +84,16 @@ def register(
     marker = np.zeros(3)
     fit_marker = fit_marker and count >= MARKER_POSES
     turn, shift = _kabsch(stated, measured)
+
+    def columns() -> Array:
+        """(3P, 9) derivative by turn, shift and marker."""
+        at = (stated + rotation @ marker) @ turn.T
+        eye = np.tile(np.eye(3), (count, 1, 1))
+        return np.concatenate([-crossed(at), eye, turn @ rotation], axis=2).reshape(-1, 9)
+
     for _ in range(_STEPS if fit_marker else 0):
-        arm = stated + rotation @ marker
-        left = measured - arm @ turn.T - shift
-        columns = np.concatenate(
-            [-crossed(arm @ turn.T), np.tile(np.eye(3), (count, 1, 1)), turn @ rotation], axis=2
-        )
-        step = np.linalg.lstsq(columns.reshape(-1, 9), left.ravel(), rcond=1e-9)[0]
+        left = measured - (stated + rotation @ marker) @ turn.T - shift
+        step = np.linalg.lstsq(columns(), left.ravel(), rcond=1e-9)[0]
         marker = marker + step[6:]
         # The best turn and shift for that marker: no step of theirs can then lead astray.
         turn, shift = _kabsch(stated + rotation @ marker, measured)
@@ -103,7 +114,18 @@ def register(
         turn,
         shift,
         distance,
+        _covariance(columns()[:, : 9 if fit_marker else 6], rms**2 / 3.0),
     )
+
+
+def _covariance(columns: Array, variance: float) -> Array:
+    """(6, 6) of the first six of the unknowns; infinite where they are not determined."""
+    size = np.linalg.norm(columns, axis=0)
+    _, values, vt = np.linalg.svd(columns / size, full_matrices=False)
+    if values[-1] < _TOLD * values[0]:
+        return np.full((6, 6), np.inf)
+    root = (vt.T / values)[:6] / size[:6, None]
+    return np.asarray(variance * root @ root.T)
 
 
 def _kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
@@ -112,38 +134,3 @@ def _kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
     u, _, vt = np.linalg.svd((measured - goal).T @ (reached - middle))
     turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt)) or 1.0]) @ vt
     return turn, goal - turn @ middle
-
-
-def registration_doubts(measured: Array, reached: Array) -> list[str]:
-    """What speaks against positions in metres and base axes, in sentences; empty if nothing.
-
-    Args:
-        measured: (P, 3) marker position at each pose [m].
-        reached: (P, 3) the same point by the rigid robot [m], base axes.
-
-    Notes:
-        The rotation between the two clouds is that of least squares (Kabsch, Acta Cryst. A32, 1976,
-        p. 922); shifts do not matter, since displacements are differences.
-    """
-    clouds = [points - points.mean(axis=0) for points in (reached, measured)]
-    spread = [float(np.linalg.norm(cloud)) for cloud in clouds]
-    if len(measured) < 2 or min(spread) == 0.0:
-        return []
-    ratio = spread[1] / spread[0]
-    if not 1.0 / _STRETCHED < ratio < _STRETCHED:
-        return [
-            f"The marker moves {ratio:.3g} times as far between the poses as the robot does. "
-            "Check the units of positions and joints."
-        ]
-    u, extent, vt = np.linalg.svd(clouds[1].T @ clouds[0])
-    if extent[1] < _WIDE**2 * extent[0]:
-        return []  # points on a line show no rotation about it
-    turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt
-    angle = float(np.arccos(np.clip((np.trace(turn) - 1.0) / 2.0, -1.0, 1.0)))
-    if angle < _TURNED:
-        return []
-    return [
-        f"The positions seem to be turned by about {np.degrees(angle):.0f} deg against the base "
-        "frame. Turn them into its axes first, or check joints and units; displacements in other "
-        "axes give wrong springs."
-    ]

@@ -58,6 +58,23 @@ class PositionEntry(_Entry):
     frame: Literal["base", "unknown"] = "base"
 
 
+class RegisteredEntry(_Entry):
+    """A record of how positions came into base axes: where the tracker had the base.
+
+    A position of the tracker was rotation · (position here) + xyz; the rotation is a vector, its
+    standard errors are about the tracker's axes.
+    """
+
+    xyz: tuple[_Finite, _Finite, _Finite]
+    unit: str
+    rotation: tuple[_Finite, _Finite, _Finite]
+    rotation_unit: str
+    std_xyz: tuple[_Finite, _Finite, _Finite]
+    std_rotation: tuple[_Finite, _Finite, _Finite]
+    rms: _Finite
+    poses: int
+
+
 class PayloadEntry(_Entry):
     """Where the mass of the column ``payload[kg]`` hangs; `fit`: mass and centre are in doubt."""
 
@@ -93,6 +110,7 @@ class Settings(_Entry):
     force: ForceEntry = ForceEntry(frame="base")
     displacement: DisplacementEntry = DisplacementEntry()
     position: PositionEntry | None = None
+    registered: RegisteredEntry | None = None
     points: dict[str, PointEntry] = Field(default_factory=dict)
     payload: PayloadEntry | None = None
     joints: dict[str, str | float] = Field(default_factory=dict)
@@ -108,6 +126,7 @@ _SECTIONS: dict[str, type[_Entry]] = {
     "force.point": PointEntry,
     "displacement": DisplacementEntry,
     "position": PositionEntry,
+    "registered": RegisteredEntry,
     "payload": PayloadEntry,
     "payload.point": PointEntry,
     "noise": NoiseEntry,
@@ -117,6 +136,8 @@ _EXAMPLES = {
     "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
     "displacement": "displacement: {frame: base, zero: shared}",
     "position": "position: {frame: unknown}",
+    "registered": "registered: {xyz: [0, 0, 0], unit: mm, rotation: [0, 0, 0], rotation_unit: rad, "
+    "std_xyz: [0, 0, 0], std_rotation: [0, 0, 0], rms: 0, poses: 3}",
     "points": "points: {A: {xyz: [0, 0, 100], unit: mm}, B: {xyz: [50, 0, 100], unit: mm}}",
     "payload": "payload: {point: {xyz: [0, 0, 120], unit: mm}}",
     "joints": "joints: {joint_3: -(J2 + J3), joint_4: J4/101}",

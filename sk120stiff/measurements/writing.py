@@ -148,7 +148,7 @@ def _digits(value: float) -> str:
 
 def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
     names = {
-        "robot": _robot(m.robot, folder),
+        "robot": robot_seen_from(m.robot, folder),
         "base_frame": m.base_frame,
         "tool_frame": m.tool_frame,
     }
@@ -175,7 +175,7 @@ def _point(xyz: ArrayLike, length: str) -> dict[str, Any]:
     return {"xyz": [float(x) for x in units.from_si(xyz, length, "length")], "unit": length}
 
 
-def _robot(robot: str | None, folder: Path) -> str | None:
+def robot_seen_from(robot: str | None, folder: Path) -> str | None:
     """A path is written relative to the file, so that both can move together."""
     if robot is None:
         return None

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.robot.description import ControllerRule
 from sk120stiff.robot.kinematics.coupling import Coupling, Follower
 from sk120stiff.robot.kinematics.screws import Mechanism, Screws
 from sk120stiff.robot.kinematics.tree import Tree
@@ -59,7 +58,6 @@ class Robot:
         followers: Mimic rule of every coupled joint.
         foundation: (3,) point of the base frame about which the base rocks [m].
         gravity: (3,) acceleration in axes of the URDF's root [m/s²].
-        controller: How the controller counts the joints, for robot programs.
     """
 
     name: str
@@ -78,7 +76,6 @@ class Robot:
     foundation: Array = field(default_factory=lambda: np.zeros(3))
     gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -STANDARD_GRAVITY]))
     linkages: tuple[Linkage, ...] = ()
-    controller: ControllerRule = field(default_factory=ControllerRule)
     notes: str = ""
 
     def __repr__(self) -> str:

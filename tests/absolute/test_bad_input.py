@@ -11,8 +11,8 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
-from sk120stiff.identify.absolute.placing import Placing, place
 from sk120stiff.identify.absolute.words import findings
+from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.robot import Robot
 from tests.absolute.arm import Array, tracked
 from tests.hidden.generator.robots import random_arm

@@ -81,8 +81,9 @@ def test_bad_options(run, tmp_path: Path) -> None:
         assert not Path(out).exists()
 
 
-def test_a_turned_tracker_and_a_wrong_unit_are_doubted(run, tmp_path: Path) -> None:
-    source = Path(marks(tmp_path, payload=False))
+def test_a_turned_tracker_is_registered_and_a_wrong_unit_is_named(run, tmp_path: Path) -> None:
+    """Load pairs in axes that are turned by 90 degrees give the same springs all the same."""
+    source = Path(marks(tmp_path))
     lines = source.read_text(encoding="utf-8").splitlines()
     turned = [lines[0]]
     for line in lines[1:]:
@@ -90,13 +91,19 @@ def test_a_turned_tracker_and_a_wrong_unit_are_doubted(run, tmp_path: Path) -> N
         turned.append(",".join([y, str(-float(x)), *rest]))
     source.write_text("\n".join(turned) + "\n", encoding="utf-8")
     out = str(tmp_path / "own.csv")
-    (doubt,) = run("import", str(source), *TOLD, "--out", out, "--json").document["doubts"]
-    assert "about 90 deg" in doubt
+    pairs = (*TOLD, "--wrench", "0,300,-490 N", "--out", out)
+    found = run("import", str(source), *pairs, "--json").document
+    assert found["registered"] is True
+    assert found["registration"]["turned_deg"] == pytest.approx(90.0, abs=0.1)
+    values = [p["value"] for p in run("identify", out, "--json").document["parameters"]]
+    assert values == pytest.approx([1.4098e6, 4.0076e5, 9.3528e5], rel=5e-3)
+    (doubt,) = run("import", str(source), *pairs, "--no-register", "--json").document["doubts"]
+    assert "about 90 deg" in doubt and "--register" in doubt
     told = (*TOLD[:2], "--length", "mm", "--angle", "rad")
     Path(out).unlink()
     outcome = run("import", marks(tmp_path), *told, "--wrench", "0,0,-9 N", "--out", out)
     assert outcome.code == 1
-    assert "Check the units" in outcome.stderr
+    assert "another unit" in outcome.stderr
     assert not Path(out).exists()
 
 
@@ -147,7 +154,7 @@ def test_positions_of_another_robot_are_refused(run, tmp_path: Path, harm: str) 
     refused = run("import", source, *told, "--out", str(out))
     assert refused.code == 1
     assert "not this robot's positions" in refused.stderr
-    assert "mm off" in refused.stderr
+    assert "mm are left" in refused.stderr
     assert not out.exists()
 
 

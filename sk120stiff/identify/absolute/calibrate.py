@@ -12,13 +12,13 @@ from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
 from sk120stiff.effects.base import Options
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.gauge import Frozen, least_set
-from sk120stiff.identify.absolute.placing import Placing, place
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.selection import waves_that_show
 from sk120stiff.identify.absolute.settle import settle
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.model import Model, Parameter
 
 START = {"position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4}  # m or rad

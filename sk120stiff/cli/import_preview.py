@@ -1,0 +1,223 @@
+"""What an import understood of a file, for people and as a document."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff.cli.tables import table
+from sk120stiff.measurements.importers import Column, Imported, Told
+from sk120stiff.measurements.importers.words import kind_of
+from sk120stiff.robot import Robot
+from sk120stiff.robot.anatomy import arm_length
+from sk120stiff.robot.rotations import rotation_vector
+
+SHOWN = 8  # skipped rows and worst rows that are told one by one
+WORST = 3
+MISCALIBRATED = 0.01  # of the stretched arm; arms as they are delivered leave 0.1 to 0.3 %
+
+FOLLOWS = {
+    "displacements": "Displacements as they stand in the file: springs and other elastic effects "
+    "can be identified; the geometry of the arm cannot.",
+    "positions": "No pose of the {poses} was read under two different loads. As "
+    "positions they show the geometry of the arm, and springs as far as its weight and payload "
+    "bend it.",
+}
+UNKNOWN = (
+    "They stay in the tracker's own axes (position: {frame: unknown}): 'identify' and 'explain' "
+    "register them together with all else, so that no error of this fit is left in them."
+)
+
+
+def document_of(found: Imported, out: Path | None, *, written: bool) -> dict[str, object]:
+    """The keys of --json."""
+    draft, readings = found.draft, found.readings
+    return {
+        "format": draft.sheet.title,
+        "why": draft.sheet.why,
+        "columns": [
+            {"header": c.header, "meaning": c.meaning, "unit": unit or None, "stated": stated}
+            for c in draft.sheet.columns
+            for unit, stated in (_unit(c, found.told),)
+        ],
+        "unused": list(draft.unused),
+        "skipped": [{"line": line, "reason": reason} for line, reason in draft.sheet.skipped],
+        "frame": draft.sheet.frame,
+        "rows": len(draft.pose),
+        "poses": len(set(draft.pose)),
+        "mode": found.mode,
+        "useful_poses": found.useful_poses,
+        "rows_with_load_difference": found.differences,
+        "stiffness_identifiable": found.mode == "displacements" or found.differences > 0,
+        "identifiable": identifiable(found),
+        "assumed": list(found.said),
+        "doubts": list(found.doubts),
+        "registration": registration_of(found),
+        "registered": found.registered,
+        "largest_load_N": float(np.linalg.norm(readings.wrench[:, :3], axis=1).max()),
+        "out": out if written else None,
+    }
+
+
+def registration_of(found: Imported) -> dict[str, object] | None:
+    """The rigid robot laid onto the positions, in numbers."""
+    fitted = found.fitted
+    if fitted is None:
+        return None
+    known = bool(np.isfinite(fitted.covariance).all())
+    order = np.argsort(-fitted.distance)[:WORST]
+    rows = found.fitted_rows
+    return {
+        "rms_mm": fitted.rms * 1e3,
+        "largest_mm": fitted.largest * 1e3,
+        "worst_pose": found.draft.pose[rows[fitted.worst]],
+        "worst": [
+            {
+                "pose": found.draft.pose[rows[k]],
+                "line": found.draft.sheet.lines[rows[k]],
+                "distance_mm": float(fitted.distance[k]) * 1e3,
+            }
+            for k in order
+        ],
+        "set_aside": [found.draft.sheet.lines[k] for k in np.flatnonzero(found.wild)],
+        "poses": fitted.poses,
+        "marker_m": fitted.marker,
+        "marker_fitted": fitted.marker_fitted,
+        "turned_deg": None if found.turned is None else float(np.degrees(found.turned)),
+        "rotation_rad": rotation_vector(fitted.turn),
+        "shift_m": fitted.shift,
+        "std_rotation_rad": fitted.std[:3] if known else None,
+        "std_shift_m": fitted.std[3:] if known else None,
+        "covariance": fitted.covariance if known else None,
+        "reason": None if known else "the positions do not tell the tracker's frame",
+    }
+
+
+def identifiable(found: Imported) -> str:
+    """What follows: displacements, or positions as such."""
+    poses = len(set(found.draft.pose))
+    if found.mode != "load pairs":
+        text = FOLLOWS[found.mode].format(poses=poses)
+        if found.mode == "displacements":
+            return text
+        return f"{text} {UNKNOWN if not found.registered else 'They are written in base axes.'}"
+    text = (
+        f"{found.differences} rows at {found.useful_poses} of {poses} poses differ in load from "
+        f"the lightest row of their pose: {3 * found.differences} displacements, from which "
+        "springs and other elastic effects can be identified; 'identify' says which of them these "
+        "poses and loads show."
+    )
+    if found.useful_poses < poses:
+        text += (
+            f" The other {poses - found.useful_poses} poses show stiffness through the arm's "
+            "weight alone; they are left out."
+        )
+    return text
+
+
+def doubts_of(found: Imported, robot: Robot) -> list[str]:
+    """What speaks against the file being what it seems."""
+    doubts = list(found.doubts)
+    if found.fitted is not None and found.fitted.rms > MISCALIBRATED * arm_length(robot):
+        doubts.append(
+            f"{_against(found, robot)} A robot of this make is nearer: check signs and zeros of "
+            "joints."
+        )
+    return doubts
+
+
+def preview_of(found: Imported, robot: Robot) -> list[object]:
+    """What was understood, before anything is written."""
+    draft = found.draft
+    sheet = draft.sheet
+    parts: list[object] = [f"{sheet.path.name}: {sheet.title} ({sheet.why})."]
+    shown = [(c.header, c.meaning, *_unit(c, found.told)) for c in sheet.columns]
+    parts.append(table("Columns", ["column", "is", "unit", "stated in"], shown))
+    parts.append(f"{len(draft.pose)} rows at {len(set(draft.pose))} poses.")
+    if sheet.skipped:
+        parts.append(f"Left out, {len(sheet.skipped)} rows:")
+        by_reason = groupby(sorted(sheet.skipped, key=lambda s: (s[1], s[0])), key=lambda s: s[1])
+        for reason, group in by_reason:
+            lines = [str(line) for line, _ in group]
+            more = f" and {len(lines) - SHOWN} more" if len(lines) > SHOWN else ""
+            parts.append(f"- line {', '.join(lines[:SHOWN])}{more}: {reason}")
+    if draft.unused:
+        parts.append("Not taken over:")
+        parts += [f"- {item}" for item in draft.unused]
+    parts.append(f"Axes of the positions, as the file calls them: {sheet.frame or 'not stated'}.")
+    if not any(header.startswith("sx") for header, _ in found.columns):
+        parts.append("Uncertainties: none stated; the fit estimates them.")
+    parts += ["Assumed:", *(f"- {sentence}" for sentence in found.said)]
+    parts += _placing(found, robot)
+    parts += ["What can be identified:", identifiable(found)]
+    return parts
+
+
+def _unit(column: Column, told: Told) -> tuple[str, str]:
+    """Unit of a column, and where it is stated."""
+    if column.unit is not None:
+        return column.unit, column.stated
+    kind = kind_of(column.meaning)
+    unit = told.of(kind) if kind else None
+    option = {"length": "--length", "angle": "--angle", "force": "--load"}.get(kind or "")
+    return (unit, str(option)) if unit else ("", "")
+
+
+def _against(found: Imported, robot: Robot) -> str:
+    fitted = found.fitted
+    if fitted is None:
+        return ""
+    freed = "the tracker's frame" + (" and the marker's place" if fitted.marker_fitted else "")
+    length = arm_length(robot)
+    return (
+        f"Against {robot.name} the positions are {fitted.rms * 1e3:.3g} mm off (rms of "
+        f"{fitted.poses} poses, {freed} fitted), {fitted.largest * 1e3:.3g} mm at pose "
+        f"{found.draft.pose[found.fitted_rows[fitted.worst]]}: {100 * fitted.rms / length:.2g} % "
+        f"of the arm's {length:.3g} m."
+    )
+
+
+def _placing(found: Imported, robot: Robot) -> list[object]:
+    fitted = found.fitted
+    if fitted is None:
+        if found.mode == "displacements":
+            return ["Displacements say nothing of where the robot stands: no fit checks them."]
+        return []
+    parts: list[object] = [_against(found, robot)]
+    worst = [
+        (found.draft.pose[found.fitted_rows[k]],
+         found.draft.sheet.lines[found.fitted_rows[k]], 1e3 * float(fitted.distance[k]))
+        for k in np.argsort(-fitted.distance)[:WORST]
+    ]  # fmt: skip
+    parts.append(table("Worst rows", ["pose", "line", "off [mm]"], worst))
+    aside = [str(found.draft.sheet.lines[k]) for k in np.flatnonzero(found.wild)]
+    if aside:
+        parts.append(
+            f"Far off all others, and not counted here: line {', '.join(aside[:SHOWN])}"
+            + (f" and {len(aside) - SHOWN} more" if len(aside) > SHOWN else "")
+            + ". They are written all the same."
+        )
+    turn, shift, std = rotation_vector(fitted.turn), fitted.shift, fitted.std
+    rows = [
+        (f"{what} {axis} [{unit}]", scale * float(value), scale * float(error))
+        for what, unit, scale, values, errors in (
+            ("shift", "mm", 1e3, shift, std[3:]), ("turn", "mrad", 1e3, turn, std[:3]),
+        )
+        for axis, value, error in zip("xyz", values, errors, strict=True)
+    ]  # fmt: skip
+    parts.append(
+        table("The robot's base in the axes of the file", ["", "value", "std. error"], rows)
+    )
+    parts.append(
+        "Standard errors hold as far as what is left is independent from pose to pose."
+        if np.isfinite(std).all()
+        else "The positions do not tell the frame."
+    )
+    if found.registered:
+        parts.append(
+            "Positions are written in base axes by this fit, which the YAML file records "
+            "(registered)."
+        )
+    return parts

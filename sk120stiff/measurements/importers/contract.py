@@ -1,0 +1,202 @@
+"""What an importer is: it says whether a file is of its format, and reads it into a `Sheet`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Literal, NamedTuple, Protocol
+
+from sk120stiff import files
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.grid import Grid, text_grid
+
+Role = Literal["points", "joints", "loads"]
+CLOSE = 0.1  # confidences that differ by less do not decide
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A file, and what is known of it before it is read.
+
+    Args:
+        path: The file, or the folder of a recording.
+        actuated: The robot's actuated joints.
+        role: What it was given for: points (with or without joints), joints, or loads.
+        columns: Names for its columns, where somebody told them.
+        sheet, topic, marker: Which sheet of a workbook, topic of a recording, marker of several.
+        given: Its rows, where they were made of something else.
+    """
+
+    path: Path
+    actuated: tuple[str, ...]
+    role: Role = "points"
+    columns: tuple[str, ...] | None = None
+    sheet: str | None = None
+    topic: str | None = None
+    marker: int | None = None
+    given: Grid | None = None
+
+    @cached_property
+    def data(self) -> bytes:
+        """The bytes; none of a folder."""
+        return b"" if self.path.is_dir() else files.read_bytes(self.path)
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Rows of cells: those given, else of a text.
+
+        Raises:
+            InputError: A folder, or no text.
+        """
+        if self.given is not None:
+            return self.given
+        if self.path.is_dir():
+            raise InputError(
+                "this folder is no ROS 2 bag: it holds no metadata.yaml of one",
+                where=str(self.path),
+                remedy="Give a file, or the folder that holds metadata.yaml and the recording.",
+            )
+        return text_grid(self.path, self.data)
+
+
+class Guess(NamedTuple):
+    """How sure an importer is that a file is its own (0 to 1), and why."""
+
+    confidence: float
+    why: str = ""
+
+
+NO = Guess(0.0)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column and its meaning.
+
+    Args:
+        header: As it stands in the file.
+        meaning: A word of `words.meaning_of`: ``x``, ``sx``, ``joint 3``, ``name``, ``fx`` ...
+        unit: As stated, or None.
+        stated: Where the unit is stated, in words.
+        cells: N texts.
+        factor: What the numbers are multiplied by: 1/2 for expanded uncertainties with k = 2.
+    """
+
+    header: str
+    meaning: str
+    unit: str | None
+    stated: str
+    cells: tuple[str, ...]
+    factor: float = 1.0
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Readings as a file has them, all of one length N.
+
+    Args:
+        path, title, why: The file, its format, and how it was recognised.
+        columns: What is used.
+        lines: N lines of the file.
+        unused: What is not, with the reason.
+        skipped: Line and reason of rows that are not readings.
+        rank, total: Place of each row among all rows with numbers, and how many those are.
+        spare: Columns whose meaning is not known.
+        frame: The axes that the file says positions are in.
+        notes: What was decided or taken for granted, in sentences.
+    """
+
+    path: Path
+    title: str
+    why: str
+    columns: tuple[Column, ...]
+    lines: tuple[int, ...]
+    unused: tuple[str, ...] = ()
+    skipped: tuple[tuple[int, str], ...] = ()
+    rank: tuple[int, ...] = ()
+    total: int = 0
+    spare: tuple[Column, ...] = ()
+    frame: str | None = None
+    notes: tuple[str, ...] = ()
+
+    def get(self, meaning: str) -> Column | None:
+        """The column of that meaning."""
+        return next((c for c in self.columns if c.meaning == meaning), None)
+
+    def has(self, *meanings: str) -> bool:
+        """Are all of them there?"""
+        return all(self.get(meaning) is not None for meaning in meanings)
+
+    def place(self, column: Column, row: int | None = None) -> str:
+        """File, line and column for a message."""
+        line = "" if row is None else f", line {self.lines[row]}"
+        return f"{self.path}{line}, column {column.header}"
+
+
+class Importer(Protocol):
+    """One format."""
+
+    @property
+    def name(self) -> str:
+        """As --format takes it."""
+
+    @property
+    def title(self) -> str:
+        """As people call it."""
+
+    def sniff(self, source: Source) -> Guess:
+        """How sure it is that the file is of this format, by its content alone."""
+
+    def read(self, source: Source) -> Sheet:
+        """The readings."""
+
+
+@dataclass(frozen=True)
+class Formats:
+    """Importers; a value that adds: ``FORMATS + (Mine(),)``."""
+
+    importers: tuple[Importer, ...]
+
+    def __add__(self, more: Sequence[Importer]) -> Formats:
+        return Formats((*self.importers, *more))
+
+    def __iter__(self) -> Iterator[Importer]:
+        return iter(self.importers)
+
+    def chosen(self, source: Source, name: str | None = None) -> tuple[Importer, str]:
+        """The importer of a file, and why it is that one.
+
+        Raises:
+            InputError: No format fits, two fit as well, or the name is none.
+        """
+        names = ", ".join(i.name for i in self)
+        if name is not None:
+            for importer in self:
+                if importer.name == name:
+                    return importer, "as told"
+            raise InputError(
+                f"no format is called {name!r}", where="--format", remedy=f"There are {names}."
+            )
+        guesses = [(guess, i) for i in self if (guess := i.sniff(source)).confidence > 0.0]
+        if not guesses:
+            raise InputError(
+                "no format that is known fits this file",
+                where=str(source.path),
+                remedy="Name its columns, e.g. --columns 'name,x,y,z,q1,q2,q3,q4,q5,q6' (a dash "
+                f"for one that is not needed). Formats are {names}.",
+            )
+        guesses.sort(key=lambda pair: -pair[0].confidence)
+        best = guesses[0]
+        rivals = [p for p in guesses if p[0].confidence > best[0].confidence - CLOSE]
+        if len(rivals) > 1:
+            raise InputError(
+                "this file can be read in more than one way: "
+                + listed([f"{i.title} ({guess.why})" for guess, i in rivals], "or"),
+                where=str(source.path),
+                remedy="Say which: "
+                + listed([f"--format {i.name}" for _, i in rivals], "or")
+                + "; or name the columns with --columns.",
+            )
+        return best[1], best[0].why

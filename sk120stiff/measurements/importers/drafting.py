@@ -1,0 +1,325 @@
+"""A sheet becomes columns of a measurement file: what each row says, in units and words of ours."""
+
+from __future__ import annotations
+
+import datetime as dt
+from dataclasses import dataclass, replace
+from decimal import Decimal
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.absolute import SAME_POSE
+from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
+from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
+from sk120stiff.measurements.importers.told import (
+    Told,
+    numbers,
+    quantity,
+    refuse_other_joints,
+    texts,
+    unit_of,
+)
+from sk120stiff.measurements.rows import rows_of_one_pose
+
+Written = tuple[tuple[str, tuple[str, ...]], ...]
+POSITIONS, DISPLACEMENTS, SIGMAS = ("x", "y", "z"), ("dx", "dy", "dz"), ("sx", "sy", "sz")
+
+
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """The rows of a sheet, understood.
+
+    Attributes:
+        sheet: Where they come from.
+        pose: N labels.
+        joints, loads: Joint values and loads.
+        measured: (N, 3) positions or displacements [m]; `displaced` says which.
+        readings: Headers with units and cells of these, digit by digit.
+        other: The same of uncertainties, temperature, time and labels.
+        markers: N names of markers and their places in the tool frame (3,) [m], where the file
+            has them; empty otherwise.
+        use: (N,) False where masked.
+        reversed: (N, 3) positions if deviations had the other sign, where they are a sum.
+        unused: What is not taken over, with the reason.
+        said: What was decided or taken for granted, in sentences.
+    """
+
+    sheet: Sheet
+    pose: tuple[str, ...]
+    joints: JointColumns
+    loads: Loads
+    measured: Array
+    displaced: bool
+    readings: Written
+    other: Written
+    markers: tuple[tuple[str, ...], dict[str, Array]]
+    use: Mask
+    reversed: Array | None
+    unused: tuple[str, ...]
+    said: tuple[str, ...]
+
+
+def drafted(
+    sheet: Sheet, told: Told, actuated: tuple[str, ...], prismatic: tuple[str, ...]
+) -> Draft:
+    """Understand a sheet.
+
+    Raises:
+        InputError: Positions or joints are missing, a unit that nobody said, a cell that is no
+            number.
+    """
+    joints = joint_columns(sheet, told, actuated, prismatic)
+    measured, readings, columns, back, said = _measured(sheet, told)
+    loads = loads_of(sheet, told)
+    taken = [*joints.taken, *loads.taken, *columns]
+    other: list[tuple[str, tuple[str, ...]]] = []
+    reasons: dict[int, str] = {}
+    unit = readings[0][0].partition("[")[2].rstrip("]")
+    for group, notes in (
+        _sigmas(sheet, told, unit, reasons),
+        _conditions(sheet, reasons),
+    ):
+        for column, header, cells in group:
+            other.append((header, cells))
+            taken.append(column)
+        said += notes
+    markers, places = _markers(sheet, told)
+    taken += [c for c in sheet.columns if c.meaning.startswith("tcp ")]
+    use = _use(sheet)
+    pose, label, notes = _labels(sheet, joints.values, loads.wrench, displaced=back is None and
+                                 sheet.has(*DISPLACEMENTS))  # fmt: skip
+    said += notes
+    names = sheet.get("name")
+    if names is not None:
+        taken.append(names)
+        if label is not names:
+            other.append(("name", names.cells))
+    taken += [c for c in sheet.columns if c.meaning in ("use", "pose")]
+    left = [c for c in (*sheet.columns, *sheet.spare) if not any(c is t for t in taken)]
+    refuse_other_joints(sheet, left, actuated)
+    unused = [f"column {c.header}{reasons.get(id(c), _why_unused(c))}" for c in left]
+    return Draft(
+        sheet=sheet,
+        pose=pose,
+        joints=joints,
+        loads=loads,
+        measured=measured,
+        displaced=readings[0][0].startswith("d"),
+        readings=readings,
+        other=tuple(other),
+        markers=(markers, places),
+        use=use,
+        reversed=back,
+        unused=(*unused, *sheet.unused),
+        said=(*sheet.notes, *joints.said, loads.said, *said),
+    )
+
+
+def _why_unused(column: Column) -> str:
+    if column.meaning.startswith("orientation"):
+        return ": in which order and about which axes it turns is not stated"
+    if column.meaning.startswith(("nominal", "deviation")):
+        return ": the measured position stands beside it"
+    return ""
+
+
+def _measured(
+    sheet: Sheet, told: Told
+) -> tuple[Array, Written, list[Column], Array | None, list[str]]:
+    """(N, 3) positions or displacements [m], as they are written, and the columns they are from."""
+    for names in (POSITIONS, DISPLACEMENTS):
+        if sheet.has(*names):
+            columns = [c for name in names if (c := sheet.get(name))]
+            units = [unit_of(sheet, c, "length", told) for c in columns]
+            values = [quantity(sheet, c, "length", u) for c, u in zip(columns, units, strict=True)]
+            written = tuple(
+                (f"{name}[{u}]", texts(c)) for name, u, c in zip(names, units, columns, strict=True)
+            )
+            return np.column_stack(values), written, columns, None, []
+    nominal = [c for axis in POSITIONS if (c := sheet.get(f"nominal {axis}"))]
+    deviation = [c for axis in POSITIONS if (c := sheet.get(f"deviation {axis}"))]
+    if len(nominal) == len(deviation) == 3:
+        return _summed(sheet, told, nominal, deviation)
+    there = ", ".join(c.header for c in (*sheet.columns, *sheet.spare))
+    raise InputError(
+        "no columns hold a position: x, y and z"
+        if not nominal
+        else "nominal positions alone are no measurement",
+        where=str(sheet.path),
+        remedy=f"There are {there}. Name the columns with --columns.",
+    )
+
+
+def _summed(
+    sheet: Sheet, told: Told, nominal: list[Column], deviation: list[Column]
+) -> tuple[Array, Written, list[Column], Array | None, list[str]]:
+    values, back, written = [], [], []
+    for axis, a, b in zip(POSITIONS, nominal, deviation, strict=True):
+        numbers(sheet, a), numbers(sheet, b)
+        units = {unit_of(sheet, c, "length", told) for c in (a, b)}
+        if len(units) > 1:
+            raise InputError(
+                f"{a.header} and {b.header} have different units",
+                where=str(sheet.path),
+                remedy="Export both in one unit.",
+            )
+        (unit,) = units
+        pairs = [(Decimal(p), Decimal(q)) for p, q in zip(a.cells, b.cells, strict=True)]
+        total = replace(a, cells=tuple(str(p + q) for p, q in pairs))
+        other = replace(a, cells=tuple(str(p - q) for p, q in pairs))
+        values.append(quantity(sheet, total, "length", unit))
+        back.append(quantity(sheet, other, "length", unit))
+        written.append((f"{axis}[{unit}]", total.cells))
+    said = (
+        f"Positions are {nominal[0].header} + {deviation[0].header} and so on: deviations are "
+        "taken to be measured minus nominal."
+    )
+    columns = [*nominal, *deviation]
+    return np.column_stack(values), tuple(written), columns, np.column_stack(back), [said]
+
+
+_Group = tuple[list[tuple[Column, str, tuple[str, ...]]], list[str]]
+
+
+def _sigmas(sheet: Sheet, told: Told, unit: str, reasons: dict[int, str]) -> _Group:
+    columns = [c for name in SIGMAS if (c := sheet.get(name))]
+    if len(columns) != 3:
+        return [], []
+    if told.coverage is not None:
+        columns_used = [replace(c, factor=1.0 / told.coverage) for c in columns]
+    else:
+        columns_used = columns
+    sizes = np.column_stack([numbers(sheet, c) if all(c.cells) else [0.0] for c in columns_used])
+    if not (sizes > 0.0).all():
+        reasons.update({id(c): ": not all of them are positive" for c in columns})
+        return [], []
+    factor = columns_used[0].factor
+    notes = [
+        f"Stated uncertainties are divided by {1 / factor:g} to standard ones"
+        + (", as told." if told.coverage else " (95 %, k = 2).")
+        if factor != 1.0
+        else "Stated uncertainties are taken for standard ones (k = 1; --coverage 2: twice those)."
+    ]
+    found = []
+    for name, column, used in zip(SIGMAS, columns, columns_used, strict=True):
+        own = column.unit
+        if own is None:
+            notes = [*notes[:1], f"Uncertainties are in {unit}, as the positions are."]
+        found.append((column, f"{name}[{own or unit}]", texts(used)))
+    return found, notes
+
+
+def _conditions(sheet: Sheet, reasons: dict[int, str]) -> _Group:
+    """Temperature, time, order and labels."""
+    found: list[tuple[Column, str, tuple[str, ...]]] = []
+    for column in sheet.columns:
+        word, unit = column.meaning, column.unit
+        if word == "temperature":
+            if unit not in ("degC", "°C", "ºC", "C", "K"):
+                reasons[id(column)] = ": its unit is not stated" if unit is None else f" in {unit}"
+            elif not all(column.cells):
+                reasons[id(column)] = ": some cells are empty"
+            else:
+                numbers(sheet, column)
+                header = f"temperature[{'K' if unit == 'K' else 'degC'}]"
+                found.append((column, header, texts(column)))
+        elif word == "time":
+            seconds = texts(column) if unit == "s" else _since_first(column.cells)
+            if seconds is None:
+                reasons[id(column)] = ": no time in seconds, and none like 2026-11-22 10:15:00"
+            else:
+                found.append((column, "time[s]", seconds))
+        elif word in ("order", "marker", "series", "branch", "repeat") and all(column.cells):
+            if word == "order":
+                numbers(sheet, column)
+            found.append((column, word, column.cells))
+    return found, []
+
+
+def _since_first(cells: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Seconds since the first of the times, as ISO 8601 or day.month.year writes them."""
+    times = []
+    for cell in cells:
+        for read in (
+            dt.datetime.fromisoformat,
+            lambda text: dt.datetime.strptime(text, "%d.%m.%Y %H:%M:%S"),
+        ):
+            try:
+                times.append(read(cell))
+                break
+            except ValueError:
+                continue
+    try:
+        seconds = [(time - times[0]).total_seconds() for time in times]
+    except TypeError:  # with and without a time zone
+        return None
+    return tuple(map(repr, seconds)) if len(times) == len(cells) else None
+
+
+def _markers(sheet: Sheet, told: Told) -> tuple[tuple[str, ...], dict[str, Array]]:
+    columns = [c for axis in POSITIONS if (c := sheet.get(f"tcp {axis}"))]
+    if len(columns) != 3:
+        return (), {}
+    values = np.column_stack(
+        [quantity(sheet, c, "length", unit_of(sheet, c, "length", told)) for c in columns]
+    )
+    kinds, index = np.unique(values, axis=0, return_inverse=True)
+    names = [f"M{k + 1}" for k in range(len(kinds))]
+    return tuple(names[k] for k in index.ravel()), dict(zip(names, kinds, strict=True))
+
+
+def _use(sheet: Sheet) -> Mask:
+    column = sheet.get("use")
+    if column is None:
+        return np.ones(len(sheet.lines), dtype=np.bool_)
+    values = numbers(sheet, column)
+    bad = (values != 0.0) & (values != 1.0)
+    if bad.any() or not values.any():
+        raise InputError(
+            "the column use masks every row" if not bad.any() else "use is neither 1 nor 0",
+            where=sheet.place(column, int(np.argmax(bad))),
+            remedy="Write 0 to mask the row, 1 to use it.",
+        )
+    used: Mask = values == 1.0
+    return used
+
+
+def _labels(
+    sheet: Sheet, q: Array, W: Array, *, displaced: bool
+) -> tuple[tuple[str, ...], Column | None, list[str]]:
+    """Pose of every row, the column it is from, and what is to be said of it."""
+    stated = sheet.get("pose")
+    if stated is not None and all(stated.cells):
+        return stated.cells, stated, []
+    pose = rows_of_one_pose(q)
+    names = sheet.get("name")
+    if len(set(pose)) == len(pose):
+        own = names.cells if names else ()
+        if names and len(set(own)) == len(pose) and not any(c[:1] in ("", "#") for c in own):
+            return own, names, []
+        if np.ptp(W, axis=0).any() and not displaced:
+            near = _clusters(q)
+            if len(set(near)) < len(pose):
+                said = f"Rows whose joint values differ by less than {SAME_POSE:g} are one pose."
+                return near, None, [said]
+    return pose, None, ["Rows with the same joint values are one pose."]
+
+
+def _clusters(q: Array) -> tuple[str, ...]:
+    firsts: list[int] = []
+    labels = []
+    for row in range(len(q)):
+        near = np.abs(q[firsts] - q[row]).max(axis=1) <= SAME_POSE if firsts else np.zeros(0, bool)
+        if not near.any():
+            firsts.append(row)
+            near = np.append(near, True)
+        labels.append(f"P{int(np.argmax(near)) + 1}")
+    return tuple(labels)
+
+
+def paired_loads(draft: Draft) -> tuple[Array, Mask, int]:
+    """Loads less the lightest of their pose (N, 6), rows that differ from it, poses shifted."""
+    return lightest(draft.pose, draft.loads.wrench, draft.use)

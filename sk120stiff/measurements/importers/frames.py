@@ -1,0 +1,145 @@
+"""Where the tracker stood: the rigid robot laid onto positions, and what follows for their axes."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.errors import InputError, Refusal
+from sk120stiff.measurements.absolute import Absolute
+from sk120stiff.measurements.channels import Channels
+from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.importers.drafting import Draft
+from sk120stiff.measurements.importers.told import Mode, Told
+from sk120stiff.measurements.placing import TURNED, place
+from sk120stiff.measurements.registration import Registration, register
+from sk120stiff.robot import Robot
+from sk120stiff.robot.rotations import rotation_vector
+
+TURNED_ROUGHLY = np.radians(15.0)  # what a marker that sits elsewhere may turn a cloud by
+VAGUE = np.radians(1.0)  # standard error of a turn that registers nothing
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """What `placed` found: fit, rows it rests on (P,), wild ones (N,), rms of the other sign."""
+
+    fitted: Registration | None
+    rows: Index
+    wild: Mask
+    reversed_rms: float | None
+    doubts: tuple[str, ...]
+
+
+def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
+    """The rigid robot laid onto positions without load.
+
+    Raises:
+        Refusal: They are not this robot's.
+    """
+    nothing = Placed(None, np.zeros(0, int), np.zeros(len(draft.pose), bool), None, ())
+    rows = np.flatnonzero(draft.use)
+    if mode == "load pairs":
+        size = np.linalg.norm(draft.loads.wrench[rows], axis=1)
+        rows = rows[np.lexsort((rows, size))]
+        rows = np.sort(rows[np.unique(np.array(draft.pose)[rows], return_index=True)[1]])
+    if mode == "displacements":
+        return nothing
+    point, known = points_of(draft, told)
+    rough = Measurements(
+        pose=tuple(f"{k}" for k in range(len(draft.pose))),
+        joint_names=robot.actuated,
+        joint_kinds=tuple(robot.kinds),
+        joints=draft.joints.values,
+        wrench=np.zeros((len(draft.pose), 6)),
+        displacement=None,
+        path=draft.sheet.path,
+        line=np.array(draft.sheet.lines),
+        absolute=Absolute(
+            Channels(position=draft.measured),
+            "unknown", point, not known, ("",) * len(draft.pose), np.zeros(len(draft.pose)),
+        ),
+    ).select(rows)  # fmt: skip
+    try:
+        placing = place(robot, rough)
+    except InputError as error:
+        raise Refusal(
+            f"{error.what}. These are not this robot's positions",
+            where=error.where,
+            remedy=f"{error.remedy or ''} Units and columns are told by --length, --angle and "
+            "--joints.".strip(),
+        ) from error
+    if placing is None:
+        return dataclasses.replace(
+            nothing,
+            doubts=("Fewer than three poses: whether they are this robot's was not checked.",),
+        )
+    kept = rows[~placing.wild]
+    screws = robot.screws(draft.joints.values[kept])
+
+    def fit(x: Array) -> Registration | None:
+        where, turn = screws.frame_position, screws.rotation
+        return register(x[kept], where, turn, point[kept], fit_marker=not known)
+
+    fitted = fit(draft.measured)
+    other = None if draft.reversed is None else fit(draft.reversed)
+    wild = np.zeros(len(draft.pose), bool)
+    wild[rows[placing.wild]] = True
+    doubts = list(placing.notes)
+    if fitted and other and other.rms < fitted.rms:
+        doubts.append(
+            f"With deviations of the other sign (nominal minus measured) {1e3 * other.rms:.3g} mm "
+            f"would be left, not {1e3 * fitted.rms:.3g} mm: ask where the file comes from."
+        )
+    return Placed(fitted, kept, wild, other.rms if other else None, tuple(doubts))
+
+
+def points_of(draft: Draft, told: Told) -> tuple[Array, bool]:
+    """(N, 3) marker of each row in the tool frame [m], and whether its place was stated."""
+    names, places = draft.markers
+    if told.point is not None:
+        return np.tile(told.point, (len(draft.pose), 1)), True
+    if places:
+        return np.array([places[name] for name in names]), True
+    return np.zeros((len(draft.pose), 3)), False
+
+
+def axes(
+    fitted: Registration | None, mode: Mode, into_base: bool | None, told: Told
+) -> tuple[float | None, bool, list[str]]:
+    """How far axes are turned [rad], whether to register, and what speaks against it."""
+    if fitted is None:
+        if into_base:
+            raise InputError(
+                "there are no positions that the tracker could be registered by"
+                if mode == "displacements"
+                else "fewer than three poses register no tracker",
+                where="--register",
+                remedy="Leave it out.",
+            )
+        return None, False, []
+    turned = float(np.linalg.norm(rotation_vector(fitted.turn)))
+    vague = float(fitted.std[:3].max()) > VAGUE
+    if into_base:
+        if vague:
+            raise Refusal(
+                "these positions do not tell how the tracker is turned: they lie on a line, or too "
+                "close together",
+                where="--register",
+                remedy="Add poses that spread in space.",
+            )
+        return turned, True, []
+    limit = TURNED if fitted.marker_fitted or told.point is not None else TURNED_ROUGHLY
+    if mode == "positions" or turned < limit:
+        return turned, False, []
+    if into_base is None and not vague:
+        return turned, True, []
+    return turned, False, [
+        f"The positions are turned by about {np.degrees(turned):.0f} deg against the base frame: "
+        "displacements in other axes give wrong springs. "
+        + ("They do not tell the turn well; measure poses that spread in space."
+           if vague else "Let them be registered: --register.")
+    ]  # fmt: skip

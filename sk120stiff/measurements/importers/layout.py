@@ -1,0 +1,261 @@
+"""Where in a grid the table is, and what its columns are called."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.contract import Column, Sheet, Source
+from sk120stiff.measurements.importers.grid import is_number
+from sk120stiff.measurements.importers.words import (
+    file_units,
+    is_unit,
+    kind_of,
+    meaning_of,
+    unit_of_header,
+)
+
+POSITION = ("x", "y", "z")
+NEEDED = {
+    "points": (POSITION, ("nominal x", "nominal y", "nominal z"), ("dx", "dy", "dz")),
+    "joints": (("joint 1",), ("joint 0",)),
+    "loads": (("fx", "fy", "fz"), ("payload",), ("load",)),
+}
+SEARCHED = 80  # rows that may stand above the headers
+BLANK = {"", "nan", "n/a", "na", "-", "--", "---", "none", "null", "#n/a"}
+_FRAME = re.compile(r"(?:working )?frame\W+(.+)", re.IGNORECASE)
+
+Meaning = Callable[[str, tuple[str, ...]], tuple[str, float] | None]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A table within a grid.
+
+    Args:
+        headers: Name of each column as written.
+        meanings: What each means and its factor, or None.
+        units: Unit of each as stated, or None, and `stated` in which place.
+        first: Index of the first row below the headers.
+        above: Lines above the table, as text with their numbers.
+        headed: Did the file name its columns?
+    """
+
+    headers: tuple[str, ...]
+    meanings: tuple[tuple[str, float] | None, ...]
+    units: tuple[str | None, ...]
+    stated: tuple[str, ...]
+    first: int
+    above: tuple[tuple[int, str], ...]
+    headed: bool = True
+
+    def has(self, *meanings: str) -> bool:
+        """Are all of these among the columns?"""
+        return set(meanings) <= {m[0] for m in self.meanings if m}
+
+
+def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
+    """The table with headers of a grid, or None where no row is one of headers.
+
+    Headers are those that were told, else the first row that names what is needed, else a comment
+    above the numbers that does.
+    """
+    grid = source.grid
+    if source.columns is not None:
+        first = next((k for k, row in enumerate(grid.rows) if _numeric(row)), len(grid.rows))
+        return _laid_out(source, tuple(source.columns), first, first, "as told", meaning)
+    for k, row in enumerate(grid.rows[:SEARCHED]):
+        if _names_enough(row, source, meaning):
+            return _laid_out(source, row, k, k + 1, f"line {grid.lines[k]}", meaning)
+    start = next((k for k, row in enumerate(grid.rows) if _numeric(row)), None)
+    for number, text in reversed(grid.comments):
+        if start is None or number > grid.lines[start]:
+            continue
+        headers = tuple(c for c in re.split(r"\s*[,;\t]\s*|\s+", text) if c)
+        if len(headers) == len(grid.rows[start]) and _names_enough(headers, source, meaning):
+            return _laid_out(source, headers, start, start, f"line {number}", meaning)
+    return None
+
+
+def _numeric(row: tuple[str, ...]) -> bool:
+    """Is this a row of readings: more numbers than words, a name before them apart?"""
+    return sum(map(is_number, row)) * 2 >= sum(cell != "" for cell in row) > 0
+
+
+def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> bool:
+    found = set()
+    for cell in row:
+        known = meaning(unit_of_header(cell)[0], source.actuated)
+        if known and not is_number(cell):
+            found.add(known[0])
+    return any(set(group) <= found for group in NEEDED[source.role])
+
+
+def _laid_out(
+    source: Source, headers: tuple[str, ...], at: int, first: int, stated: str, meaning: Meaning
+) -> Layout:
+    grid = source.grid
+    headers = _cut(headers)
+    named = [unit_of_header(h) if h else ("", None) for h in headers]
+    units = [unit for _, unit in named]
+    places = [f"the header, {stated}" if unit else "" for unit in units]
+    if first < len(grid.rows) and _is_units(grid.rows[first]):
+        for k, cell in enumerate(grid.rows[first][: len(units)]):
+            text = cell.strip("[]()")
+            if text and units[k] is None:
+                units[k], places[k] = text, f"line {grid.lines[first]}"
+        first += 1
+    above = [
+        (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
+    ]
+    meanings = tuple(meaning(name, source.actuated) if name else None for name, _ in named)
+    said = file_units([text for _, text in (*above, *grid.comments)])
+    for k, known in enumerate(meanings):
+        kind = kind_of(known[0]) if known else None
+        if kind in said and units[k] is None:
+            units[k], places[k] = said[kind], "the lines above the table"
+    return Layout(headers, meanings, tuple(units), tuple(places), first, tuple(above))
+
+
+def _is_units(row: tuple[str, ...]) -> bool:
+    cells = [cell.strip("[]()") for cell in row if cell]
+    return bool(cells) and not any(map(is_number, cells)) and all(map(is_unit, cells))
+
+
+def shaped(source: Source) -> tuple[int, bool, int]:
+    """Of a grid without headers: numbers in a row, is there a name before them, the first row.
+
+    Raises:
+        InputError: No row holds numbers.
+    """
+    rows = source.grid.rows
+    first = next((k for k, row in enumerate(rows) if _numeric(row)), None)
+    if first is None:
+        raise InputError(
+            "no line of this file holds readings",
+            where=str(source.path),
+            remedy="Its columns have headers such as name, x [mm], y [mm], z [mm]; or name them "
+            "with --columns.",
+        )
+    width = Counter(len(_cut(row)) for row in rows[first:]).most_common(1)[0][0]
+    some = [row for row in rows[first:] if len(_cut(row)) == width]
+    named = not all(is_number(row[0]) for row in some)
+    return width - named, named, first
+
+
+def _cut(row: tuple[str, ...], width: int = 0) -> tuple[str, ...]:
+    """The row without empty cells behind the last column."""
+    while len(row) > width and not row[-1]:
+        row = row[:-1]
+    return row
+
+
+def sheet_of(
+    source: Source,
+    layout: Layout,
+    title: str,
+    why: str,
+    *,
+    assumed_units: Mapping[str, str] | None = None,
+    notes: tuple[str, ...] = (),
+) -> Sheet:
+    """The readings of a table.
+
+    Args:
+        source, layout: The file and where its table is.
+        title, why: The format and how it was recognised.
+        assumed_units: Units that the format itself prescribes, by ``length`` and ``angle``.
+        notes: What else is to be said.
+
+    Raises:
+        InputError: A row of another length, or no row of readings.
+    """
+    grid, width = source.grid, len(layout.headers)
+    rows: list[tuple[str, ...]] = []
+    lines: list[int] = []
+    rank: list[int] = []
+    skipped: list[tuple[int, str]] = []
+    total = 0
+    needed = [k for k, m in enumerate(layout.meanings) if m and _is_needed(m[0])]
+    for k in range(layout.first, len(grid.rows)):
+        row = _cut(grid.rows[k], width)
+        named = len(row) == width and row[0]  # a point that was not measured
+        if not any(map(is_number, row)) and not named:
+            skipped.append((grid.lines[k], f"no numbers: {'  '.join(row)[:60]}"))
+            continue
+        if len(row) > width or len(row) <= max(needed, default=0):
+            raise InputError(
+                f"{len(row)} cells, but there are {width} columns",
+                where=grid.place(k),
+                remedy="Fill the missing cells, or delete the line if it is no reading.",
+            )
+        row = (*row, *[""] * (width - len(row)))
+        total += 1
+        blank = [layout.headers[c] for c in needed if row[c].lower() in BLANK]
+        if blank:
+            skipped.append((grid.lines[k], f"nothing stands in {', '.join(blank)}"))
+            continue
+        rows.append(row)
+        lines.append(grid.lines[k])
+        rank.append(total - 1)
+    if not rows:
+        raise InputError(
+            "the table has headers but no row of readings",
+            where=str(source.path),
+            remedy="Export the readings once more.",
+        )
+    columns, spare, twice = _columns(
+        layout, list(zip(*rows, strict=True)), dict(assumed_units or {})
+    )
+    remarks = [f"line {number}: {text}" for number, text in layout.above]
+    frame = next(
+        (m[1] for _, t in (*grid.comments, *layout.above) if (m := _FRAME.search(t))), None
+    )
+    return Sheet(
+        path=source.path,
+        title=title,
+        why=why,
+        columns=tuple(columns),
+        lines=tuple(lines),
+        unused=(*twice, *remarks, *grid.left),
+        skipped=tuple(skipped),
+        rank=tuple(rank),
+        total=total,
+        spare=tuple(spare),
+        frame=frame,
+        notes=(f"Read as {grid.how}.", *notes) if grid.how else notes,
+    )
+
+
+def _is_needed(meaning: str) -> bool:
+    return meaning.startswith(("joint ", "nominal ", "deviation ", "tcp ")) or meaning in {
+        *POSITION, "dx", "dy", "dz", "fx", "fy", "fz", "mx", "my", "mz", "payload", "load",
+    }  # fmt: skip
+
+
+def _columns(
+    layout: Layout, cells: list[tuple[str, ...]], assumed: dict[str, str]
+) -> tuple[list[Column], list[Column], list[str]]:
+    """Columns with a meaning, those without, and meanings that stand there twice."""
+    columns: list[Column] = []
+    spare: list[Column] = []
+    twice: list[str] = []
+    for k, header in enumerate(layout.headers):
+        known = layout.meanings[k]
+        if known is None:
+            if any(cells[k]):
+                name = header.strip("-") or f"column {k + 1}"
+                spare.append(Column(name, "", layout.units[k], layout.stated[k], cells[k]))
+            continue
+        meaning, factor = known
+        if any(c.meaning == meaning for c in columns):
+            twice.append(f"column {header}: a second {meaning}")
+            continue
+        unit, stated = layout.units[k], layout.stated[k]
+        if unit is None and (kind := kind_of(meaning)) in assumed:
+            unit, stated = assumed[kind], "the format prescribes it"
+        columns.append(Column(header, meaning, unit, stated, cells[k], factor))
+    return columns, spare, twice

@@ -1,0 +1,122 @@
+"""What pressed on the robot in each row: forces, a payload, or a count of a load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.told import Told, numbers, quantity, unit_of
+
+STANDARD_GRAVITY = 9.80665  # m/s², exact by definition
+FORCES = ("fx", "fy", "fz")
+MOMENTS = ("mx", "my", "mz")
+
+
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """Wrench (N, 6) [N, N·m], payload (N,) [kg] if it was one, columns it is from, what was taken.
+
+    The payload is in the wrench too: its weight along -z of the base.
+    """
+
+    wrench: Array
+    payload: Array | None = None
+    taken: tuple[Column, ...] = ()
+    said: str = "No column holds a load: all rows are taken to be without."
+
+
+def loads_of(sheet: Sheet, told: Told) -> Loads:
+    """Forces ``fx fy fz`` (``mx my mz``), or ``payload`` that hangs down, or ``load`` that counts
+    how many times `told.wrench` acts. Without any of them there is no load.
+
+    Raises:
+        InputError: Two of the three, an incomplete one, a unit that nobody said, or a wrench for
+            nothing.
+    """
+    where = str(sheet.path)
+    there = [
+        kind
+        for kind, names in (
+            ("force columns", (*FORCES, *MOMENTS)), ("payload", ("payload",)), ("load", ("load",)),
+        )
+        if any(sheet.get(name) for name in names)
+    ]  # fmt: skip
+    if len(there) > 1:
+        raise InputError(
+            f"the load is given twice: {' and '.join(there)}",
+            where=where,
+            remedy="Keep one of them.",
+        )
+    if told.wrench is not None and there != ["load"]:
+        raise InputError(
+            "--wrench says how large the load is, but no column says in which rows it acts",
+            where=where,
+            remedy="Add a column load: 1 in rows with the load, 0 in rows without.",
+        )
+    W = np.zeros((len(sheet.lines), 6))
+    counted, hung = sheet.get("load"), sheet.get("payload")
+    if counted is not None:
+        if told.wrench is None:
+            raise InputError(
+                "nobody said which load the column 'load' counts",
+                where=sheet.place(counted),
+                remedy="Give --wrench, e.g. --wrench '0,0,-490 N'.",
+            )
+        W += numbers(sheet, counted)[:, None] * told.wrench
+        said = "The column load counts how many times --wrench acts."
+        return Loads(W, None, (counted,), said)
+    if hung is not None:
+        return _hung(sheet, hung, told, W)
+    return _forces(sheet, told, W) if there else Loads(W)
+
+
+def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:
+    unit = unit_of(sheet, column, "force", told)
+    if unit == "kg":
+        mass = numbers(sheet, column)
+    else:
+        mass = quantity(sheet, column, "force", unit) / STANDARD_GRAVITY
+    if np.any(mass < 0.0):
+        raise InputError(
+            "a payload is not negative",
+            where=sheet.place(column, int(np.argmax(mass < 0.0))),
+            remedy="Write what hangs on the robot; its weight pulls along -z of the base.",
+        )
+    W[:, 2] = -STANDARD_GRAVITY * mass
+    said = "The payload is taken to hang at the marker and to pull along -z of the base frame."
+    return Loads(W, mass, (column,), said)
+
+
+def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
+    groups = [FORCES, MOMENTS] if any(map(sheet.get, MOMENTS)) else [FORCES]
+    missing = [name for group in groups for name in group if sheet.get(name) is None]
+    if missing:
+        raise InputError(
+            f"the column {missing[0]!r} is missing",
+            where=str(sheet.path),
+            remedy=f"{', '.join(FORCES if missing[0] in FORCES else MOMENTS)} come together.",
+        )
+    taken = [c for group in groups for name in group if (c := sheet.get(name))]
+    for k, column in enumerate(taken):
+        kind = "force" if k < 3 else "moment"
+        W[:, k] = quantity(sheet, column, kind, unit_of(sheet, column, kind, told))
+    said = "Forces are taken to act on the robot at the marker, in axes of the base frame."
+    return Loads(W, None, tuple(taken), said)
+
+
+def lightest(pose: tuple[str, ...], W: Array, use: Mask) -> tuple[Array, Mask, int]:
+    """Loads less the lightest one of their pose; rows in use that differ from it; poses shifted."""
+    labels = np.array(pose)
+    differences, shifted = W.copy(), 0
+    for label in np.unique(labels):
+        rows = np.flatnonzero(labels == label)
+        among = rows[use[rows]] if use[rows].any() else rows
+        force, moment = (np.linalg.norm(W[among, k : k + 3], axis=1) for k in (0, 3))
+        least = W[among[np.lexsort((moment, force))[0]]]
+        differences[rows] -= least
+        shifted += bool(least.any())
+    return differences, use & np.any(differences != 0.0, axis=1), shifted

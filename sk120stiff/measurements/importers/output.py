@@ -1,0 +1,171 @@
+"""What an import writes: columns, settings, files."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from sk120stiff import files, units
+from sk120stiff.arrays import Array
+from sk120stiff.measurements.importers.drafting import Draft, Written
+from sk120stiff.measurements.importers.frames import points_of
+from sk120stiff.measurements.importers.told import Mode, Told
+from sk120stiff.measurements.registration import Registration
+from sk120stiff.measurements.writing import check_name, robot_seen_from
+from sk120stiff.robot import Robot
+from sk120stiff.robot.naming import RobotName, robot_name
+from sk120stiff.robot.rotations import rotation_vector
+
+
+def _point_entry(xyz: Array, *, fit: bool = False) -> dict[str, Any]:
+    entry = {"xyz": [round(float(v), 6) + 0.0 for v in 1e3 * xyz], "unit": "mm"}
+    return {**entry, "fit": True} if fit else entry
+
+
+def settings_for(
+    draft: Draft,
+    mode: Mode,
+    robot: Robot,
+    told: Told,
+    fitted: Registration | None,
+    *,
+    registered: bool,
+) -> tuple[dict[str, Any], str]:
+    """Keys of the YAML file, and what is said of the marker's place."""
+    point, known = points_of(draft, told)
+    settings: dict[str, Any] = {
+        "robot": _lasting(robot.source),
+        "base_frame": robot.base_frame,
+        "tool_frame": robot.tool_frame,
+    }
+    xyz = point[0]
+    said = "The marker and the load sit at the origin of the tool frame."
+    if told.point is not None:
+        said = "The marker sits, and the load acts, where --point says."
+    elif known:
+        said = "The markers sit where the file says (TCP)."
+    elif fitted is not None and fitted.marker_fitted:
+        xyz = fitted.marker
+        shown = ", ".join(f"{1e3 * v:.1f}" for v in xyz)
+        said = (
+            f"The marker sits, and the load acts, at ({shown}) mm in the tool frame: the best "
+            "place for these positions."
+        )
+    elif mode == "positions":
+        said = "Where the marker sits is not known; the fit finds it."
+    places = draft.markers[1]
+    if len(places) > 1:
+        settings["points"] = {name: _point_entry(place) for name, place in places.items()}
+    else:
+        settings["point"] = _point_entry(xyz, fit=mode == "positions" and not known)
+    if mode != "positions" or (draft.loads.payload is None and np.any(draft.loads.wrench)):
+        settings["force"] = {"frame": "base"}
+    if mode == "positions":
+        settings["position"] = {"frame": "base" if registered else "unknown"}
+        if draft.loads.payload is not None:
+            settings["payload"] = {"point": _point_entry(xyz)}
+    else:
+        zero = {"zero": "shared"} if mode == "load pairs" else {}
+        settings["displacement"] = {"frame": "base", **zero}
+    if registered and fitted is not None:
+        std = np.where(np.isfinite(fitted.std), fitted.std, 0.0)
+        settings["registered"] = {
+            "xyz": [float(v) for v in 1e3 * fitted.shift],
+            "unit": "mm",
+            "rotation": [float(v) for v in rotation_vector(fitted.turn)],
+            "rotation_unit": "rad",
+            "std_xyz": [float(v) for v in 1e3 * std[3:]],
+            "std_rotation": [float(v) for v in std[:3]],
+            "rms": 1e3 * fitted.rms,
+            "poses": fitted.poses,
+        }
+    if draft.joints.mapping:
+        settings["joints"] = draft.joints.mapping
+    settings["source"] = f"imported from {draft.sheet.path.name} ({draft.sheet.title})"
+    return settings, said
+
+
+def columns_for(
+    draft: Draft,
+    mode: Mode,
+    differences: Array,
+    fitted: Registration | None,
+    *,
+    registered: bool,
+) -> Written:
+    """Headers and cells of the CSV file; what the source prints stays as it is, digit by digit."""
+    columns = [("pose", draft.pose), *draft.joints.written]
+    if draft.markers[0] and len(draft.markers[1]) > 1:
+        columns.append(("marker", draft.markers[0]))
+    forces = draft.loads.wrench if mode != "load pairs" else differences
+    if mode == "positions" and draft.loads.payload is not None:
+        columns.append(("payload[kg]", _reprs(draft.loads.payload)))
+    elif mode != "positions" or forces.any():
+        columns += [(f"{n}[N]", _reprs(forces[:, k])) for k, n in enumerate(("fx", "fy", "fz"))]
+        if forces[:, 3:].any():
+            names = enumerate(("mx", "my", "mz"), 3)
+            columns += [(f"{n}[N*m]", _reprs(forces[:, k])) for k, n in names]
+    readings, other = list(draft.readings), list(draft.other)
+    if registered and fitted is not None:
+        at = 1e3 * fitted.in_base(draft.measured)
+        readings = [(f"{a}[mm]", _reprs(at[:, k])) for k, a in enumerate("xyz")]
+        other = _turned_sigmas(other, fitted.turn)
+    columns += readings + other
+    if not draft.use.all():
+        columns.append(("use", tuple("1" if used else "0" for used in draft.use)))
+    return tuple(columns)
+
+
+def _turned_sigmas(other: list[tuple[str, tuple[str, ...]]], turn: Array) -> list[Any]:
+    """Standard uncertainties along the axes of the base, of those along the tracker's."""
+    sizes = [k for k, (header, _) in enumerate(other) if header[:2] in ("sx", "sy", "sz")]
+    if not sizes:
+        return other
+    metres = np.column_stack(
+        [units.to_si([float(c) for c in other[k][1]], other[k][0][3:-1], "length") for k in sizes]
+    )
+    along = 1e3 * np.sqrt(metres**2 @ turn**2)
+    turned = {
+        k: (f"s{a}[mm]", _reprs(along[:, i]))
+        for i, (k, a) in enumerate(zip(sizes, "xyz", strict=True))
+    }
+    return [turned.get(k, column) for k, column in enumerate(other)]
+
+
+def _reprs(values: Array) -> tuple[str, ...]:
+    return tuple(repr(float(v) + 0.0) for v in values)
+
+
+def _lasting(source: str) -> str:
+    """The robot's name as it holds in any folder."""
+    name = robot_name(source)
+    path = Path(name.place)
+    return str(RobotName(str(path.resolve()), name.arguments)) if path.exists() else source
+
+
+def write_files(columns: Written, settings: dict[str, Any], out: Path) -> None:
+    """Write the CSV file and the YAML file of the same stem.
+
+    Raises:
+        InputError: As `measurements.writing.check_name`, or the folder cannot be written to.
+    """
+    check_name(out)
+    stream = io.StringIO()
+    table = csv.writer(stream, lineterminator="\n")
+    table.writerow([header for header, _ in columns])
+    table.writerows(
+        zip(
+            *(c if "[" in h else map(files.guarded_cell, c) for h, c in columns),
+            strict=True,
+        )
+    )
+    keys = {**settings, "robot": robot_seen_from(settings["robot"], out.parent)}
+    text = yaml.safe_dump(keys, sort_keys=False, allow_unicode=True)
+    with files.together():
+        files.write_atomically(out.with_suffix(".yaml"), text)
+        files.write_atomically(out, stream.getvalue())

@@ -1,0 +1,72 @@
+"""Tables with headers, PolyWorks' and others', and plain lists of points without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
+from sk120stiff.measurements.importers.layout import layout_of, shaped, sheet_of
+
+_FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+@dataclass(frozen=True)
+class Points:
+    """``name x y z``, with joints or without, under headers or in that order."""
+
+    name: str = "points"
+    title: str = "a list of points"
+
+    def sniff(self, source: Source) -> Guess:
+        """Headers that name what is needed, or as many numbers in a row as that has."""
+        layout = layout_of(source)
+        if layout is not None:
+            return Guess(0.4, "its columns are named")
+        count, named, _ = shaped(source)
+        if _names(source, count) is None:
+            return NO
+        return Guess(0.4, f"{'a name and ' if named else ''}{count} numbers in a row")
+
+    def read(self, source: Source) -> Sheet:
+        """The readings under their headers, or by the count of numbers in a row.
+
+        Raises:
+            InputError: Positions and joints without headers, which may come in either order.
+        """
+        layout = layout_of(source)
+        if layout is None:
+            count, named, _ = shaped(source)
+            names = _names(source, count) or ()
+            if len(names) > 6 and source.role == "points":
+                joints = ",".join(names[3:])
+                raise InputError(
+                    f"{count} numbers in a row and no headers: position and joints may come in "
+                    "either order",
+                    where=str(source.path),
+                    remedy=f"Say so: --columns '{'name,' * named}x,y,z,{joints}' or --columns "
+                    f"'{'name,' * named}{joints},x,y,z'.",
+                )
+            told = replace(source, columns=(*(("name",) if named else ()), *names))
+            layout = layout_of(told)
+            if layout is None:
+                raise InputError("the headers cannot be told", where=str(source.path))
+            why = f"no headers; {count} numbers in a row are {', '.join(names)}"
+            return sheet_of(source, layout, self.title, why)
+        why = "columns as told" if source.columns else "its headers name x, y, z"
+        if source.role != "points":
+            why = "columns as told" if source.columns else f"its headers name the {source.role}"
+        return sheet_of(source, layout, "a table of readings", why)
+
+
+def _names(source: Source, count: int) -> tuple[str, ...] | None:
+    """Names of as many columns of numbers."""
+    joints = tuple(f"q{k + 1}" for k in range(len(source.actuated)))
+    known: dict[int, tuple[str, ...]]
+    if source.role == "joints":
+        known = {len(joints): joints}
+    elif source.role == "loads":
+        known = {3: _FORCES[:3], 6: _FORCES, 1: ("payload",)}
+    else:
+        known = {3: ("x", "y", "z"), 3 + len(joints): ("x", "y", "z", *joints)}
+    return known.get(count)

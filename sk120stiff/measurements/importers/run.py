@@ -1,0 +1,205 @@
+"""A file of readings becomes `Measurements`, with what was understood of it."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sk120stiff.arrays import Index, Mask
+from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Source
+from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
+from sk120stiff.measurements.importers.formats import FORMATS
+from sk120stiff.measurements.importers.frames import axes, placed
+from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
+from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
+from sk120stiff.measurements.importers.pairing import paired
+from sk120stiff.measurements.importers.told import Mode, Told
+from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
+from sk120stiff.measurements.reading import assembled
+from sk120stiff.measurements.registration import Registration
+from sk120stiff.measurements.settings import settings_of
+from sk120stiff.measurements.table import table_of
+from sk120stiff.robot import Robot
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """What a file holds.
+
+    Attributes:
+        draft, told: Its rows, understood with what was told.
+        mode: ``"displacements"`` as they stand in the file, ``"load pairs"`` (positions under two
+            loads at one pose, whose differences are displacements), or ``"positions"`` as such.
+        readings: What reading the written files gives.
+        columns, settings: What is written.
+        fitted: The rigid robot laid onto the positions, or None; `fitted_rows` (P,) are their
+            rows, `wild` (N,) those that were set aside for it.
+        registered: Are positions written in base axes because of it?
+        turned: Angle between the axes of the positions and those of the base [rad], or None.
+        reversed_rms: What remains if deviations had the other sign [m], or None.
+        differences, useful_poses: Rows with a load other than the lightest of their pose, and the
+            poses that have such rows.
+        doubts, said: What speaks against it, and what was decided, in sentences.
+    """
+
+    draft: Draft
+    told: Told
+    mode: Mode
+    readings: Measurements
+    columns: Written
+    settings: dict[str, Any]
+    fitted: Registration | None
+    fitted_rows: Index
+    wild: Mask
+    registered: bool
+    turned: float | None
+    reversed_rms: float | None
+    differences: int
+    useful_poses: int
+    doubts: tuple[str, ...]
+    said: tuple[str, ...]
+
+    def write(self, out: Path) -> None:
+        """Write the CSV file and the YAML file of the same stem.
+
+        Raises:
+            InputError: The name does not end in .csv, or the folder cannot be written to.
+        """
+        write_files(self.columns, self.settings, out)
+
+
+def import_readings(
+    path: str | os.PathLike[str],
+    robot: Robot,
+    told: Told | None = None,
+    *,
+    joints_file: Path | None = None,
+    loads_file: Path | None = None,
+    format_name: str | None = None,
+    columns: Sequence[str] | None = None,
+    sheet: str | None = None,
+    topic: str | None = None,
+    marker: int | None = None,
+    into_base: bool | None = None,
+    formats: Formats = FORMATS,
+) -> Imported:
+    """Read positions of a marker, or displacements, in any format of `formats`.
+
+    Args:
+        path: The file, or the folder of a ROS bag.
+        robot: What was measured.
+        told: Units and places that the file does not say.
+        joints_file, loads_file: Joints and loads, where they stand in files of their own.
+        format_name: The format, where the content leaves it open.
+        columns: Names of the columns of a file without headers.
+        sheet, topic, marker: Which sheet of a workbook, topic of a recording, marker of several.
+        into_base: Turn positions into base axes by the best placing of the robot; None: only where
+            displacements are made of them and their axes are others.
+        formats: The formats that are known.
+
+    Raises:
+        InputError: A file that cannot be understood, with what to tell or to mend.
+        Refusal: The positions are not those of this robot.
+    """
+    told = told or Told()
+    prismatic = tuple(n for n, s in zip(robot.actuated, robot.prismatic, strict=True) if s)
+    source = Source(
+        Path(path), robot.actuated, "points", tuple(columns) if columns else None,
+        sheet, topic, marker,
+    )  # fmt: skip
+    draft = drafted(
+        _sheet(source, formats, format_name, joints_file, loads_file),
+        told, robot.actuated, prismatic,
+    )  # fmt: skip
+    differences, paired_rows, shifted = paired_loads(draft)
+    mode: Mode = "positions"
+    if draft.displaced:
+        mode = "displacements"
+    elif paired_rows.any() and len(draft.markers[1]) < 2:
+        mode = "load pairs"
+    laid = placed(draft, mode, robot, told)
+    turned, registered, doubts = axes(laid.fitted, mode, into_base, told)
+    settings, point = settings_for(draft, mode, robot, told, laid.fitted, registered=registered)
+    written = columns_for(draft, mode, differences, laid.fitted, registered=registered)
+    readings = _assembled(draft, written, settings, robot, prismatic)
+    said = list(draft.said)
+    if shifted and mode == "load pairs":
+        said.append(
+            f"At {shifted} poses the lightest load is not zero: the load of a row is its "
+            "difference to the lightest of its pose."
+        )
+    said.append(point)
+    return Imported(
+        draft=draft,
+        told=told,
+        mode=mode,
+        readings=readings,
+        columns=written,
+        settings=settings,
+        fitted=laid.fitted,
+        fitted_rows=laid.rows,
+        wild=laid.wild,
+        registered=registered,
+        turned=turned,
+        reversed_rms=laid.reversed_rms,
+        differences=int(paired_rows.sum()),
+        useful_poses=len({draft.pose[k] for k in np.flatnonzero(paired_rows)}),
+        doubts=(*laid.doubts, *doubts),
+        said=tuple(said),
+    )
+
+
+def _sheet(
+    source: Source,
+    formats: Formats,
+    name: str | None,
+    joints_file: Path | None,
+    loads_file: Path | None,
+) -> Sheet:
+    opened = _opened(source)
+    importer, why = formats.chosen(opened, name)
+    sheet = importer.read(opened)
+    if why == "as told":
+        sheet = dataclasses.replace(sheet, title=importer.title, why=why)
+    others: list[tuple[Role, Path | None]] = [("joints", joints_file), ("loads", loads_file)]
+    own = any(c.meaning.startswith("joint ") for c in sheet.columns)
+    if joints_file is None and not own and not source.path.is_dir() and is_workbook(source.data):
+        others[0] = ("joints", source.path)  # another sheet of the workbook may hold them
+    for role, path in others:
+        if path is None:
+            continue
+        more = _opened(Source(path, source.actuated, role))
+        sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
+    return sheet
+
+
+def _opened(source: Source) -> Source:
+    """The source with its rows, where a workbook or a MATLAB file holds them."""
+    if is_workbook(source.data):
+        return dataclasses.replace(source, given=workbook_grid(source))
+    return (
+        dataclasses.replace(source, given=matlab_grid(source)) if is_matlab(source.data) else source
+    )
+
+
+def _assembled(
+    draft: Draft,
+    columns: Written,
+    settings: dict[str, Any],
+    robot: Robot,
+    prismatic: tuple[str, ...],
+) -> Measurements:
+    path = draft.sheet.path
+    rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
+    table = table_of(path, [header for header, _ in columns], 1, rows, list(draft.sheet.lines))
+    file = settings_of(settings, path.with_suffix(".yaml"))
+    digest = hashlib.sha256(repr((columns, settings)).encode()).hexdigest()
+    return assembled(table, file, digest, robot.actuated, prismatic)

@@ -1,0 +1,130 @@
+"""What the header of a column means, in the words that metrology programs use."""
+
+from __future__ import annotations
+
+import re
+
+from sk120stiff import units
+
+_AXIS = r"(?P<a>[xyz])"
+_AXES = {
+    "": rf"(?:(?:pos(?:ition)?|coord(?:inate)?|point|tracker|marker|"
+    rf"(?:meas(?:ured)?|act(?:ual)?|ist)) )?{_AXIS}"
+    r"(?: (?:coord(?:inate)?|pos(?:ition)?|meas(?:ured)?|act(?:ual)?|ist|value|wert))?",
+    "nominal ": rf"(?:nom(?:inal)?|target|soll|theo\w*|cmd|command(?:ed)?) {_AXIS}"
+    rf"|{_AXIS.replace('a>', 'b>')} (?:nom(?:inal)?|t|target|soll|theo\w*|cmd)",
+    "deviation ": rf"(?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta) {_AXIS}"
+    rf"|{_AXIS.replace('a>', 'b>')} (?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta)",
+    "d": rf"d ?{_AXIS}|(?:displacement|deflection|disp) {_AXIS.replace('a>', 'b>')}",
+    "u95 ": rf"(?:u ?95|exp(?:anded)? unc(?:ertainty)?) ?{_AXIS}"
+    rf"|{_AXIS.replace('a>', 'b>')} ?u ?95",
+    "s": rf"(?:s|sd|std(?: dev)?|sigma|u|unc(?:ertainty)?) ?{_AXIS}"
+    rf"|{_AXIS.replace('a>', 'b>')} (?:sigma|std|sd|unc(?:ertainty)?)",
+    "f": rf"(?:f|force) ?{_AXIS}|{_AXIS.replace('a>', 'b>')} force",
+    "m": rf"(?:m|moment) ?{_AXIS}",
+    "tcp ": rf"(?:tcp|tool) ?{_AXIS}",
+    "orientation ": rf"(?:phi|rot(?:ation)?|r) ?{_AXIS}\d?",
+    "q": r"(?:q|quat(?:ernion)?) ?(?P<a>[wxyz])",
+}
+_PATTERNS = {prefix: re.compile(pattern) for prefix, pattern in _AXES.items()}
+_NAMES = {
+    "name": "name|id|point|point id|point name|target|target name|pt|tag|tag name|label|punkt|"
+    "punktname|punktnummer|point no|nr|no|object|object name|feature|feature name|index",
+    "group": "group|group name|point group|tag group",
+    "collection": "collection|collection name",
+    "order": "order|step order|seq|sequence|measurement order",
+    "time": "time|timestamp|time stamp|date|date time|datetime|zeit|datum",
+    "marker": "marker|reflector|smr",
+    "orientation roll": "roll",
+    "orientation pitch": "pitch",
+    "orientation yaw": "yaw",
+    "control": "control|dimension",
+    "measured": "meas|measured|actual|ist",
+}
+_OWN = ("payload", "load", "pose", "use", "series", "branch", "repeat")  # mean themselves
+_WORDS = {word: meaning for meaning, words in _NAMES.items() for word in words.split("|")} | {
+    word: word for word in _OWN
+}
+_TEMPERATURE = re.compile(r"(?:\w+ )?(?:temp(?:erature|eratur)?)(?: \w+)?")
+JOINT = re.compile(
+    r"(?:q|j|jnt|joint|axis|achse|a|th|theta|θ)[ _]?(\d+)(?: (?:angle|pos(?:ition)?|value))?"
+)
+_BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*(.*)")
+_TAIL = re.compile(r"(.+?)(?:[ /]\s*(mm|um|µm|m|inch|in|deg|rad|°|N|kN|kg|s)|_(mm|um|deg|rad|kg))")
+_DEGREES = {"°C", "degC", "C", "ºC"}
+_COVERAGE = re.compile(r"k ?= ?([123](?:\.\d+)?)")
+_FILE_UNITS = {
+    "length": {"mm": "mm", "millimeters": "mm", "millimetres": "mm", "millimeter": "mm",
+               "millimetre": "mm", "m": "m", "meters": "m", "metres": "m", "meter": "m",
+               "metre": "m", "inches": "in", "inch": "in"},
+    "angle": {"deg": "deg", "degrees": "deg", "degree": "deg", "rad": "rad", "radians": "rad",
+              "radian": "rad"},
+}  # fmt: skip
+
+
+def unit_of_header(header: str) -> tuple[str, str | None]:
+    """Name and unit of a header as people write it: ``X [mm]``, ``X (mm)``, ``X/mm``, ``x_mm``."""
+    match = _BRACKETS.fullmatch(header.strip())
+    if match and is_unit(match[2]):
+        return f"{match[1]} {match[3]}".strip(), match[2].strip()
+    tail = _TAIL.fullmatch(header.strip())
+    if tail:
+        return tail[1], tail[2] or tail[3]
+    return header.strip(), None
+
+
+def is_unit(text: str) -> bool:
+    """Is this the name of a unit, that of a temperature or a mass among them?"""
+    return text.strip() in {*_DEGREES, "K", "kg"} or units.is_unit(text)
+
+
+def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] | None:
+    """Meaning of a column's name without its unit, and the factor of its numbers; None: unknown.
+
+    ``x y z`` positions; ``nominal x``, ``deviation x``; ``dx`` displacements; ``sx`` standard
+    uncertainties; ``fx mx payload load`` loads; ``tcp x`` the marker in the tool frame; ``qw``
+    quaternions, ``orientation ...`` other ones; ``joint 3`` or ``joint NAME``; and labels.
+    """
+    if name in actuated:
+        return f"joint {actuated.index(name) + 1}", 1.0
+    plain = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
+    cover = _COVERAGE.search(plain)
+    plain = _COVERAGE.sub("", plain) if cover else plain
+    plain = re.sub(r"[\s_.\-:()\[\],]+", " ", plain).strip()
+    if plain in _WORDS:
+        return _WORDS[plain], 1.0
+    joint = JOINT.fullmatch(plain)
+    if joint:
+        return f"joint {int(joint[1])}", 1.0
+    for prefix, pattern in _PATTERNS.items():
+        match = pattern.fullmatch(plain)
+        if match:
+            axis = next(found for found in match.groupdict().values() if found)
+            if prefix == "u95 " or (prefix == "s" and cover):
+                return f"s{axis}", 1.0 / (float(cover[1]) if cover else 2.0)
+            return prefix + axis, 1.0
+    if _TEMPERATURE.fullmatch(plain):
+        return "temperature", 1.0
+    return None
+
+
+def file_units(texts: list[str]) -> dict[str, str]:
+    """Units that lines above a table state for all of it: ``length`` and ``angle``."""
+    found: dict[str, str] = {}
+    for text in texts:
+        if re.search(r"unit|einheit", text, re.IGNORECASE):
+            for word in re.findall(r"[A-Za-zµ]+", text):
+                for kind, known in _FILE_UNITS.items():
+                    if (unit := known.get(word.lower())) and (len(word) > 2 or word.islower()):
+                        found.setdefault(kind, unit)
+    return found
+
+
+def kind_of(meaning: str) -> str | None:
+    """Kind of the unit that a meaning has; None where it has none that could be told."""
+    word = meaning.rpartition(" ")[2]
+    if meaning.startswith("joint "):
+        return "angle"
+    if word in ("fx", "fy", "fz", "payload"):
+        return "force"
+    return "length" if word in ("x", "y", "z", "dx", "dy", "dz", "sx", "sy", "sz") else None

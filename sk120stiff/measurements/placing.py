@@ -1,0 +1,326 @@
+"""Where the tracker stands, in closed form: what is left tells bad input before anything else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.registration import Registration, register
+from sk120stiff.robot import Robot
+from sk120stiff.robot.rotations import rotation_vector
+
+FEWEST = 3  # positions that a frame can be registered from
+ROUNDS = 8  # of registering and leaving out what lies far off
+FAR = 8.0  # times the median distance: a wild row
+WILD = 0.2  # share of rows beyond which they are no outliers
+LEAST = 2e-4  # m; no row is wild for less
+FITS = 0.03  # of the spread of the positions: what no calibrated arm leaves after placing
+SUSPECT = 1e-3  # of the spread of the positions: what is worth a look for slips of the pen
+BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
+MARKERS = 4  # up to which every exchange of markers is tried
+LOOKED_AT = 150  # rows that slips are looked for in
+TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
+MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
+
+
+@dataclass(frozen=True, eq=False)
+class Placing:
+    """The rigid robot laid onto the positions.
+
+    Attributes:
+        shift, turn: (3,) [m] and (3,) rotation vector of the base frame as the instrument sees it.
+        marker: (3,) how far markers are off their stated place, tool axes [m].
+        rms: Distance that is left, rows that are wild set aside [m].
+        wild: (N,) rows far off all others.
+        distance: (N,) what is left at each row [m]; NaN where no whole position was read.
+        notes: What is to be said, in sentences.
+    """
+
+    shift: Array
+    turn: Array
+    marker: Array
+    rms: float
+    wild: Mask
+    distance: Array
+    notes: tuple[str, ...] = ()
+
+
+def place(robot: Robot, readings: Measurements) -> Placing | None:
+    """Register the positions; None where fewer than three whole ones were read.
+
+    Raises:
+        InputError: They are not of this robot, or of joints or lengths in other units, of mirrored
+            axes, of columns in another order; the message says which slip would explain it.
+    """
+    said = readings.absolute
+    if said is None or said.channels.position is None:
+        return None
+    x = said.channels.position
+    whole = np.flatnonzero(np.isfinite(x).all(axis=1) & readings.use)
+    if len(whole) < FEWEST:
+        return None
+    free = said.fit_point
+    names = np.array(said.markers)[whole]
+    cloud = _Cloud(robot, readings.joints[whole], x[whole], said.point[whole], names)
+    found, kept = cloud.placed(fit_marker=True)
+    spread = float(np.sqrt(((x[whole] - x[whole].mean(axis=0)) ** 2).sum(axis=1).mean()))
+    if found.rms > SUSPECT * spread:
+        _refuse_slips(cloud, found, readings)
+    if found.rms > FITS * spread:
+        raise _no_such_arm(cloud, found, readings, whole)
+    notes: list[str] = []
+    if not free:
+        stated, at = cloud.placed(fit_marker=False)
+        if stated.rms > MOVED * found.rms and found.marker_fitted:
+            off = ", ".join(f"{1e3 * value:.1f}" for value in found.marker)
+            notes.append(
+                f"The marker seems to sit ({off}) mm off its stated place, tool axes: "
+                f"{1e3 * stated.rms:.2f} mm are left with it where it is stated, "
+                f"{1e3 * found.rms:.2f} mm with it there. Write 'point: {{..., fit: true}}'."
+            )
+        found, kept = stated, at
+    if said.frame == "base":
+        _refuse_other_axes(found, cloud, spread, readings)
+    distance = np.full(readings.n_readings, np.nan)
+    distance[whole] = cloud.left(found)
+    wild = np.zeros(readings.n_readings, dtype=bool)
+    wild[whole[~kept]] = True
+    return Placing(
+        shift=found.shift,
+        turn=rotation_vector(found.turn),
+        marker=found.marker if free else np.zeros(3),
+        rms=found.rms,
+        wild=wild,
+        distance=distance,
+        notes=tuple(notes),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Cloud:
+    """Positions (N, 3) [m], joint values (N, n), stated markers (N, 3) and their names (N,)."""
+
+    robot: Robot
+    a: Array
+    x: Array
+    point: Array
+    marker: NDArray[np.str_]
+
+    def placed(self, *, fit_marker: bool) -> tuple[Registration, Mask]:
+        """The best placing, and the rows that it rests on (N,)."""
+        screws = self.robot.screws(self.a)
+        flange, rotation = screws.frame_position, screws.rotation
+        kept = np.ones(len(self.x), dtype=bool)
+        for _ in range(ROUNDS):
+            found = register(
+                self.x[kept], flange[kept], rotation[kept], self.point[kept], fit_marker=fit_marker
+            )
+            if found is None:
+                raise InputError("fewer than three positions", remedy="Measure more poses.")
+            left = self.left(found)
+            best = found
+            again = left <= max(FAR * float(np.median(left)), LEAST)
+            if (again == kept).all() or again.mean() < 1.0 - WILD:
+                break
+            kept = again
+        return best, kept
+
+    def left(self, found: Registration) -> Array:
+        """(N,) distance of every position from where the placed robot has the marker [m]."""
+        screws = self.robot.screws(self.a)
+        at = screws.frame_position + np.einsum(
+            "nij,nj->ni", screws.rotation, self.point + found.marker
+        )
+        return np.asarray(np.linalg.norm(self.x - at @ found.turn.T - found.shift, axis=1))
+
+    def some(self) -> _Cloud:
+        """A part of the rows, spread over all."""
+        pick = np.unique(np.linspace(0, len(self.x) - 1, LOOKED_AT).astype(int))
+        return replace(
+            self, a=self.a[pick], x=self.x[pick], point=self.point[pick], marker=self.marker[pick]
+        )
+
+
+def _refuse_slips(cloud: _Cloud, found: Registration, readings: Measurements) -> None:
+    """Refuse positions that one slip of the pen explains far better."""
+    where = str(readings.path or "measurements")
+    told = _left(found)
+    few = cloud.some()
+    base = few.placed(fit_marker=True)[0].rms
+    tried = min(_slips(few, readings.joint_names), key=lambda item: item[0])
+    if tried[0] < BETTER * base:
+        _, rms, what, remedy = tried
+        raise InputError(
+            f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
+        )
+    rest, mapping = _zeros_and_signs(few, readings.joint_names)
+    if mapping and rest < BETTER * base:
+        raise InputError(
+            f"{told}. With other zeros or signs of joints {1e3 * rest:.3g} mm are left",
+            where=where,
+            remedy=f"Check the controller's convention. If it is so, write into the YAML file: "
+            f"joints: {{{mapping}}}",
+        )
+
+
+def _left(found: Registration) -> str:
+    return (
+        f"these positions are not where this robot's marker goes: {1e3 * found.rms:.4g} mm are "
+        "left after the best placing of the tracker"
+    )
+
+
+def _no_such_arm(
+    cloud: _Cloud, found: Registration, readings: Measurements, whole: Index
+) -> InputError:
+    """Positions that no placing of this robot gives."""
+    distance = cloud.left(found)
+    worst = np.argsort(-distance)[:3]
+    lines = ", ".join(str(readings.line[whole[k]]) for k in worst)
+    return InputError(
+        f"{_left(found)}, of positions that spread over "
+        f"{1e3 * float(np.ptp(cloud.x, axis=0).max()):.4g} mm",
+        where=f"{readings.path or 'measurements'}, worst in lines {lines}",
+        remedy="Check that they are of this robot, that rows of joints and positions belong "
+        "together, and units, signs and order of the joint columns.",
+    )
+
+
+def _slips(cloud: _Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, str, str]]:
+    """What is left with one slip mended, what it is, and the remedy."""
+    turning = ~np.array(cloud.robot.prismatic)
+
+    def left(a: Array = cloud.a, x: Array = cloud.x) -> float:
+        return replace(cloud, a=a, x=x).placed(fit_marker=True)[0].rms
+
+    for factor, was, unit in (
+        (np.pi / 180.0, "degrees, not radians", "deg"),
+        (180.0 / np.pi, "radians, not degrees", "rad"),
+    ):
+        a = np.where(turning, cloud.a * factor, cloud.a)
+        rms = left(a=a)
+        said = f"The joint angles look like {was}"
+        yield rms, rms, said, f"Write [{unit}] in their headers."
+        for k in np.flatnonzero(turning):
+            a = cloud.a.copy()
+            a[:, k] *= factor
+            rms = left(a=a)
+            said = f"The column of {names[k]} looks like {was}"
+            yield rms, rms, said, f"Write [{unit}] in its header."
+    for factor, unit in ((1e-3, "mm"), (1e3, "m"), (0.0254, "in"), (25.4, "in"), (1e-6, "um")):
+        rms = left(x=cloud.x * factor)
+        yield (
+            rms / factor,
+            rms,
+            f"The positions look {1 / factor:g} times too large, as if in another unit",
+            f"Check the unit of x, y, z: {unit}?",
+        )
+    rms = left(x=cloud.x * np.array([-1.0, 1.0, 1.0]))
+    yield (
+        rms,
+        rms,
+        "The positions look mirrored: one axis has the other sign, or two axes are swapped",
+        "Check signs and order of x, y, z: the tracker's axes are right-handed.",
+    )
+    for i in range(len(names)):
+        for j in range(i + 1, len(names)):
+            a = cloud.a.copy()
+            a[:, [i, j]] = a[:, [j, i]]
+            rms = left(a=a)
+            yield (
+                rms,
+                rms,
+                f"The columns of {names[i]} and {names[j]} look exchanged",
+                "Put the right names over the columns.",
+            )
+    yield from _markers(cloud)
+
+
+def _markers(cloud: _Cloud) -> Iterator[tuple[float, float, str, str]]:
+    """Names of markers exchanged: all ways of a few, pairs of many."""
+    kinds, first = np.unique(cloud.marker, return_index=True)
+    place, count = cloud.point[first], len(kinds)
+    ways = permutations(range(count)) if count <= MARKERS else _pairs(count)
+    for way in ways:
+        moved = [k for k in range(count) if way[k] != k]
+        if not moved:
+            continue
+        point = cloud.point.copy()
+        for k in moved:
+            point[cloud.marker == kinds[k]] = place[way[k]]
+        rms = replace(cloud, point=point).placed(fit_marker=True)[0].rms
+        yield (
+            rms,
+            rms,
+            f"{len(moved)} markers look exchanged: what is written as "
+            + ", ".join(f"{kinds[k]} is {kinds[way[k]]}" for k in moved),
+            "Check the column marker against points.",
+        )
+
+
+def _pairs(count: int) -> Iterator[tuple[int, ...]]:
+    for i in range(count):
+        for j in range(i + 1, count):
+            way = list(range(count))
+            way[i], way[j] = j, i
+            yield tuple(way)
+
+
+def _zeros_and_signs(cloud: _Cloud, names: tuple[str, ...]) -> tuple[float, str]:
+    """What is left with the best zeros (quarter turns) and signs, and how to write them."""
+    n = cloud.a.shape[1]
+    sign, zero = np.ones(n), np.zeros(n)
+    turning = ~np.array(cloud.robot.prismatic)
+
+    def left(sign: Array, zero: Array) -> float:
+        moved = replace(cloud, a=cloud.a * sign + zero)
+        return moved.placed(fit_marker=True)[0].rms
+
+    best = left(sign, zero)
+    for _ in range(n):
+        tried: list[tuple[float, int, float, float]] = []
+        for k in range(n):
+            for s in (1.0, -1.0):
+                for quarter in range(4 if turning[k] else 1):
+                    own_sign, own_zero = sign.copy(), zero.copy()
+                    own_sign[k], own_zero[k] = s, quarter * np.pi / 2
+                    tried.append((left(own_sign, own_zero), k, s, quarter * np.pi / 2))
+        nearest = min(tried)
+        if nearest[0] > 0.9 * best:
+            break
+        best, k, sign[nearest[1]], zero[nearest[1]] = nearest
+    changed = []
+    for k, name in enumerate(names):
+        degrees = (np.degrees(zero[k]) + 180.0) % 360.0 - 180.0
+        if sign[k] < 0.0 or degrees:
+            text = f"{'-' if sign[k] < 0.0 else ''}{name}"
+            changed.append(f"{name}: {text}" + (f" {degrees:+.0f} deg" if degrees else ""))
+    return best, ", ".join(changed).replace(" +", " + ").replace(" -9", " - 9").replace(
+        " -1", " - 1"
+    )
+
+
+def _refuse_other_axes(
+    found: Registration, cloud: _Cloud, spread: float, readings: Measurements
+) -> None:
+    """Positions said to be in base axes must be there."""
+    screws = cloud.robot.screws(cloud.a)
+    at = screws.frame_position + np.einsum("nij,nj->ni", screws.rotation, cloud.point)
+    angle = float(np.linalg.norm(rotation_vector(found.turn)))
+    off = float(np.median(np.linalg.norm(cloud.x - at, axis=1)))
+    if angle < TURNED and off < max(SHIFTED * spread, 10.0 * found.rms):
+        return
+    raise InputError(
+        "these positions are not in axes of the base frame: they are turned by "
+        f"{np.degrees(angle):.1f} deg and {1e3 * off:.4g} mm off",
+        where=str(readings.path or "measurements"),
+        remedy="Write 'position: {frame: unknown}' into the YAML file: the tracker's own axes are "
+        "then found by the fit. Or turn them into base axes.",
+    )

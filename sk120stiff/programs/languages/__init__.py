@@ -1,1 +1,0 @@
-"""Robot languages, one a file."""
