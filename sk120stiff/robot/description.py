@@ -62,6 +62,17 @@ class ClosureRule(_Strict):
     start: dict[str, float] = Field(default_factory=dict)
 
 
+class ControllerRule(_Strict):
+    """How the controller counts: its axes as linear expressions of the joints, and motor pulses.
+
+    ``axes: {A1: -joint_1, A2: joint_2 - 90 deg}``; pulses per degree, per mm of a slide, in their
+    order. Without the key the axes are the actuated joints.
+    """
+
+    axes: dict[str, str] = Field(default_factory=dict)
+    pulses_per_degree: tuple[float, ...] = ()
+
+
 class RobotDescription(_Strict):
     """The keys of `robot.yaml`; every one has a default."""
 
@@ -76,6 +87,7 @@ class RobotDescription(_Strict):
     closures: tuple[ClosureRule, ...] = ()
     linkages: tuple[LinkageRule, ...] = ()
     foundation: Foundation | None = None
+    controller: ControllerRule = Field(default_factory=ControllerRule)
     notes: str = ""
 
 

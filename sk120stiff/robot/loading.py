@@ -206,6 +206,7 @@ def assemble(
             Linkage(rule.rod, rule.drivers, rule.corners) for rule in description.linkages
         ),
         foundation=_foundation(description, tree, base_frame),
+        controller=description.controller,
         notes=description.notes.strip(),
     )
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.robot.description import ControllerRule
 from sk120stiff.robot.kinematics.coupling import Coupling, Follower
 from sk120stiff.robot.kinematics.screws import Mechanism, Screws
 from sk120stiff.robot.kinematics.tree import Tree
@@ -58,6 +59,7 @@ class Robot:
         followers: Mimic rule of every coupled joint.
         foundation: (3,) point of the base frame about which the base rocks [m].
         gravity: (3,) acceleration in axes of the URDF's root [m/s²].
+        controller: How the controller counts the joints, for robot programs.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Robot:
     foundation: Array = field(default_factory=lambda: np.zeros(3))
     gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -STANDARD_GRAVITY]))
     linkages: tuple[Linkage, ...] = ()
+    controller: ControllerRule = field(default_factory=ControllerRule)
     notes: str = ""
 
     def __repr__(self) -> str:

@@ -7,11 +7,13 @@
 
 ``point`` is any label. Moments ``mx my mz`` are optional, and so is the orientation: without it
 only the position is meant. Everything is in base axes; roll, pitch and yaw are as in a URDF.
-Further columns are kept as they are.
+``feed[mm/min]`` and ``rapid`` (1: a rapid move) go into robot programs. Further columns are kept as
+they are.
 """
 
 from __future__ import annotations
 
+import csv
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -25,7 +27,7 @@ from sk120stiff.files import guarded_cell, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy
-from sk120stiff.units import from_si
+from sk120stiff.units import from_si, is_kind, to_si
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 
@@ -46,6 +48,8 @@ class LoadedPath:
         joints: (N, n) joint coordinates, where the file gives them [rad or m].
         position, rotation: (N, 3) and (N, 3, 3) of the tool, where the file gives them [m].
         table: The file.
+        feed: (N,) speed on the way to each point [m/s], NaN where the file does not say.
+        rapid: (N,) is the move to the point a rapid one?
     """
 
     wrench: Array
@@ -53,6 +57,8 @@ class LoadedPath:
     position: Array | None
     rotation: Array | None
     table: Table
+    feed: Array
+    rapid: Mask
 
     @property
     def count(self) -> int:
@@ -60,21 +66,25 @@ class LoadedPath:
         return len(self.wrench)
 
 
-def read_path(path: str | os.PathLike[str], robot: Robot) -> LoadedPath:
+def read_path(
+    path: str | os.PathLike[str],
+    robot: Robot,
+    *,
+    wrench: Array | None = None,
+    part: Array | None = None,
+) -> LoadedPath:
     """Read a path.
+
+    Args:
+        wrench: (6,) the load at every point, where the file holds none [N, N·m].
+        part: (4, 4) where the axes of its places lie in the base [m].
 
     Raises:
         InputError: The file cannot be read, or columns are missing, doubled or without unit.
     """
     table = read_table(Path(path))
     has = set(table.headers)
-    missing = [name for name in FORCES if name not in has]
-    if missing:
-        raise InputError(
-            f"the column {missing[0]!r} is missing",
-            where=table.place(missing[0]),
-            remedy="Give the force on the robot as fx[N], fy[N], fz[N]; zeros where nothing acts.",
-        )
+    loads = _loads(table, wrench)
     by_joint = [name for name in robot.actuated if name in has]
     by_place = [name for name in POSITIONS if name in has and name not in robot.actuated]
     if bool(by_joint) == bool(by_place):
@@ -86,22 +96,55 @@ def read_path(path: str | os.PathLike[str], robot: Robot) -> LoadedPath:
             remedy=f"Give the columns {', '.join(f'{j}[deg]' for j in robot.actuated)}, or x[mm], "
             "y[mm], z[mm].",
         )
-    moments = np.zeros((len(table.lines), 3))
-    if has & set(MOMENTS):
-        moments = _columns(table, MOMENTS, "moment")
-    wrench = np.column_stack([_columns(table, FORCES, "force"), moments])
+    count = len(table.lines)
+    feed, rapid = np.full(count, np.nan), np.zeros(count, dtype=bool)
+    if is_kind(table.column_units.get("feed") or "", "m/s"):
+        feed = table.quantity("feed", "m/s", allow_blank=True)
+    if "rapid" in has and set(table.cells["rapid"]) <= {"0", "1", ""}:
+        rapid = np.array([cell == "1" for cell in table.cells["rapid"]])
     if by_joint:
+        if part is not None:
+            raise InputError("a path by joints lies in no frame", where=str(table.path))
         joints = np.column_stack(
             [
                 _column(table, name, kind)
                 for name, kind in zip(robot.actuated, robot.kinds, strict=True)
             ]
         )
-        return LoadedPath(wrench, joints, None, None, table)
+        return LoadedPath(loads, joints, None, None, table, feed, rapid)
     rotation = None
     if has & set(ANGLES):
         rotation = np.array([rotation_from_rpy(row) for row in _columns(table, ANGLES, "angle")])
-    return LoadedPath(wrench, None, _columns(table, POSITIONS, "length"), rotation, table)
+    position = _columns(table, POSITIONS, "length")
+    if part is not None:
+        position = position @ part[:3, :3].T + part[:3, 3]
+        rotation = None if rotation is None else part[:3, :3] @ rotation
+    return LoadedPath(loads, None, position, rotation, table, feed, rapid)
+
+
+def _loads(table: Table, constant: Array | None) -> Array:
+    """(N, 6) of the columns, or the constant one where there are none."""
+    has = set(table.headers)
+    if constant is not None and not has & {*FORCES, *MOMENTS}:
+        return np.tile(constant, (len(table.lines), 1))
+    if constant is not None:
+        raise InputError(
+            "the path holds forces, and a load is given besides",
+            where=str(table.path),
+            remedy="Leave --wrench out, or delete the columns.",
+        )
+    missing = [name for name in FORCES if name not in has]
+    if missing:
+        raise InputError(
+            f"the column {missing[0]!r} is missing",
+            where=table.place(missing[0]),
+            remedy="Give the force on the robot as fx[N], fy[N], fz[N], zeros where nothing acts; "
+            "or one for all points by --wrench.",
+        )
+    moments = np.zeros((len(table.lines), 3))
+    if has & set(MOMENTS):
+        moments = _columns(table, MOMENTS, "moment")
+    return np.column_stack([_columns(table, FORCES, "force"), moments])
 
 
 def joints_along(
@@ -138,7 +181,7 @@ def joints_along(
     for first in _branches(arm, task.rows(np.array([0])), start, stays_above):
         joints, end = _followed(arm, task, first, progress)
         if end == path.count:
-            return joints
+            return without_turns(arm, joints)
         lost = max(lost, end)
         if start is not None:
             break
@@ -176,6 +219,21 @@ def _branches(
     if start is None and stays_above is not None and len(found):
         sinks = ~stays_above(found)
     return np.asarray(found[np.lexsort((distance, sinks))])
+
+
+def without_turns(arm: ElasticArm, joints: Array) -> Array:
+    """(N, n) the same poses, each within half a turn of the one before it where limits allow it.
+
+    Inverse kinematics finds a turning joint up to whole turns; a robot that moves by joints makes
+    them.
+    """
+    a = joints.copy()
+    turns = ~np.asarray(arm.slides)
+    for k in range(1, len(a)):
+        whole = 2.0 * np.pi * np.round((a[k - 1] - a[k]) / (2.0 * np.pi))
+        near = a[k] + whole
+        a[k] = np.where(turns & (near >= arm.lower) & (near <= arm.upper), near, a[k])
+    return a
 
 
 def _followed(
@@ -217,6 +275,8 @@ def write_joints(
 ) -> Path:
     """Write a path with other joint coordinates, in the units of the file it was read from.
 
+    What is written is held against the coordinates before the file takes its place.
+
     Args:
         notes: Further columns as text, header → N cells; they replace columns of that name.
     """
@@ -237,6 +297,12 @@ def write_joints(
     merged = {**{header: kept.pop(header) for header in labels}, **columns, **kept, **notes}
     rows = [",".join(_cell(text) for text in row) for row in zip(*merged.values(), strict=True)]
     text = "\n".join([",".join(_cell(header) for header in merged), *rows]) + "\n"
+    written = list(csv.DictReader(text.splitlines()))
+    for k, (header, kind) in enumerate(zip(columns, robot.kinds, strict=True)):
+        unit = header.partition("[")[2].rstrip("]")
+        read = to_si([float(row[header]) for row in written], unit, kind)
+        if not np.allclose(read, joints[:, k], rtol=1e-9, atol=1e-9):
+            raise RuntimeError(f"{header} is written otherwise than it was meant")
     return write_atomically(target, text)
 
 

@@ -1,0 +1,166 @@
+"""The path that `compensate` is given, with what the command line says of part, tool and load."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.programs import READERS
+from sk120stiff.programs.bad_targets import turned_over
+from sk120stiff.programs.placing import TOOL_DOWN, part_frame, placed, tool_rotation
+from sk120stiff.robot import Robot
+from sk120stiff.robot.rotations import rotation_from_rpy
+from sk120stiff.units import parse_size, parse_wrench
+from sk120stiff.workspace import LoadedPath, read_path
+
+CHORD = "10 um"
+
+
+class LoadAxes(StrEnum):
+    """In which axes loads are stated."""
+
+    base = "base"
+    tool = "tool"
+
+
+@dataclass(frozen=True)
+class PathOptions:
+    """Options as they were written; None where nobody gave them."""
+
+    frame: str | None
+    wrench: str | None
+    load_axes: LoadAxes
+    tool_rpy: str | None
+    chord: str | None
+    step: str | None
+
+
+class OpenedPath(NamedTuple):
+    """A path in base axes.
+
+    Attributes:
+        path: The points.
+        part: (4, 4) where its axes lie in the base.
+        facts: Sentences about what was assumed.
+        turned: The path with the tool turned about its own axis [rad], where that is free.
+    """
+
+    path: LoadedPath
+    part: Array
+    facts: tuple[str, ...]
+    turned: Callable[[float], LoadedPath] | None = None
+
+
+def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
+    """Read a CSV path, G-code or APT, by the ending of its name.
+
+    Raises:
+        InputError: It cannot be read, or an option does not fit it.
+    """
+    part = np.eye(4) if options.frame is None else part_frame(options.frame)
+    wrench = None if options.wrench is None else parse_wrench(options.wrench, where="--wrench")
+    load = "the load of the file" if wrench is None else f"load {options.wrench}"
+    lies = "that of the base" if options.frame is None else options.frame
+    facts = (f"Part's frame: {lies}.", f"Load: {load}, {options.load_axes.value} axes.")
+    reader = READERS.get(file.suffix.lower())
+    if reader is None:
+        for option, value in (("--tool-rpy", options.tool_rpy), ("--chord", options.chord),
+                              ("--step", options.step)):  # fmt: skip
+            if value is not None:
+                raise InputError(
+                    "this belongs to a machining program, and the path is a CSV file",
+                    where=option,
+                    remedy="Paths in G-code end in .nc, .ngc, .tap, … and APT in .apt, .cls.",
+                )
+        moved = None if options.frame is None else part
+        return OpenedPath(read_path(file, robot, wrench=wrench, part=moved), part, facts)
+    if wrench is None:
+        raise InputError(
+            "a machining program holds no load",
+            where=str(file),
+            remedy="Give the load at all its points: --wrench '0,0,-490 N'.",
+        )
+    chord = parse_size(options.chord or CHORD, "length", where="--chord", like=CHORD)
+    step = np.inf
+    if options.step is not None:
+        step = parse_size(options.step, "length", where="--step", like="10 mm")
+    tool = tool_rotation(options.tool_rpy or TOOL_DOWN)
+    read = reader(file, chord=chord, step=step)
+    if read.left_out:
+        words = ", ".join(
+            f"{word} (line {line})" for word, line in list(read.left_out.items())[:12]
+        )
+        more = len(read.left_out) - 12
+        warnings.warn(
+            f"words that do not move the tool are not carried over: {words}"
+            + (f" and {more} more" if more > 0 else ""),
+            ToolkitWarning,
+            stacklevel=2,
+        )
+    said = (
+        "The tool's orientation is free."
+        if tool is None
+        else f"Tool in the part's axes: roll, pitch, yaw {options.tool_rpy or TOOL_DOWN}"
+        + (", turned to the axis that the path states." if read.axis is not None else ".")
+    )
+    arcs = f"Arcs: chords within {options.chord or CHORD}."
+
+    def turned(angle: float) -> LoadedPath:
+        about = None if tool is None else tool @ rotation_from_rpy(np.array([0.0, 0.0, angle]))
+        return placed(read, part, about, wrench)
+
+    free = options.tool_rpy is None
+    return OpenedPath(turned(0.0), part, (*facts, said, arcs), turned if free else None)
+
+
+def with_joints(
+    opened: OpenedPath, robot: Robot, find: Callable[[LoadedPath], Array]
+) -> tuple[OpenedPath, Array]:
+    """The path with its joints (N, n), the tool turned about its axis where that is needed.
+
+    A machining program leaves that turn open. Zero is tried first, then half and quarter turns:
+    the first at which the whole path is reached and no joint has to pass a limit.
+
+    Args:
+        find: Joints of a path; refuses where a point cannot be reached.
+
+    Raises:
+        Refusal: A point cannot be reached, however the tool is turned.
+    """
+    found: tuple[OpenedPath, Array] | None = None
+    refused: Refusal | None = None
+    for degrees in (0, 180, 90, -90) if opened.turned else (0,):
+        path = opened.turned(np.radians(degrees)) if opened.turned and degrees else opened.path
+        try:
+            a = find(path)
+        except Refusal as error:
+            refused = refused or error
+            continue
+        said = f"The tool is turned by {degrees} deg about its axis, which keeps joints from "
+        facts = (*opened.facts, f"{said}their limits.") if degrees else opened.facts
+        here = opened._replace(path=path, facts=facts), a
+        if not turned_over(robot, a).any():
+            return here
+        found = found or here
+    if found is None:
+        raise refused or Refusal("the arm cannot reach this path")
+    return found
+
+
+def with_load_in_base(
+    path: LoadedPath, robot: Robot, a: Array, axes: LoadAxes, frame: str | None
+) -> LoadedPath:
+    """The path with its loads in base axes; the tool stands at joints (N, n)."""
+    if axes == LoadAxes.base:
+        return path
+    R = robot.placement(a, frame)[:, :3, :3]
+    turned = [np.einsum("nij,nj->ni", R, path.wrench[:, k : k + 3]) for k in (0, 3)]
+    return replace(path, wrench=np.concatenate(turned, axis=1))

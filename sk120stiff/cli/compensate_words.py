@@ -1,0 +1,197 @@
+"""What `compensate` says: of the branch, of what remains, and of how sure it is."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.cli.tables import table
+from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
+from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.model import Model
+from sk120stiff.model.prediction_table import blame_reason
+from sk120stiff.robot import Robot
+from sk120stiff.units import parse_values
+from sk120stiff.workspace import (
+    Branch,
+    Compensation,
+    LoadedPath,
+    Standing,
+    StandingUncertainty,
+    lowest_floor,
+)
+
+LISTED = 10  # points that people are shown
+
+
+def doubt_notes(doubt: StandingUncertainty | None) -> dict[str, list[str]]:
+    """Columns of the file; blank where nothing is known."""
+    if doubt is None:
+        return {}
+    columns = {"after_std_parameters[um]": doubt.std_parameters}
+    if doubt.std_remainder is not None:
+        columns["after_std_remainder[um]"] = doubt.std_remainder
+    return {
+        name: [f"{x * 1e6:.4f}" if np.isfinite(x) else "" for x in std]
+        for name, std in columns.items()
+    }
+
+
+def doubt_keys(doubt: StandingUncertainty | None) -> dict[str, object]:
+    """The key `uncertainty`, what it adds to that of other commands."""
+    if doubt is None:
+        return {}
+    left = doubt.std_remainder
+    return {
+        "after_std_parameters_um": root_mean_square(doubt.std_parameters) * 1e6,
+        "after_std_remainder_um": None if left is None else root_mean_square(left) * 1e6,
+        "unknown_because": blame_reason(doubt.blame) or None,
+    }
+
+
+def doubt_words(model: Model, doubt: StandingUncertainty | None) -> list[str]:
+    """How far off the corrected tool may stand in truth."""
+    if doubt is None:
+        return sentences(model, None, None)
+    if doubt.blame:
+        return [f"How far off it stands in truth is unknown: it {blame_reason(doubt.blame)}."]
+    own, left = root_mean_square(doubt.std_parameters), 0.0
+    words = f"{own * 1e6:.2g} µm from the parameters"
+    if doubt.std_remainder is None:
+        words += f"; {NO_REMAINDER}"
+    else:
+        left = root_mean_square(doubt.std_remainder)
+        words += f", {left * 1e6:.2g} µm from what the model leaves unexplained"
+    return [f"After ± {np.hypot(own, left) * 1e6:.2g} µm: one standard distance, {words}."]
+
+
+def root_mean_square(std: Array) -> float:
+    """Over the points that have an equilibrium; infinite if one of them is unknown."""
+    there = std[~np.isnan(std)]
+    return float(np.sqrt(np.mean(there**2))) if len(there) else float("nan")
+
+
+def floor_of(robot: Robot, text: str | None, path: LoadedPath) -> float:
+    """The height that --floor names [m], else that of the base or of the path."""
+    if text is None:
+        heights = None if path.position is None else path.position[:, 2]
+        return lowest_floor(robot, path.joints, heights)
+    return float(parse_values(text, "length", where="--floor", like="-0.3 m")[0])
+
+
+def warn_of_branch(branch: Branch, path: LoadedPath) -> None:
+    """Warn of joints below the floor, and of jumps between points."""
+    lines = path.table.lines
+    if branch.below:
+        warnings.warn(
+            f"at {branch.below} of {path.count} points a joint of the arm lies below the floor "
+            f"({1e3 * branch.floor:.0f} mm): {branch.lowest_joint} at "
+            f"{1e3 * branch.lowest:.0f} mm, line {lines[branch.lowest_point]}. Choose another "
+            "branch with --start, or say where the floor is with --floor",
+            ToolkitWarning,
+            stacklevel=2,
+        )
+    for k in branch.jumps[:1]:
+        warnings.warn(
+            f"between lines {lines[k]} and {lines[k + 1]} (and {len(branch.jumps) - 1} more pairs) "
+            "a joint moves by more than 30 deg (or 0.5 m): the arm changes its posture there",
+            ToolkitWarning,
+            stacklevel=2,
+        )
+
+
+def branch_keys(branch: Branch, path: LoadedPath, robot: Robot) -> dict[str, object]:
+    """The key `branch`."""
+    return {
+        "first": dict(zip(robot.actuated, branch.first.tolist(), strict=True)),
+        "elbow": branch.elbow,
+        "elbow_up": branch.elbow_up if branch.elbow else None,
+        "elbow_height_m": branch.elbow_height,
+        "lowest_m": branch.lowest,
+        "lowest_joint": branch.lowest_joint,
+        "lowest_line": path.table.lines[branch.lowest_point],
+        "floor_m": branch.floor,
+        "points_below_floor": branch.below,
+        "jumps_after_lines": [path.table.lines[k] for k in branch.jumps],
+    }
+
+
+def branch_words(branch: Branch, robot: Robot) -> str:
+    """The posture in one sentence or two."""
+    values = ", ".join(
+        f"{name} {1e3 * x:.0f} mm" if slides else f"{name} {np.degrees(x):.1f}°"
+        for name, x, slides in zip(robot.actuated, branch.first, robot.prismatic, strict=True)
+    )
+    elbow = "stretched"
+    if branch.elbow:
+        side = "up" if branch.elbow_up else "down"
+        elbow = f"elbow {side} ({branch.elbow} {1e3 * branch.elbow_height:.0f} mm high)"
+    return (
+        f"Branch at the first point: {elbow}; {values}. Lowest joint along the path: "
+        f"{branch.lowest_joint}, {1e3 * branch.lowest:.0f} mm."
+    )
+
+
+def movable_joints(model: Model, text: str) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """(n,) joints that --only names."""
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    unknown = [name for name in names if name not in model.robot.actuated]
+    if unknown or not names:
+        raise InputError(
+            f"{unknown[0]!r} is no actuated joint" if unknown else "no joint is named",
+            where="--only",
+            remedy=f"Joints are: {', '.join(model.robot.actuated)}.",
+        )
+    return np.array([joint in names for joint in model.robot.actuated])
+
+
+def rms(where: Standing) -> float:
+    """Over the points that have an equilibrium [m]; NaN if none has."""
+    distances = where.distance[where.exists]
+    return float(np.sqrt(np.mean(distances**2))) if len(distances) else float("nan")
+
+
+def largest(values: Array) -> float:
+    """The largest finite value; NaN if there is none."""
+    finite = values[np.isfinite(values)]
+    return float(finite.max()) if len(finite) else float("nan")
+
+
+def notes(found: Compensation, doubt: dict[str, list[str]]) -> dict[str, list[str]]:
+    """Columns of the CSV file: what was off, what is, and why."""
+
+    def micrometres(where: Standing) -> list[str]:
+        return ["" if np.isnan(d) else f"{d * 1e6:.4f}" for d in where.distance]
+
+    return {
+        "before[um]": micrometres(found.before),
+        "after[um]": micrometres(found.after),
+        **doubt,
+        "remark": list(found.reasons),
+    }
+
+
+def parts(document: dict[str, object], path: LoadedPath, found: Compensation) -> list[object]:
+    """The answer for people: figures, file, and points that are not fully corrected."""
+    told: list[object] = [
+        f"{document['rows']} points. Off its place before: {document['before_um']:.1f} µm rms, "
+        f"{document['before_max_um']:.1f} at most; after: {document['after_um']:.3g} µm rms, "
+        f"{document['after_max_um']:.3g} at most (judged by {document['judged_by']}).",
+        f"Written: {document['out']}",
+    ]
+    left = [k for k, reason in enumerate(found.reasons) if reason]
+    if left:
+        rows = [
+            (
+                str(path.table.lines[k]),
+                found.before.distance[k] * 1e6,
+                found.after.distance[k] * 1e6,
+                found.reasons[k],
+            )
+            for k in left[:LISTED]
+        ]
+        title = f"Not fully corrected: {len(left)} of {path.count} points"
+        told.append(table(title, ("line", "before [µm]", "after [µm]", "why"), rows))
+    return told

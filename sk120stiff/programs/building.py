@@ -1,0 +1,93 @@
+"""Corrected joints as a program: controller's axes, placements, speeds, and the header."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.programs.controller import controller_axes, convention
+from sk120stiff.programs.language import Language
+from sk120stiff.programs.program import Program
+from sk120stiff.robot import Robot
+from sk120stiff.workspace import LoadedPath
+
+
+def speeds(path: LoadedPath, feed: float, rapid: float) -> Array:
+    """(N,) speed on the way to each point [m/s]; `feed` where the file says nothing."""
+    said = np.where(np.isnan(path.feed), feed, path.feed)
+    return np.where(path.rapid, rapid, said)
+
+
+def build(
+    language: Language,
+    out: Path,
+    path: LoadedPath,
+    robot: Robot,
+    a: Array,
+    *,
+    frame: str | None,
+    part: Array,
+    feed: float,
+    rapid: float,
+    by_joints: bool,
+    given: Mapping[str, str],
+    facts: Sequence[str],
+    date: str,
+) -> Program:
+    """The program of corrected joints (N, n) [rad or m].
+
+    Args:
+        frame: Whose places are written; the tool frame by default.
+        part: (4, 4) part in the base: the frame of the places where the language has one.
+        feed, rapid: Speeds where the path states none, and of rapid moves [m/s].
+        given: Settings of the language that somebody has made.
+        facts: Sentences for the header: model, data, branch.
+
+    Raises:
+        InputError: A setting that the language does not have, or axes that are none.
+    """
+    settings = language.with_defaults(_with_pulses(language, robot, given))
+    axes, slides, values = controller_axes(robot, a)
+    place = robot.placement(a, frame)
+    in_part = language.in_part_frame(settings)
+    if in_part:
+        place = np.linalg.inv(part) @ place
+    told = [f"{key}={value or 'none'}" for key, value in settings.items()]
+    header = [
+        *facts,
+        f"Places: frame {frame or robot.tool_frame} in "
+        + ("the part's frame" if in_part else f"the robot's frame {robot.base_frame}")
+        + "; the controller's tool and frame must be the same.",
+        f"Joints: {convention(robot)}.",
+        f"Speeds: {60e3 * feed:g} mm/min where the path says none, rapid moves {60e3 * rapid:g} "
+        "mm/min.",
+        *(["Settings: " + "; ".join(told) + "."] if told else []),
+        "Every move ends in a stop at its target."
+        if language.name != "gcode"
+        else "The tool keeps the orientation of the path.",
+    ]
+    return Program(
+        name=out.stem,
+        header=tuple(header),
+        axes=axes,
+        slides=slides,
+        joints=values,
+        position=place[:, :3, 3],
+        rotation=place[:, :3, :3],
+        speed=speeds(path, feed, rapid),
+        rapid=path.rapid,
+        lines=np.array(path.table.lines, dtype=np.intp),
+        by_joints=by_joints,
+        settings=settings,
+        date=date,
+    )
+
+
+def _with_pulses(language: Language, robot: Robot, given: Mapping[str, str]) -> dict[str, str]:
+    known = robot.controller.pulses_per_degree
+    if "pulses" in language.settings and known:
+        return {"pulses": ",".join(f"{x:.12g}" for x in known), **given}
+    return dict(given)

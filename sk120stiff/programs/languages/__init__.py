@@ -1,0 +1,1 @@
+"""Robot languages, one a file."""

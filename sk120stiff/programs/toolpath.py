@@ -1,0 +1,164 @@
+"""A path as a machining program states it: points, feeds and the tool's axis, in the part's axes.
+
+A reader drives a `Course`: it says where the tool goes, the course cuts arcs and long moves into
+points and remembers the line of the file that each belongs to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.errors import InputError
+from sk120stiff.programs.arcs import arc_points
+
+MOST_POINTS = 500_000  # of one path
+
+
+@dataclass(frozen=True, eq=False)
+class ToolPath:
+    """N points of the tool's tip, axes of the part.
+
+    Attributes:
+        source: The file.
+        position: (N, 3) [m].
+        axis: (N, 3) unit vector from the tip to the shank, where the file states one.
+        feed: (N,) on the way to the point [m/s]; NaN where the file does not say.
+        rapid: (N,) is the move to the point a rapid one?
+        lines: (N,) line of the file.
+        left_out: Words that do not move the tool and are not carried over, with their first line.
+    """
+
+    source: Path
+    position: Array
+    axis: Array | None
+    feed: Array
+    rapid: Mask
+    lines: Index
+    left_out: dict[str, int]
+
+    @property
+    def count(self) -> int:
+        """Number of points N."""
+        return len(self.position)
+
+
+@dataclass
+class Course:
+    """Points of a path while its file is being read.
+
+    Attributes:
+        source: The file, for messages.
+        chord: How far a chord of an arc may be off it [m].
+        step: Longest distance between points of a feed move [m].
+        here: (3,) where the tool is [m]; NaN in an axis that nobody has named.
+    """
+
+    source: Path
+    chord: float
+    step: float = np.inf
+    here: Array = field(default_factory=lambda: np.full(3, np.nan))
+    position: list[Array] = field(default_factory=list)
+    axes: list[Array] = field(default_factory=list)
+    feed: list[float] = field(default_factory=list)
+    rapid: list[bool] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+    left_out: dict[str, int] = field(default_factory=dict)
+
+    def leave_out(self, word: str, line: int) -> None:
+        """Remember a word that is not carried over."""
+        self.left_out.setdefault(word, line)
+
+    def wrong(self, what: str, line: int, remedy: str | None = None) -> InputError:
+        """The error of one line."""
+        return InputError(what, where=f"{self.source}, line {line}", remedy=remedy)
+
+    def straight(
+        self, end: Array, line: int, *, feed: float, rapid: bool, axis: Array | None = None
+    ) -> None:
+        """Move to `end` (3,); it becomes a point once all its coordinates are known."""
+        start, known = self.here, bool(np.isfinite(self.here).all())
+        self.here = end
+        if not np.isfinite(end).all():
+            if not rapid:
+                raise self.wrong(
+                    "the tool feeds before it is known where it stands",
+                    line,
+                    "Begin with a rapid move that names X, Y and Z.",
+                )
+            return
+        pieces = 1
+        if known and not rapid and np.isfinite(self.step):
+            pieces = max(1, int(np.ceil(np.linalg.norm(end - start) / self.step - 1e-9)))
+        share = np.arange(1, pieces + 1)[:, None] / pieces
+        points = np.array([end]) if pieces == 1 else start + share * (end - start)
+        points[-1] = end
+        self._add(points, line, feed, rapid, axis)
+
+    def arc(
+        self,
+        end: Array,
+        centre: Array,
+        normal: Array,
+        line: int,
+        *,
+        feed: float,
+        turns: int = 1,
+        axis: Array | None = None,
+    ) -> None:
+        """Turn right-handed about `normal` (3,) through `centre` (3,) to `end` (3,)."""
+        if not np.isfinite(self.here).all():
+            raise self.wrong("an arc begins where the tool is not known to stand", line)
+        points = arc_points(
+            self.here, end, centre, normal, turns=turns, chord=self.chord, most=MOST_POINTS
+        )
+        if isinstance(points, str):
+            raise self.wrong(points, line)
+        self.here = end
+        self._add(points, line, feed, False, axis)
+
+    def _add(self, points: Array, line: int, feed: float, rapid: bool, axis: Array | None) -> None:
+        count = len(points)
+        if len(self.position) + count > MOST_POINTS:
+            raise self.wrong(
+                f"the path has more than {MOST_POINTS} points",
+                line,
+                "Allow a larger --chord or --step, or cut the path into parts.",
+            )
+        if axis is not None:
+            before = self.axes[-1] if self.axes else axis
+            share = np.arange(1, count + 1)[:, None] / count
+            between = before + share * (axis - before)
+            length = np.linalg.norm(between, axis=1, keepdims=True)
+            if length.min() < 1e-6:
+                raise self.wrong("the tool's axis turns over within one move", line)
+            self.axes += list(between / length)
+        self.position += list(points)
+        self.feed += [feed] * count
+        self.rapid += [rapid] * count
+        self.lines += [line] * count
+
+    def path(self) -> ToolPath:
+        """What was read.
+
+        Raises:
+            InputError: Nothing moved.
+        """
+        if not self.position:
+            raise InputError(
+                "the program moves nothing",
+                where=str(self.source),
+                remedy="It needs moves: G0, G1, G2, G3 in G-code, GOTO in an APT or CLS file.",
+            )
+        return ToolPath(
+            source=self.source,
+            position=np.array(self.position),
+            axis=np.array(self.axes) if self.axes else None,
+            feed=np.array(self.feed),
+            rapid=np.array(self.rapid, dtype=bool),
+            lines=np.array(self.lines, dtype=np.intp),
+            left_out=self.left_out,
+        )
