@@ -62,7 +62,7 @@ class Source:
 
 
 class Guess(NamedTuple):
-    """How sure an importer is that a file is its own (0 to 1), and why."""
+    """How sure an importer is that a file is its own (0 to 1: beyond doubt), and why."""
 
     confidence: float
     why: str = ""
@@ -179,7 +179,13 @@ class Formats:
             raise InputError(
                 f"no format is called {name!r}", where="--format", remedy=f"There are {names}."
             )
-        guesses = [(guess, i) for i in self if (guess := i.sniff(source)).confidence > 0.0]
+        guesses = []
+        for importer in self:
+            guess = importer.sniff(source)
+            if guess.confidence == 1.0:  # it is no text, and no other need look
+                return importer, guess.why
+            if guess.confidence > 0.0:
+                guesses.append((guess, importer))
         if not guesses:
             raise InputError(
                 "no format that is known fits this file",

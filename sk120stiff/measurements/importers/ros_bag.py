@@ -98,7 +98,7 @@ def _sheet(
     others: str,
 ) -> Sheet:
     def column(header: str, meaning: str, unit: str, cells: Sequence[float]) -> Column:
-        return Column(header, meaning, unit, "the format prescribes it", tuple(map(repr, cells)))
+        return Column(header, meaning, unit, "REP 103", tuple(map(repr, cells)))
 
     stamps = np.array([stamp for stamp, _, _ in points])
     xyz = np.array([position for _, position, _ in points])

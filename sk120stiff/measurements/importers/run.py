@@ -164,9 +164,9 @@ def _sheet(
     joints_file: Path | None,
     loads_file: Path | None,
 ) -> Sheet:
-    opened = _opened(source)
-    importer, why = formats.chosen(opened, name)
-    sheet = importer.read(opened)
+    whole = opened(source)
+    importer, why = formats.chosen(whole, name)
+    sheet = importer.read(whole)
     if why == "as told":
         sheet = dataclasses.replace(sheet, title=importer.title, why=why)
     others: list[tuple[Role, Path | None]] = [("joints", joints_file), ("loads", loads_file)]
@@ -176,12 +176,12 @@ def _sheet(
     for role, path in others:
         if path is None:
             continue
-        more = _opened(Source(path, source.actuated, role))
+        more = opened(Source(path, source.actuated, role))
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
     return sheet
 
 
-def _opened(source: Source) -> Source:
+def opened(source: Source) -> Source:
     """The source with its rows, where a workbook or a MATLAB file holds them."""
     if is_workbook(source.data):
         return dataclasses.replace(source, given=workbook_grid(source))

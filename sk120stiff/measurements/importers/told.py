@@ -66,7 +66,8 @@ def unit_of(sheet: Sheet, column: Column, kind: str, told: Told) -> str:
     if column.unit == "SI":
         return units.KINDS[kind][0][0]
     if column.stated == PRESCRIBED and said is None:
-        return "mm" if kind == "length" else str(column.unit)
+        turns = kind == "length" and column.unit == "deg"  # a joint that slides
+        return "mm" if turns else str(column.unit)
     written = None if column.stated == PRESCRIBED else column.unit
     if written is None and said is None:
         raise InputError(

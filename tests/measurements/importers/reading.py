@@ -5,6 +5,7 @@ from typing import Any
 
 from sk120stiff.measurements.importers import FORMATS, Sheet, Source, Told
 from sk120stiff.measurements.importers.drafting import Draft, drafted
+from sk120stiff.measurements.importers.run import opened
 
 SIX = tuple(f"joint_{k}" for k in range(1, 7))
 
@@ -15,7 +16,7 @@ def sheet_of(
     """The readings, in the format that the content tells; the name of the file tells nothing."""
     path = folder / "file"
     path.write_bytes(content.encode() if isinstance(content, str) else content)
-    source = Source(path, joints, **known)
+    source = opened(Source(path, joints, **known))
     return FORMATS.chosen(source)[0].read(source)
 
 
