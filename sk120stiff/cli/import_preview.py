@@ -201,7 +201,7 @@ def _placing(found: Imported, robot: Robot) -> list[object]:
         )
     turn, shift, std = rotation_vector(fitted.turn), fitted.shift, fitted.std
     rows = [
-        (f"{what} {axis} [{unit}]", scale * float(value), scale * float(error))
+        (f"{what} {axis} [{unit}]", f"{scale * value:.4f}", f"{scale * error:.4f}")
         for what, unit, scale, values, errors in (
             ("shift", "mm", 1e3, shift, std[3:]), ("turn", "mrad", 1e3, turn, std[:3]),
         )

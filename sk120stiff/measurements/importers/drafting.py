@@ -17,6 +17,7 @@ from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
 from sk120stiff.measurements.importers.told import (
     Told,
     numbers,
+    plain,
     quantity,
     refuse_other_joints,
     texts,
@@ -208,7 +209,7 @@ def _sigmas(sheet: Sheet, told: Told, unit: str, reasons: dict[int, str]) -> _Gr
         own = column.unit
         if own is None:
             notes = [*notes[:1], f"Uncertainties are in {unit}, as the positions are."]
-        found.append((column, f"{name}[{own or unit}]", texts(used)))
+        found.append((column, f"{name}[{plain(own or unit)}]", texts(used)))
     return found, notes
 
 

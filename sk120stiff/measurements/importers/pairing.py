@@ -72,7 +72,7 @@ def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
             *points.notes,
             f"The {what} are those of {other.path.name}, matched by {how}: {len(rows)} readings. "
             f"Recognised as {other.title}: {other.why}.",
-            *(n for n in other.notes if n not in points.notes),
+            *(f"{other.path.name}: {n[0].lower()}{n[1:]}" for n in other.notes),
         ),
     )
 

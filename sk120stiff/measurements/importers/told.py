@@ -75,13 +75,18 @@ def unit_of(sheet: Sheet, column: Column, kind: str, told: Told) -> str:
             where=sheet.place(column),
             remedy=f"Give {option} {offered}; no unit is guessed.",
         )
-    if written is not None and said is not None and written != said:
+    if written is not None and said is not None and plain(written) != said:
         raise InputError(
             f"the file says {written} ({column.stated}), {option} says {said}",
             where=sheet.place(column),
             remedy=f"Leave {option} out where the file carries its unit.",
         )
-    return str(written or said)
+    return plain(str(written or said))
+
+
+def plain(unit: str) -> str:
+    """A unit as the headers here write it."""
+    return {"°": "deg", "µm": "um", "μm": "um"}.get(unit, unit)
 
 
 def numbers(sheet: Sheet, column: Column) -> Array:

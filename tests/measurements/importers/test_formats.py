@@ -54,7 +54,7 @@ def test_leica(tmp_path: Path, encoding: str) -> None:
     assert (found.get("sx").unit, found.get("sx").factor) == ("µm", 0.5)  # U95, k = 2
     assert found.skipped == ((6, "nothing stands in X, Y, Z"),)
     columns = written(draft_of(tmp_path, _with_joints(text).encode(encoding), angle="deg"))
-    assert columns["sx[µm]"] == ("15.1", "15.0", "15.3")
+    assert columns["sx[um]"] == ("15.1", "15.0", "15.3")
     assert columns["temperature[degC]"] == ("20.41", "20.43", "20.47")
     assert columns["time[s]"] == ("0.0", "30.0", "90.0")
     assert columns["x[mm]"] == ("2345.6781", "2400.0000", "2512.3457")
@@ -137,7 +137,7 @@ def test_two_readings_of_a_file_are_one_question(tmp_path: Path) -> None:
         ("", ["the file is empty"]),
         ("hello\nworld\n", ["no line of this file holds readings"]),
         (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x81\0", ["no text"]),
-        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(64), ["no text"]),
+        (b"\0\1\2\3" * 40, ["no text"]),
         ('x,y,z\n"1,2,3\n', ["line 2", "Quotation marks"]),
     ],
 )

@@ -1,0 +1,177 @@
+"""From a tracker's export to geometry and springs, two commands by hand, and what goes wrong."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sk120stiff import load_robot, read_measurements
+from sk120stiff.units import to_si
+from tests.corpus.robots import example
+from tests.measurements.importers.tracked import (
+    MARKER,
+    SHIFT,
+    TURN,
+    Campaign,
+    campaign,
+    joints_file,
+    spatial_analyzer,
+    ur5,
+)
+
+SEEN = campaign()
+
+
+def exported(folder: Path, seen: Campaign = SEEN, robot: str | None = None) -> tuple[str, ...]:
+    """Both files, and the arguments that name them and a place to write to."""
+    points, joints = spatial_analyzer(folder, seen), joints_file(folder, seen)
+    arm = ("--robot", robot or ur5(), "--tool", "tool0")
+    return (str(points), "--joints-file", str(joints), *arm, "--out", str(folder / "own.csv"))
+
+
+def test_import_then_identify(run, tmp_path: Path) -> None:
+    outcome = run("import", *exported(tmp_path), "--json")
+    assert outcome.code == 0, outcome.stderr
+    found = outcome.document
+    assert (found["rows"], found["mode"], found["registered"]) == (40, "positions", False)
+    assert found["unused"] == ["column Collection", "column Group"]
+    assert 0.2 < found["registration"]["rms_mm"] < 1.0
+    data = read_measurements(tmp_path / "own.csv")
+    assert data.absolute is not None and data.absolute.frame == "unknown"
+    assert data.absolute.fit_point
+    # the digits that were printed, in the order of the points, not of the joints' file
+    assert data.absolute.channels.position[0] == pytest.approx(1e-3 * SEEN.x[0].round(4), abs=1e-12)
+    np.testing.assert_allclose(data.joints, np.radians(SEEN.q.round(5)), atol=1e-12)
+    fit = run("identify", str(tmp_path / "own.csv"), "--json").document
+    assert fit["placed_rms_um"] == pytest.approx(1e3 * found["registration"]["rms_mm"], rel=0.3)
+    assert fit["rms_um"] < 30.0  # the noise is 20 um; zeros are 0.1 degrees off before the fit
+
+
+def test_registered_positions_are_in_base_axes(run, tmp_path: Path) -> None:
+    """Six numbers and their standard errors against the truth of a campaign without noise."""
+    robot = load_robot(ur5(), tool="tool0")
+    clean = replace(SEEN, x=_seen(robot, SEEN.q))
+    found = run("import", *exported(tmp_path, clean), "--register", "--json").document
+    fitted = found["registration"]
+    assert found["registered"] is True
+    assert fitted["rms_mm"] < 2e-4  # four decimals of a millimetre
+    assert fitted["marker_m"] == pytest.approx(MARKER, abs=1e-6)
+    assert fitted["shift_m"] == pytest.approx(SHIFT, abs=1e-6)
+    assert fitted["rotation_rad"] == pytest.approx(TURN.as_rotvec(), abs=1e-6)
+    data = read_measurements(tmp_path / "own.csv")
+    T = robot.placement(np.radians(SEEN.q))
+    at = T[:, :3, 3] + T[:, :3, :3] @ MARKER
+    assert data.absolute is not None and data.absolute.frame == "base"
+    np.testing.assert_allclose(data.absolute.channels.position, at, atol=1e-6)
+    text = (tmp_path / "own.yaml").read_text(encoding="utf-8")
+    assert "registered:" in text and "std_rotation:" in text
+    assert run("identify", str(tmp_path / "own.csv"), "--json").code == 0
+
+
+def _seen(robot, q_deg: np.ndarray) -> np.ndarray:
+    T = robot.placement(np.radians(q_deg))
+    return 1e3 * (TURN.apply(T[:, :3, 3] + T[:, :3, :3] @ MARKER) + SHIFT)
+
+
+def test_standard_errors_of_the_frame_are_those_of_many_draws(run, tmp_path: Path) -> None:
+    robot = load_robot(ur5(), tool="tool0")
+    exact, rng = _seen(robot, SEEN.q), np.random.default_rng(2)
+    drawn, said = [], []
+    for _ in range(12):
+        noisy = replace(SEEN, x=exact + rng.normal(0.0, 0.2, exact.shape))
+        found = run("import", *exported(tmp_path, noisy), "--preview", "--json").document
+        drawn.append(found["registration"]["shift_m"] - SHIFT)
+        said.append(found["registration"]["std_shift_m"])
+    ratio = np.sqrt(np.mean(np.square(drawn)) / np.mean(np.square(said)))
+    assert 0.6 < ratio < 1.5  # 36 numbers, correlated by threes
+
+
+@pytest.mark.parametrize(
+    ("harm", "words"),
+    [
+        ("metres", "times too large"),
+        ("mirrored", "mirrored"),
+        ("swapped", "mirrored: one axis has the other sign, or two axes are swapped"),
+        ("another robot", "These are not this robot's positions"),
+        ("rows", "rows of joints and positions belong together"),
+    ],
+)
+def test_what_cannot_be_is_refused(run, tmp_path: Path, harm: str, words: str) -> None:
+    x = SEEN.x.copy()
+    if harm == "metres":
+        x = x / 1e3
+    elif harm == "mirrored":
+        x[:, 1] *= -1.0
+    elif harm == "swapped":
+        x = x[:, [1, 0, 2]]
+    elif harm == "rows":
+        x = np.roll(x, 1, axis=0)
+    robot = str(example("ur10_robot.urdf")) if harm == "another robot" else None
+    refused = run("import", *exported(tmp_path, replace(SEEN, x=x), robot))
+    assert refused.code == 1
+    assert words in refused.stderr
+    assert not (tmp_path / "own.csv").exists()
+
+
+def test_a_preview_writes_nothing(run, tmp_path: Path) -> None:
+    arguments = exported(tmp_path)
+    for option in ("--preview", "--dry-run"):
+        shown = run("import", *arguments[:-2], option)
+        assert shown.code == 0
+        for words in ("SpatialAnalyzer", "the lines above the table", "matched by name",
+                      "40 rows at 40 poses", "Not taken over", "Worst rows", "std. error",
+                      "position: {frame: unknown}", "Nothing was written"):  # fmt: skip
+            assert words in shown.stdout, words
+    assert {path.name for path in tmp_path.iterdir()} == {"points.txt", "joints.csv"}
+    nowhere = run("import", *arguments[:-2])
+    assert nowhere.code == 2 and "--preview" in nowhere.stderr
+
+
+def test_wild_rows_are_told_and_written(run, tmp_path: Path) -> None:
+    x = SEEN.x.copy()
+    x[7] += [5.0, 0.0, 0.0]
+    outcome = run("import", *exported(tmp_path, replace(SEEN, x=x)))
+    assert outcome.code == 0
+    assert "Far off all others, and not counted here: line 11" in outcome.stdout
+    assert len(read_measurements(tmp_path / "own.csv").pose) == 40
+
+
+def test_uncertainties_and_temperature_reach_the_readings(run, tmp_path: Path) -> None:
+    rows = ["Point ID;X [mm];Y [mm];Z [mm];U95 X [µm];U95 Y [µm];U95 Z [µm];Temperature [°C]"]
+    rows += [f"{n};{';'.join(f'{v:.4f}' for v in x)};30;40;50;20.{k:02d}".replace(".", ",")
+             for k, (n, x) in enumerate(zip(SEEN.names, SEEN.x, strict=True))]  # fmt: skip
+    (tmp_path / "leica").write_bytes("\n".join(rows).encode("cp1252"))
+    arguments = (str(tmp_path / "leica"), *exported(tmp_path)[1:])
+    assert run("import", *arguments).code == 0
+    data = read_measurements(tmp_path / "own.csv")
+    np.testing.assert_allclose(data.sigma[0], to_si([15, 20, 25], "um", "length"))
+    assert data.absolute is not None and data.absolute.temperature[1] == pytest.approx(20.01)
+    turned = run("import", *arguments, "--register", "--json")
+    assert turned.code == 0
+    again = read_measurements(tmp_path / "own.csv")
+    assert np.sum(again.sigma**2) == pytest.approx(np.sum(data.sigma**2))  # a turn keeps it
+    doubled = run("import", *arguments, "--coverage", "1", "--json")
+    assert doubled.code == 0
+    np.testing.assert_allclose(read_measurements(tmp_path / "own.csv").sigma[0, 0], 30e-6)
+
+
+def test_markers_of_robodk_keep_their_places(run, tmp_path: Path) -> None:
+    """Two markers, each with its place in the row: the fit need not find them."""
+    robot = load_robot(ur5(), tool="tool0")
+    T = robot.placement(np.radians(SEEN.q))
+    places = np.where(np.arange(40)[:, None] % 2, [[0.05, 0.0, 0.1]], [[-0.05, 0.01, 0.12]])
+    at = TURN.apply(T[:, :3, 3] + np.einsum("nij,nj->ni", T[:, :3, :3], places)) + SHIFT
+    head = [*(f"J{k}" for k in range(1, 7)), *"XYZ", *(f"TCP {a}" for a in "XYZ")]
+    rows = [",".join(head)]
+    rows += [",".join(f"{v:.6f}" for v in (*q, *(1e3 * x), *(1e3 * p)))
+             for q, x, p in zip(SEEN.q, at, places, strict=True)]  # fmt: skip
+    source = tmp_path / "robodk.csv"
+    source.write_text("\n".join(rows))
+    out = tmp_path / "own.csv"
+    found = run("import", str(source), *exported(tmp_path)[3:], "--json").document
+    assert found["registration"]["rms_mm"] < 1e-5
+    data = read_measurements(out)
+    assert data.absolute is not None and set(data.absolute.markers) == {"M1", "M2"}
+    np.testing.assert_allclose(data.absolute.point, places)
+    assert run("identify", str(out), "--json").document["rms_um"] < 0.1
