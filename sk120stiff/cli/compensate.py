@@ -22,6 +22,7 @@ from sk120stiff.cli.compensate_program import (
     settings_of,
     write_program,
 )
+from sk120stiff.cli.compensate_sheet import Judged, check_sheet, measured_words
 from sk120stiff.cli.compensate_words import (
     branch_keys,
     branch_words,
@@ -186,6 +187,24 @@ def command(
         bool,
         typer.Option("--by-joints", help="Move by joint values instead of in straight lines."),
     ] = False,
+    sheet: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="HTML",
+            help="Write a sheet: error before and after with its ±, the share of each effect, "
+            "where it is worst. A browser prints it as PDF.",
+            show_default="none",
+        ),
+    ] = None,
+    measured: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CSV",
+            help="Points as measured, to stand beside the prediction: point, run (before, after), "
+            "x[mm], y, z in the path's axes, or dx[mm], dy, dz from the target.",
+            show_default="none",
+        ),
+    ] = None,
     feed: Annotated[
         str, typer.Option(metavar="SPEED", help="Feed where the path states none.")
     ] = FEED,
@@ -202,6 +221,7 @@ def command(
     --wrench '0,0,-490 N' --out part.jbi
     """
     will_write(out)
+    check_sheet(sheet)
     language = language_of(out, to)
     chosen = settings_of(settings or [])
     if language is not None:
@@ -259,6 +279,9 @@ def command(
         found = Compensation(found.a, before, after, found.reasons)
     doubt = standing_uncertainty(judge, found.a, given.wrench, frame=at)
     said = branch_words(branch, robot)
+    judged = Judged(given, judge, nominal, at, part, found.before, after, doubt, measured)
+    came_back = judged.measured_keys()
+    about = doubt_words(judge, doubt)
     used = None
     if language is None:
         placed = placement_columns(robot, given, found.a, at)
@@ -268,6 +291,8 @@ def command(
             language, out, given, robot, own, frame=at, part=part, by_joints=by_joints,
             settings=chosen, facts=[*origin(model, believed, path), *facts, said], **speed,
         )  # fmt: skip
+    if sheet is not None:
+        judged.write(sheet, str(against or model), path, [*facts, said], about)
     document = {
         "robot": robot.name,
         "rows": given.count,
@@ -290,8 +315,10 @@ def command(
         "assumed": facts,
         "language": "csv" if language is None else language.name,
         "settings": used,
+        "measured": came_back or None,
         "out": str(out),
+        "sheet": sheet,
     }
     held = bool(found.before.exists.any())
-    shown = [said, *parts(document, given, found), *doubt_words(judge, doubt)]
+    shown = [said, *parts(document, given, found), *about, *measured_words(came_back)]
     return Answer(document, parts=shown, exit_code=0 if held else 1)

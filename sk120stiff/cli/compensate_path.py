@@ -67,7 +67,7 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
     """
     part = np.eye(4) if options.frame is None else part_frame(options.frame)
     wrench = None if options.wrench is None else parse_wrench(options.wrench, where="--wrench")
-    load = "the load of the file" if wrench is None else f"load {options.wrench}"
+    load = "that of the file" if wrench is None else f"{options.wrench} at every point"
     lies = "that of the base" if options.frame is None else options.frame
     facts = (f"Part's frame: {lies}.", f"Load: {load}, {options.load_axes.value} axes.")
     reader = READERS.get(file.suffix.lower())

@@ -1,6 +1,7 @@
 """Robot + effects with values: predict, differentiate, read, write."""
 
 from sk120stiff.model.assembly import Assembly, Solution
+from sk120stiff.model.budget import Share, shares
 from sk120stiff.model.compliance import (
     ModelCompliance,
     model_compliance,
@@ -36,6 +37,7 @@ __all__ = [
     "Parameter",
     "Predicted",
     "Remainder",
+    "Share",
     "Solution",
     "Uncertainty",
     "base_model",
@@ -53,6 +55,7 @@ __all__ = [
     "read_model",
     "robot_of_model",
     "seen_from",
+    "shares",
     "typical_model",
     "typical_parameters",
     "warn_of_far_bend",

@@ -32,8 +32,13 @@ from sk120stiff.workspace.posture import (
     best_posture,
     path_points,
 )
+from sk120stiff.workspace.returned import Returned, read_returned
 from sk120stiff.workspace.springs import SpringArm, spring_arm
-from sk120stiff.workspace.standing_uncertainty import StandingUncertainty, standing_uncertainty
+from sk120stiff.workspace.standing_uncertainty import (
+    StandingUncertainty,
+    standing_budget,
+    standing_uncertainty,
+)
 
 __all__ = [
     "FORMATS",
@@ -55,6 +60,7 @@ __all__ = [
     "Placement",
     "PositionGrid",
     "Reached",
+    "Returned",
     "SpringArm",
     "Standing",
     "StandingUncertainty",
@@ -74,10 +80,12 @@ __all__ = [
     "path_points",
     "posture_landscape",
     "read_path",
+    "read_returned",
     "sdf_text",
     "solve_inverse",
     "spring_arm",
     "standing",
+    "standing_budget",
     "standing_uncertainty",
     "starting_poses",
     "stays_above",

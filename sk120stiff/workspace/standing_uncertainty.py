@@ -6,15 +6,16 @@ its parameters within their uncertainty, and what it leaves unexplained.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import Refusal
-from sk120stiff.model import Model, held_loads, seen_from
+from sk120stiff.model import Model, Share, held_loads, seen_from, shares
 from sk120stiff.model.predicted import blamed
 from sk120stiff.model.uncertainty import spread
 
@@ -53,13 +54,63 @@ def standing_uncertainty(
     known = model.uncertainty
     if known is None:
         return None
-    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
-    a = np.atleast_2d(physical.robot.coordinates(commanded))
-    load = np.broadcast_to(np.asarray(wrench, dtype=float), (len(a), 6))
+    physical, a, load, at = _seen(model, commanded, wrench, frame, point)
     L, B = known.factors(physical.names)
     std = np.full(len(a), np.nan)
     blame: list[str] = []
+    for rows, derivative in _derivatives(physical, a, load, at):
+        axes = spread(derivative @ L, derivative @ B, known.noise)
+        std[rows] = np.linalg.norm(axes, axis=1)
+        if np.isinf(axes).any():
+            blame += blamed(known, physical.names, derivative[np.isinf(axes).any(axis=1)])
+    left = None
+    if known.remainder is not None:
+        left = np.linalg.norm(known.remainder.std(load), axis=1)
+    return StandingUncertainty(std, left, tuple(dict.fromkeys(blame)))
+
+
+def standing_budget(
+    model: Model,
+    commanded: ArrayLike,
+    wrench: ArrayLike,
+    *,
+    frame: str | None = None,
+    point: ArrayLike | None = None,
+) -> tuple[Share, ...]:
+    """What each effect moves a loaded tool by, for commands (N, n) under loads (N, 6).
+
+    Weight and wrong geometry count too. Standard errors where the model stores its uncertainty.
+    """
+    physical, a, load, at = _seen(model, commanded, wrench, frame, point)
+    found = [derivative for _, derivative in _derivatives(physical, a, load, at)]
+    derivative = np.concatenate([np.zeros((0, 3, len(physical.values))), *found])
+    if not len(derivative):
+        return ()
+    covariance = None
+    if model.uncertainty is not None:
+        L, _ = model.uncertainty.factors(physical.names)
+        covariance = L @ L.T
+    return shares(physical, derivative, covariance)
+
+
+def _seen(
+    model: Model,
+    commanded: ArrayLike,
+    wrench: ArrayLike,
+    frame: str | None,
+    point: ArrayLike | None,
+) -> tuple[Model, Array, Array, Array]:
+    """The arm up to a frame, commands (N, n), loads (N, 6), and the point in its tool frame."""
+    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
+    a = np.atleast_2d(physical.robot.coordinates(commanded))
+    return physical, a, np.broadcast_to(np.asarray(wrench, dtype=float), (len(a), 6)), at
+
+
+def _derivatives(
+    physical: Model, a: Array, load: Array, at: Array
+) -> Iterator[tuple[Index, Array]]:
+    """Rows that have an equilibrium, and (k, 3, P) of where they stand by the internal values."""
     for begin in range(0, len(a), BLOCK):
         rows = np.arange(begin, min(begin + BLOCK, len(a)))
         situation = situation_of_load(physical.robot, a[rows], load[rows], point=at)
@@ -71,12 +122,4 @@ def standing_uncertainty(
                 continue
             rows, situation = rows[held], situation.rows(held)
             solution = physical.solve(situation)
-        derivative = physical.assembly.standing_sensitivities(solution, physical.values)
-        axes = spread(derivative @ L, derivative @ B, known.noise)
-        std[rows] = np.linalg.norm(axes, axis=1)
-        if np.isinf(axes).any():
-            blame += blamed(known, physical.names, derivative[np.isinf(axes).any(axis=1)])
-    left = None
-    if known.remainder is not None:
-        left = np.linalg.norm(known.remainder.std(load), axis=1)
-    return StandingUncertainty(std, left, tuple(dict.fromkeys(blame)))
+        yield rows, physical.assembly.standing_sensitivities(solution, physical.values)

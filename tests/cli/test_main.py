@@ -27,9 +27,10 @@ HEAVY = {
     "yaml",
 }
 INFRASTRUCTURE = {
-    "__init__", "calibration", "environment", "explain_output", "frame", "identify_rows", "main",
-    "map_postures", "opening", "options", "plan_wishes", "positions", "tables", "uncertainty",
-    "visible", "xacro_option",
+    "__init__", "calibration", "compensate_path", "compensate_program", "compensate_sheet",
+    "compensate_words", "drawing", "environment", "explain_output", "frame", "identify_rows",
+    "main", "map_postures", "opening", "options", "plan_wishes", "positions", "tables",
+    "uncertainty", "visible", "xacro_option",
 }  # fmt: skip
 
 

@@ -13,10 +13,11 @@ from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
 from sk120stiff.explain.answer.notebook import summary_html
 from sk120stiff.explain.findings import Contender, Detectable, Finding, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
-from sk120stiff.explain.judge.budget import Share, error_budget
+from sk120stiff.explain.judge.budget import error_budget
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.identify import Fit, Yardstick, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Share
 
 Verdict = Literal["none", "named", "ambiguous", "outside"]
 

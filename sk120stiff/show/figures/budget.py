@@ -16,7 +16,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def budget_bars(names: Sequence[str], sizes: Array, errors: Array) -> Figure:
+MEASURED = "µm rms per axis at the measured loads, ± one standard error"
+
+
+def budget_bars(
+    names: Sequence[str], sizes: Array, errors: Array, *, label: str = MEASURED
+) -> Figure:
     """One bar for each share: sizes (k,) and their standard errors (k,) in µm."""
     if not len(names):
         raise InputError("no share to draw")
@@ -27,7 +32,7 @@ def budget_bars(names: Sequence[str], sizes: Array, errors: Array) -> Figure:
         panel.barh(rows, sizes, xerr=errors, color=palette.SKY, ecolor=palette.INK, capsize=3)
         panel.set_yticks(rows, list(names))
         panel.set_ylim(len(names) - 0.4, -0.6)
-        panel.set_xlabel("µm rms per axis at the measured loads, ± one standard error")
+        panel.set_xlabel(label)
         panel.grid(visible=False, axis="y")
         panel.tick_params(axis="y", length=0)
     return figure

@@ -1,0 +1,143 @@
+"""The sheet of `compensate`: before and after, predicted and as it came back."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.cli.compensate_words import root_mean_square
+from sk120stiff.cli.opening import model_file
+from sk120stiff.errors import InputError
+from sk120stiff.files import will_write
+from sk120stiff.model import Model
+from sk120stiff.workspace import (
+    LoadedPath,
+    Returned,
+    Standing,
+    StandingUncertainty,
+    read_returned,
+    standing_budget,
+)
+
+
+def check_sheet(sheet: Path | None) -> None:
+    """Complain of a sheet that cannot be written, before the work.
+
+    Raises:
+        InputError: Its name does not end in .html.
+        MissingPart: What draws is not installed.
+    """
+    from sk120stiff.cli.drawing import will_draw
+
+    if sheet is not None and sheet.suffix.lower() not in (".html", ".htm"):
+        raise InputError(
+            f"the sheet is a page, and {sheet.name} does not end in .html",
+            where="--sheet",
+            remedy="Name it like sheet.html; a browser prints it as PDF, on A4.",
+        )
+    will_write(sheet, "--sheet")
+    will_draw(sheet)
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What is known of a corrected path.
+
+    Attributes:
+        path: The points, and the model that judges them.
+        nominal: (N, n) joints without correction [rad or m].
+        frame: The frame that is led along the path; None: the tool frame.
+        part: (4, 4) the path's axes in the base.
+        before, after, doubt: Where the tool stands, and ±.
+        measured: The file of points that came back, if any.
+    """
+
+    path: LoadedPath
+    model: Model
+    nominal: Array
+    frame: str | None
+    part: Array
+    before: Standing
+    after: Standing
+    doubt: StandingUncertainty | None
+    measured: Path | None
+
+    @property
+    def meant(self) -> Array:
+        """(N, 3) where the tool is meant to stand, axes of the path [m]."""
+        place = self.model.robot.placement(self.nominal, self.frame)
+        return np.asarray((place[:, :3, 3] - self.part[:3, 3]) @ self.part[:3, :3])
+
+    def in_path(self, away: Array) -> Array:
+        """Displacements (N, 3) of the base's axes in those of the path."""
+        return np.asarray(away @ self.part[:3, :3])
+
+    @cached_property
+    def returned(self) -> tuple[Returned, ...]:
+        """What was measured."""
+        return () if self.measured is None else read_returned(self.measured, self.path, self.meant)
+
+    def measured_keys(self) -> dict[str, dict[str, Any]]:
+        """The key `measured`."""
+        return {
+            each.run: {
+                "points": int(each.seen.sum()),
+                "rms_um": 1e6 * each.rms,
+                "max_um": 1e6 * float(np.nanmax(np.linalg.norm(each.away, axis=1))),
+                "constant_um": 1e6 * each.constant,
+                "about_constant_um": 1e6 * each.about_constant,
+                "off_prediction_um": 1e6 * each.apart(self.in_path(getattr(self, each.run).away)),
+            }
+            for each in self.returned
+        }
+
+    def std(self) -> Array | None:
+        """(N,) standard distance of a prediction [m]; None where it is not known."""
+        if self.doubt is None or not np.isfinite(root_mean_square(self.doubt.std_parameters)):
+            return None
+        left = self.doubt.std_remainder
+        return np.asarray(np.hypot(self.doubt.std_parameters, 0.0 if left is None else left))
+
+    def write(
+        self, sheet: Path, named: str, source: Path, facts: Sequence[str], doubt: Sequence[str]
+    ) -> None:
+        """Write the page."""
+        from sk120stiff.show import reproducibility
+        from sk120stiff.show.stories import PathSheet
+
+        file = model_file(named)
+        command = " ".join(["sk120stiff", *(shlex.quote(word) for word in sys.argv[1:])])
+        inputs = [each for each in (file, source, self.measured) if each is not None]
+        PathSheet(
+            path=source.name,
+            robot=self.model.robot.name,
+            lines=self.path.table.lines,
+            position=self.meant,
+            before=self.in_path(self.before.away),
+            after=self.in_path(self.after.away),
+            std=self.std(),
+            doubt=doubt,
+            shares=standing_budget(self.model, self.nominal, self.path.wrench, frame=self.frame),
+            measured=self.returned,
+            facts=facts,
+            reproducibility=reproducibility(command, inputs),
+        ).report().write(sheet)
+
+
+def measured_words(found: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """What came back, in sentences."""
+    said = []
+    for run, keys in found.items():
+        said.append(
+            f"Measured {run} correction: {keys['rms_um']:.3g} µm rms, {keys['max_um']:.3g} at most,"
+            f" over {keys['points']} points; {keys['off_prediction_um']:.3g} µm off the prediction."
+        )
+    return said

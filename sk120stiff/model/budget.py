@@ -1,0 +1,59 @@
+"""What each effect of a model moves the point by: the shares of an error budget.
+
+To first order a displacement is the sum of what every parameter brings, d = Σ_p (∂d/∂p) v_p, with
+v_p the internal value, which is zero where the effect is absent. The parts add as vectors, and so
+their sizes need not add up: springs and tilts may pull opposite ways.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.model.model import Model
+
+
+@dataclass(frozen=True)
+class Share:
+    """What one effect brings.
+
+    Attributes:
+        name: ``name:where``.
+        rms: Of the displacements that it brings, per axis [m].
+        std: Standard error of `rms` [m]; None where nothing tells it.
+    """
+
+    name: str
+    rms: float
+    std: float | None
+
+
+def shares(model: Model, derivative: Array, covariance: Array | None) -> tuple[Share, ...]:
+    """Shares of all effects of a model, the largest first.
+
+    Args:
+        derivative: (N, 3, P) of the displacements by the internal values.
+        covariance: (P, P) of the internal values; None: unknown.
+    """
+    values = model.values
+    ids = [parameter.effect.id for parameter in model.parameters]
+    found = []
+    for name in dict.fromkeys(ids):
+        own = np.array([k for k, other in enumerate(ids) if other == name])
+        part = None if covariance is None else covariance[np.ix_(own, own)]
+        found.append(_share(name, derivative[:, :, own], values[own], part))
+    return tuple(sorted(found, key=lambda share: -share.rms))
+
+
+def _share(name: str, columns: Array, values: Array, covariance: Array | None) -> Share:
+    """Size of what some parameters bring: columns (N, 3, p), values (p,), covariance (p, p)."""
+    moved = columns @ values
+    rms = float(np.sqrt(np.mean(moved**2)))
+    if covariance is None or not np.isfinite(covariance).all():
+        return Share(name, rms, None)
+    if rms == 0.0:
+        return Share(name, 0.0, 0.0)
+    slope = np.einsum("ni,nip->p", moved, columns) / (moved.size * rms)
+    return Share(name, rms, float(np.sqrt(max(slope @ covariance @ slope, 0.0))))
