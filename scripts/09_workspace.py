@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff import base_model, joint_spring_model, load_robot
-from sk120stiff.files import write_atomically
+from sk120stiff.exports import export
 from sk120stiff.show import cloud_of_map, cloud_page, save_figure, scene_of_model
 from sk120stiff.show.figures import stiffness_slice
 from sk120stiff.workspace import (
@@ -27,11 +27,9 @@ from sk120stiff.workspace import (
     best_posture,
     compensate,
     elastic_arm,
-    mjcf_text,
     open_map,
     parse_axes,
     path_points,
-    spring_arm,
     standing,
     write_map,
 )
@@ -98,7 +96,7 @@ def main() -> None:
     print(f"were the springs 10 % softer than believed, {left * 1e6:.0f} µm would stay")
 
     # The same arm for a simulator.
-    write_atomically(folder / "sk120.xml", mjcf_text(spring_arm(model, best.a[0])))
+    export(model, folder / "sk120.xml", pose=best.a[0])
     print(f"written: {', '.join(sorted(path.name for path in folder.iterdir()))} in {folder}")
 
 

@@ -1,7 +1,8 @@
-"""`sk120stiff export MODEL --pose ... --out FILE`."""
+"""`sk120stiff export MODEL --out FILE`."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -13,15 +14,16 @@ from sk120stiff.cli.opening import open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument, PoseOption
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
-from sk120stiff.files import will_write, write_atomically
-from sk120stiff.workspace import FORMATS, spring_arm
-
-_BY_ENDING = {".xml": "mjcf", ".mjcf": "mjcf", ".sdf": "sdf"}
+from sk120stiff.exports import Request, Told, format_of, write_exported
+from sk120stiff.files import will_write
 
 
-class Format(StrEnum):
-    """What simulators read."""
+class Kind(StrEnum):
+    """What other programs read."""
 
+    urdf = "urdf"
+    kinematics_params = "kinematics_params"
+    dh = "dh"
     mjcf = "mjcf"
     sdf = "sdf"
 
@@ -29,66 +31,70 @@ class Format(StrEnum):
 def command(
     model: ModelArgument,
     out: Annotated[
-        Path, typer.Option("--out", metavar="FILE", help="Where to write it: .xml or .sdf.")
-    ],
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="Where to write it: .urdf, .yaml (kinematics_params of UR's driver), .csv (DH "
+            "tables), .xml (MuJoCo) or .sdf.",
+            show_default="only say what would be carried; give --to",
+        ),
+    ] = None,
     pose: PoseOption = None,
     at: AtOption = None,
     to: Annotated[
-        Format | None,
+        Kind | None,
         typer.Option("--to", help="The format.", show_default="by the ending of FILE"),
     ] = None,
 ) -> Answer:
-    """The modelled arm as a file for MuJoCo or SDF simulators.
+    """The model in other programs' words: a calibrated URDF, DH tables, a simulator's arm.
 
-    Bodies, joints and springs, commanded to a pose. Joints that no spring reaches are built in at
-    the pose; joints that follow others still do. The exported arm deflects as the model does, to
-    well below a micrometre.
+    A URDF, UR's kinematics_params and DH tables hold the rigid geometry as the model has it. Models
+    for MuJoCo and SDF move: position actuators at the joints, the springs behind them, the robot's
+    own shapes and masses. At rest under a load they stand where the model does. What a format
+    cannot hold is told by name.
 
     Example: sk120stiff export model.yaml --pose '0,20,-30,0,-60,0 deg' --out sk120.xml
     """
     will_write(out)
+    chosen = format_of(out, None if to is None else to.value)
+    if not chosen.moves and (pose is not None or at is not None):
+        raise InputError(
+            f"{chosen.title} holds no pose and no load",
+            where="--pose" if pose is not None else "--at",
+            remedy="Leave it out, or export to .xml or .sdf.",
+        )
     believed = open_model(model)
     robot = believed.robot
-    chosen = to.value if to is not None else _BY_ENDING.get(out.suffix.lower())
-    if chosen is None:
-        raise InputError(
-            f"the ending {out.suffix!r} names no format",
-            where=str(out),
-            remedy="Name the file .xml (MuJoCo) or .sdf, or give --to.",
-        )
-    arm = spring_arm(believed, pose_of(robot, pose), frame=at)
-    writer, title = FORMATS[chosen]
-    write_atomically(out, writer(arm))
-    springs = [
-        {
-            "joint": body.name,
-            "stiffness": body.stiffness,
-            "unit": "N/m" if body.slides else "N*m/rad",
-            "reference": body.reference,
-        }
-        for body in arm.bodies
-        if body.stiffness
-    ]
+    target = out or Path(f"{robot.name}{chosen.endings[0]}")
+    a = pose_of(robot, pose) if chosen.moves else None
+    made = chosen.make(believed, Request(target, a, at))
+    if out is not None:
+        write_exported(made, out)
     document = {
         "robot": robot.name,
-        "format": chosen,
-        "out": str(out),
-        "frame": arm.frame,
-        "springs": springs,
-        "coupled": [{"weights": one.weights, "stiffness": one.stiffness} for one in arm.springs],
-        "followers": [
-            {"joint": one.joint, "drivers": one.drivers, "offset": one.offset}
-            for one in arm.followers
-        ],
-        "held": arm.held,
+        "format": chosen.name,
+        "out": None if out is None else str(out),
+        "files": [str(target.parent / name) for name in made.files],
+        "carried": made.carried,
+        "left_out": made.left_out,
+        "notes": made.notes,
+        **made.details,
     }
-    rows = [(spring["joint"], spring["stiffness"], spring["unit"]) for spring in springs]
-    held = ", ".join(arm.held) or "none"
     parts: list[object] = [
-        f"{title} written: {out}",
-        table("Springs", ("joint", "stiffness", ""), rows),
-        f"Held where the pose puts them: {held}.",
+        f"{chosen.title} written: {out}"
+        if out is not None
+        else f"{chosen.title}; nothing is written without --out.",
     ]
-    if arm.springs:
-        parts.append(f"{len(arm.springs)} springs tie joints together.")
-    return Answer(document, parts)
+    if made.rows:
+        parts.append(table(made.title, made.header, made.rows))
+    parts += [*_by_reason("Carried", made.carried), *_by_reason("Left out", made.left_out)]
+    return Answer(document, [*parts, *made.notes])
+
+
+def _by_reason(title: str, told: Iterable[Told]) -> list[str]:
+    """One line for each reason, with the effects that share it."""
+    reasons: dict[str, list[str]] = {}
+    for each in told:
+        reasons.setdefault(each.how, []).append(each.effect)
+    return [f"{title} ({how}): {', '.join(effects)}." for how, effects in reasons.items()]

@@ -1,4 +1,4 @@
-"""Stiffness over the workspace: maps, the best posture, deflections compensated, exports."""
+"""Stiffness over the workspace: maps, the best posture, deflections compensated."""
 
 from sk120stiff.workspace.arm import ElasticArm, elastic_arm
 from sk120stiff.workspace.branch import (
@@ -10,7 +10,6 @@ from sk120stiff.workspace.branch import (
     stays_above,
 )
 from sk120stiff.workspace.compensate import Compensation, Standing, compensate, standing
-from sk120stiff.workspace.export import FORMATS, mjcf_text, sdf_text
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
 from sk120stiff.workspace.finished import (
     LoadSummary,
@@ -33,7 +32,6 @@ from sk120stiff.workspace.posture import (
     path_points,
 )
 from sk120stiff.workspace.returned import Returned, read_returned
-from sk120stiff.workspace.springs import SpringArm, spring_arm
 from sk120stiff.workspace.standing_uncertainty import (
     StandingUncertainty,
     standing_budget,
@@ -41,7 +39,6 @@ from sk120stiff.workspace.standing_uncertainty import (
 )
 
 __all__ = [
-    "FORMATS",
     "STATUS",
     "Axis",
     "BestPosture",
@@ -60,8 +57,10 @@ __all__ = [
     "Placement",
     "PositionGrid",
     "Reached",
+<<<<<<< HEAD
     "Returned",
-    "SpringArm",
+=======
+>>>>>>> 444c7eb (Exports are a folder of their own: calibrated URDF, UR's kinematics, DH tables, models that move)
     "Standing",
     "StandingUncertainty",
     "Task",
@@ -74,16 +73,16 @@ __all__ = [
     "joint_heights",
     "joints_along",
     "lowest_floor",
-    "mjcf_text",
     "open_map",
     "parse_axes",
     "path_points",
     "posture_landscape",
     "read_path",
+<<<<<<< HEAD
     "read_returned",
-    "sdf_text",
+=======
+>>>>>>> 444c7eb (Exports are a folder of their own: calibrated URDF, UR's kinematics, DH tables, models that move)
     "solve_inverse",
-    "spring_arm",
     "standing",
     "standing_budget",
     "standing_uncertainty",

@@ -7,6 +7,7 @@ it: a wrong frame id would corrupt its memory instead of raising.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from difflib import get_close_matches
 from functools import cached_property
 
@@ -16,6 +17,7 @@ import pinocchio as pin
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.robot.kinematics.chain import Chain
+from sk120stiff.robot.rotations import crossed
 from sk120stiff.robot.urdf import captured_stderr
 
 
@@ -135,23 +137,39 @@ class Tree:
             **dict(zip(("masses", "centres"), self._lumps(joints), strict=True)),
         )
 
-    def _lumps(self, joints: tuple[int, ...]) -> tuple[Array, Array]:
-        """(m,) masses carried by chain joints and (m, 3) their centres, branches at rest."""
+    def _carried(self, joints: tuple[int, ...]) -> Iterator[tuple[int, pin.SE3, pin.Inertia]]:
+        """Every body with mass: position of the joint that carries it, place on it, inertia."""
         pin.forwardKinematics(self._model, self._data, self._configuration(np.zeros(self.m)))
         position = {joint + 1: k for k, joint in enumerate(joints)}
-        masses, moments = np.zeros(len(joints)), np.zeros((len(joints), 3))
         for body in range(1, self.m + 1):
             carrier = body
             while carrier not in position and carrier > 0:
                 carrier = int(self._model.parents[carrier])
-            if carrier == 0:
-                continue
-            inertia = self._model.inertias[body]
-            T = self._data.oMi[carrier].inverse() * self._data.oMi[body]
-            masses[position[carrier]] += inertia.mass
-            moments[position[carrier]] += inertia.mass * T.act(inertia.lever)
+            if carrier:
+                T = self._data.oMi[carrier].inverse() * self._data.oMi[body]
+                yield position[carrier], T, self._model.inertias[body]
+
+    def _lumps(self, joints: tuple[int, ...]) -> tuple[Array, Array]:
+        """(m,) masses carried by chain joints and (m, 3) their centres, branches at rest."""
+        masses, moments = np.zeros(len(joints)), np.zeros((len(joints), 3))
+        for k, T, inertia in self._carried(joints):
+            masses[k] += inertia.mass
+            moments[k] += inertia.mass * T.act(inertia.lever)
         safe = np.where(masses > 0.0, masses, 1.0)[:, None]
         return masses, moments / safe
+
+    def inertias(self, base: str, tool: str) -> Array:
+        """(m, 3, 3) inertia of what each joint of a chain carries, branches at rest [kg·m²].
+
+        About the centre of mass (`Chain.centres`), axes of the joint's moving frame.
+        """
+        joints = self.path(base, tool)
+        centres = self._lumps(joints)[1]
+        out = np.zeros((len(joints), 3, 3))
+        for k, T, inertia in self._carried(joints):
+            off = crossed(T.act(inertia.lever) - centres[k])
+            out[k] += T.rotation @ inertia.inertia @ T.rotation.T - inertia.mass * off @ off
+        return out
 
     def jacobian(self, q: Array, frame: str, point: Array) -> Array:
         """(6, m) Pinocchio's own Jacobian of a point of a frame, root axes: the second road."""

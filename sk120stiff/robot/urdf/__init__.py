@@ -17,7 +17,7 @@ from sk120stiff.robot.urdf.frames import FrameChoice, default_frames, fingers_on
 from sk120stiff.robot.urdf.mimics import refuse_orphans
 from sk120stiff.robot.urdf.native import CapturedText, captured_stderr
 from sk120stiff.robot.urdf.packages import resolve
-from sk120stiff.robot.urdf.reading import read_urdf
+from sk120stiff.robot.urdf.reading import document_tree, read_urdf
 from sk120stiff.robot.urdf.suspicions import locked_on_way, suspicions
 
 __all__ = [
@@ -35,6 +35,7 @@ __all__ = [
     "VisualSpec",
     "captured_stderr",
     "default_frames",
+    "document_tree",
     "fingers_on_way",
     "locked_on_way",
     "read_urdf",

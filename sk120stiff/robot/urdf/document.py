@@ -146,6 +146,7 @@ class UrdfDocument:
         name: Name of the robot.
         xml: Clean kinematic URDF: one element per line, no visuals, no collisions, numbers that
             round-trip. Pinocchio reads this and never the user's file.
+        text: The user's own words, a xacro expanded; see `document_tree`.
         path: The file that was read, None for text.
         package_folders: Folders in which ``package://`` addresses are looked up, first match wins.
         joints, links, visuals: In the order of the file; undeclared links last.
@@ -158,6 +159,7 @@ class UrdfDocument:
 
     name: str
     xml: str
+    text: str
     path: Path | None
     package_folders: tuple[Path, ...]
     joints: tuple[JointSpec, ...]

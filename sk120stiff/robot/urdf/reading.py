@@ -33,7 +33,7 @@ _FOREIGN = frozenset(
         "transmission", "gazebo", "ros2_control", "sensor", "mujoco", "plugin", "static", "author",
         "plugins", "gripper", "actuator", "contact", "group", "project", "include", "visual",
         "kinematics", "safety_controller", "inertial", "collision", "verbose", "version", "isaac",
-        "self_collide", "disable_collisions", "keep", "fixed_camera",
+        "self_collide", "disable_collisions", "keep", "fixed_camera", "sk120stiff",
     }
 )  # fmt: skip
 
@@ -81,9 +81,14 @@ def read_urdf(
         notes = Notebook(raw.label)
         notes.warn("xacro_skipped", "", f"xacro elements were ignored: {refusal.what}")
         try:
-            return _document(parse_robot(text, notes), raw, folders, notes)
+            return _document(text, raw, folders, notes)
         except InputError:
             raise refusal from None
+
+
+def document_tree(document: UrdfDocument) -> Element:
+    """`<robot>` with everything that stands in the user's file, comments too, to be edited."""
+    return parse_robot(document.text, Notebook(document.place), comments=True)
 
 
 def _plain(raw: RawSource, text: str, folders: tuple[Path, ...], notes: Notebook) -> UrdfDocument:
@@ -92,7 +97,7 @@ def _plain(raw: RawSource, text: str, folders: tuple[Path, ...], notes: Notebook
     if filled != text:
         notes.warn("environment_value", "", "$(env ...) was replaced by values of the environment")
     try:
-        return _document(parse_robot(filled, notes), raw, folders, notes)
+        return _document(filled, raw, folders, notes)
     except InputError:
         if raw.path is None:  # what xacro elements are left over in a readable text are ignored
             refuse_text(text, notes)
@@ -108,15 +113,15 @@ def _expanded(
 ) -> UrdfDocument:
     expanded = expand(raw, text, folders, arguments, notes)
     notes.source = f"{raw.label} (expanded)"
-    root = parse_robot(expanded, notes)
-    if root.find("link") is None:
+    if parse_robot(expanded, Notebook(notes.source)).find("link") is None:
         refuse_empty(raw, text, notes)
-    return _document(root, raw, folders, notes)
+    return _document(expanded, raw, folders, notes)
 
 
 def _document(
-    root: Element, raw: RawSource, folders: tuple[Path, ...], notes: Notebook
+    text: str, raw: RawSource, folders: tuple[Path, ...], notes: Notebook
 ) -> UrdfDocument:
+    root = parse_robot(text, notes)
     name = _robot_name(root, raw, notes)
     _note_foreign(root, notes)
     link_elements = root.findall("link")
@@ -142,6 +147,7 @@ def _document(
     return UrdfDocument(
         name=name,
         xml=clean_xml(name, links, checked),
+        text=text,
         path=raw.path,
         package_folders=folders,
         joints=checked,

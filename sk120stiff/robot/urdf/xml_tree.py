@@ -35,8 +35,8 @@ _OTHER_ROOTS = {
 }
 
 
-def parse_robot(text: str, notes: Notebook) -> Element:
-    """The `<robot>` element of a URDF.
+def parse_robot(text: str, notes: Notebook, *, comments: bool = False) -> Element:
+    """The `<robot>` element of a URDF, its comments kept if asked for.
 
     Raises:
         InputError: Not XML, not a URDF, entity definitions, or beyond the bounds of this module;
@@ -58,10 +58,10 @@ def parse_robot(text: str, notes: Notebook) -> Element:
             remedy="Remove the <!DOCTYPE ...> and write the values where they are used.",
         )
     try:
-        root = _build(text, notes)
+        root = _build(text, notes, comments)
     except etree.XMLSyntaxError as first:
         try:
-            root = _build(_with_prefixes(mended(text, notes), first), notes)
+            root = _build(_with_prefixes(mended(text, notes), first), notes, comments)
         except etree.XMLSyntaxError:
             _refuse_markup(first, notes)
     if root.tag != "robot":
@@ -123,7 +123,7 @@ def _with_prefixes(text: str, error: etree.XMLSyntaxError) -> str:
     return text.replace("<robot", f"<robot{declared}", 1)
 
 
-def _build(text: str, notes: Notebook) -> Element:
+def _build(text: str, notes: Notebook, comments: bool) -> Element:
     etree.clear_error_log()  # of this thread; errors would carry those of earlier files
     growing = etree.iterparse(
         io.BytesIO(text.encode("utf-8", "replace")),
@@ -132,7 +132,7 @@ def _build(text: str, notes: Notebook) -> Element:
         huge_tree=True,
         no_network=True,
         resolve_entities=False,
-        remove_comments=True,
+        remove_comments=not comments,
         remove_pis=True,
     )
     count = depth = 0
