@@ -76,6 +76,8 @@ def table_of(model: Model, geometry: Geometry) -> Table:
         found = rows_of(lines, layout)
         turns = np.where(geometry.revolute, 0, 1)
         found[np.arange(1, len(offsets) + 1), turns] += offsets
+        half = found[:, ANGLES] < 1e-9 - np.pi  # one name for half a turn
+        found[:, ANGLES] += np.where(half, 2.0 * np.pi, 0.0)
         x, y, z = measured(shift, geometry.of_marker)
         return np.concatenate([found, [[0.0, z, x, y, 0.0, 0.0]]])
 
