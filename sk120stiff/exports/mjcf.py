@@ -136,10 +136,11 @@ def _document(
 
     def emit(k: int, indent: str) -> Iterable[str]:
         body = arm.bodies[k]
+        if body.name != "world":  # MuJoCo has a body of that name
+            own = f"name={quoteattr(body.name)} {_place(body.placement)}"
+            yield f"{indent}<body {own}{_float(body)}>"
         if body.joint is not None:
             order.append(body.joint)
-            own = f"name={quoteattr(body.name)} {_place(body.placement)}{_float(body)}"
-            yield f"{indent}<body {own}>"
             yield f"{indent}  {_inertial(body)}"
             yield f"{indent}  {_joint(body.joint, leads=body.joint.name in leaders)}"
         for (at, T, shape), named in zip(arm.shapes, paths, strict=True):
@@ -148,17 +149,17 @@ def _document(
                     f"{indent}  {line}" for line in _geoms(shape, T, [mesh[p] for p in named])
                 )
         for name, at, T in arm.frames:
-            if at == k and name != "world":  # MuJoCo has a body of that name
+            if at == k and name != "world":
                 yield f"{indent}  <body name={quoteattr(name)} {_place(T)}/>"
         for name, at, T in arm.sites:
             if at == k:
                 yield f"{indent}  <site name={quoteattr(name)} {_place(T)}/>"
         for child in children.get(k, ()):
             yield from emit(child, indent + "  ")
-        if body.joint is not None:
+        if body.name != "world":
             yield f"{indent}</body>"
 
-    yield from emit(0, "  ")
+    yield from emit(0, "    ")
     yield "  </worldbody>"
     yield from _ties(arm)
     yield from _actuators(arm)
@@ -170,7 +171,7 @@ def _document(
 
 def _float(body: Body) -> str:
     """What only MuJoCo asks to weigh something weighs nothing."""
-    return "" if body.mass > 0.0 else ' gravcomp="1"'
+    return "" if body.mass > 0.0 or body.joint is None else ' gravcomp="1"'
 
 
 def _inertial(body: Body) -> str:

@@ -24,7 +24,7 @@ from sk120stiff.robot.visuals import Visual
 SERVO = 100.0  # stiffness of a servo over that of the joint that it drives
 RIGID = 1e11  # N·m/rad or N/m: servo of a joint that the model lets not yield
 PACE = 500.0  # rad/s: no spring oscillates faster with the armature that it is given
-REST = 0.02  # s in which a spring comes to rest
+REST = 0.01  # s in which a spring comes to rest
 
 
 @dataclass(frozen=True, eq=False)

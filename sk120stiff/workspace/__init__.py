@@ -57,10 +57,7 @@ __all__ = [
     "Placement",
     "PositionGrid",
     "Reached",
-<<<<<<< HEAD
     "Returned",
-=======
->>>>>>> 444c7eb (Exports are a folder of their own: calibrated URDF, UR's kinematics, DH tables, models that move)
     "Standing",
     "StandingUncertainty",
     "Task",
@@ -78,10 +75,7 @@ __all__ = [
     "path_points",
     "posture_landscape",
     "read_path",
-<<<<<<< HEAD
     "read_returned",
-=======
->>>>>>> 444c7eb (Exports are a folder of their own: calibrated URDF, UR's kinematics, DH tables, models that move)
     "solve_inverse",
     "standing",
     "standing_budget",

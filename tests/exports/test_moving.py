@@ -1,18 +1,20 @@
-"""Exported files load in MuJoCo and deflect as the model does; SDF is read back by hand."""
+"""Exported arms come to rest in MuJoCo where the model does, at any command, under any load."""
 
-import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 
+from sk120stiff.effects import situation_of_load
 from sk120stiff.errors import InputError
-from sk120stiff.model import Model, joint_spring_model
+from sk120stiff.exports import export
+from sk120stiff.model import Model, base_model, joint_spring_model
 from sk120stiff.robot import load_robot
-from sk120stiff.workspace import mjcf_text, sdf_text, spring_arm
-from tests.oracles.mujoco_serial import Spring, serial_statics
-from tests.oracles.mujoco_statics import Statics
-from tests.oracles.numpy_kinematics import rotation, transform
+from sk120stiff.robot.anatomy import sample_poses
+from sk120stiff.robot.visuals import visuals
+from tests.exports.arms import exported, public, with_random
 from tests.oracles.sample_urdfs import mimic_tree, six_axis_arm
 from tests.robot.loop_arms import four_bar
 from tests.workspace.test_arm import sk120_with, with_effect
@@ -20,180 +22,211 @@ from tests.workspace.test_arm import sk120_with, with_effect
 POSE = np.array([0.4, 0.35, -0.5, 0.3, -0.9, 0.2])
 WRENCH = np.array([300.0, -250.0, -400.0, 30.0, -20.0, 10.0])
 
-MODELS = {
-    "springs": (),
-    "tilt, base and tool": (
-        "joint_tilt:joint_2_l",
-        "base_rocking:base_link",
-        "base_sliding:base_link",
-        "tool_compliance:tool0",
-    ),
-    "beams of both arms": ("link_bending:link_2_l", "link_bending:link_3_u"),
-    "coupled through the linkage": ("closure_coupling:joint_2_l,joint_3_u",),
-    "rod": ("closure_rod:rod",),
-    "offset": ("joint_offset:joint_3_u",),
-}
+
+def loaded(model: Model, folder: Path, **request: object) -> mujoco.MjModel:
+    export(model, folder / "arm.xml", **request)
+    return mujoco.MjModel.from_xml_path(str(folder / "arm.xml"))
 
 
-def settled(text: str, site: str, wrench: np.ndarray, steps: int = 6000) -> np.ndarray:
-    """Position of a site after time has been stepped under a wrench that acts there."""
-    model = mujoco.MjModel.from_xml_string(text)
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, site)
-    for _ in range(steps):
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
+def settled(
+    arm: mujoco.MjModel, site: str, command: np.ndarray, wrench: np.ndarray, steps: int = 6000
+) -> np.ndarray:
+    """Position of a site at rest under a wrench that acts there; time is stepped from the key."""
+    data = mujoco.MjData(arm)
+    mujoco.mj_resetDataKeyframe(arm, data, 0)
+    data.ctrl[:] = command
+    number = arm.site(site).id
+    for step in range(steps):
+        mujoco.mj_kinematics(arm, data)
+        mujoco.mj_comPos(arm, data)
         data.qfrc_applied[:] = 0.0
         mujoco.mj_applyFT(
-            model,
-            data,
-            wrench[:3],
-            wrench[3:],
-            data.site_xpos[number],
-            model.site_bodyid[number],
-            data.qfrc_applied,
-        )
-        mujoco.mj_step(model, data)
+            arm, data, wrench[:3], wrench[3:], data.site_xpos[number],
+            arm.site_bodyid[number], data.qfrc_applied,
+        )  # fmt: skip
+        mujoco.mj_step(arm, data)
+        if step % 50 == 49 and np.abs(data.qvel).max() < 1e-9:
+            break
     assert np.abs(data.qvel).max() < 1e-8
-    mujoco.mj_kinematics(model, data)
+    mujoco.mj_kinematics(arm, data)
     return data.site_xpos[number].copy()
 
 
-@pytest.mark.parametrize("names", MODELS.values(), ids=MODELS)
-def test_mujoco_deflects_as_the_model(names: tuple[str, ...]) -> None:
-    model = sk120_with(*names)
-    text = mjcf_text(spring_arm(model, POSE))
-    moved = settled(text, "tool0", WRENCH) - settled(text, "tool0", np.zeros(6), steps=200)
-    expected = model.deflect(POSE[None], WRENCH[None])[0]
-    assert np.linalg.norm(expected) > 3e-4
-    np.testing.assert_allclose(moved, expected, atol=2e-8)  # 1e-6 was asked for
+def resting(model: Model, a: np.ndarray, wrench: np.ndarray) -> np.ndarray:
+    """(3,) where the model says that the loaded tool stands."""
+    situation = situation_of_load(model.robot, a, wrench)
+    return model.physical().solve(situation).rest.screws.position[0]
 
 
-def test_where_the_unloaded_tool_stands() -> None:
-    model = sk120_with("joint_offset:joint_3_u")
-    offset = model.values[-1]
-    there = settled(mjcf_text(spring_arm(model, POSE)), "tool0", np.zeros(6), steps=200)
-    shifted = POSE + offset * np.eye(6)[2]
-    np.testing.assert_allclose(there, model.robot.placement(shifted)[:3, 3], atol=1e-9)
+def heavy(name: str) -> Model:
+    model = base_model(public(name))
+    robot = model.robot
+    base = robot.base_frame
+    for effect in (f"joint_tilt:{robot.actuated[1]}", f"base_rocking:{base}",
+                   f"base_sliding:{base}", f"tool_compliance:{robot.tool_frame}"):  # fmt: skip
+        model = with_effect(model, effect)
+    return with_random(model, "joint_frame", "joint_offset")
 
 
-def test_other_frames_and_other_robots() -> None:
+MODELS = {
+    "springs": sk120_with,
+    "tilt, base and tool": lambda: sk120_with(
+        "joint_tilt:joint_2_l", "base_rocking:base_link", "base_sliding:base_link",
+        "tool_compliance:tool0",
+    ),
+    "beams that a linkage passes on": lambda: sk120_with(
+        "link_bending:link_2_l", "link_bending:link_3_u"
+    ),
+    "coupled through the linkage": lambda: sk120_with("closure_coupling:joint_2_l,joint_3_u"),
+    "wrong geometry": lambda: with_random(
+        sk120_with("joint_tilt:joint_3_u"), "joint_offset", "joint_frame", "link_length",
+        "tool_offset",
+    ),
+    "UR5 under its weight": lambda: heavy("ur5_robot.urdf"),
+    "Panda under its weight": lambda: heavy("panda.urdf"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_at_rest_at_ten_commands(name: str, tmp_path: Path) -> None:
+    """One file, driven to ten poses by its actuators; 1 µm was asked for."""
+    model = MODELS[name]()
+    robot = model.robot
+    a = sample_poses(robot, 10, seed=4)
+    arm = loaded(model, tmp_path)
+    site = arm.site(0).name  # the measured point, where the model knows one
+    wrench = WRENCH * (0.2 if "weight" in name else 1.0)
+    for k, pose in enumerate(a):
+        found = settled(arm, site, pose, wrench if k % 2 else -wrench)
+        wanted = resting(model, pose, wrench if k % 2 else -wrench)
+        np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-7)
+    bent = np.linalg.norm(wanted - robot.placement(a[-1])[:3, 3])
+    assert bent > 3e-4
+
+
+def test_the_weight_alone_bends_an_arm(tmp_path: Path) -> None:
+    model = joint_spring_model(load_robot(six_axis_arm(seed=2)), [2e5, 2e5, 1e5, 5e4, np.inf, 3e4])
+    arm = loaded(model, tmp_path, pose=POSE)
+    found = settled(arm, "tool", POSE, np.zeros(6))
+    np.testing.assert_allclose(found, resting(model, POSE, np.zeros(6)), atol=1e-7)
+    assert np.linalg.norm(found - model.robot.placement(POSE)[:3, 3]) > 1e-3
+    assert arm.body_mass[arm.body_gravcomp == 0.0].sum() == pytest.approx(
+        model.robot.mechanism().chain.masses.sum()
+    )
+
+
+def test_inertia_is_that_of_the_links(tmp_path: Path) -> None:
+    """Kinetic energy of the free tree against the robot's own mass matrix, by Pinocchio."""
+    robot = load_robot(six_axis_arm(seed=6))
+    model = joint_spring_model(robot, np.full(6, 1e5))
+    arm = loaded(model, tmp_path, pose=POSE)
+    data = mujoco.MjData(arm)
+    mujoco.mj_resetDataKeyframe(arm, data, 0)
+    mujoco.mj_forward(arm, data)
+    M = np.zeros((arm.nv, arm.nv))
+    mujoco.mj_fullM(arm, data, M)
+    motors = [arm.joint(name).dofadr[0] for name in robot.actuated]
+    gears = [arm.joint(f"{name}.spring").dofadr[0] for name in robot.actuated]
+    built = pin.buildModelFromXML(robot.document.xml)
+    wanted = pin.crba(built, built.createData(), POSE)
+    wanted = np.triu(wanted) + np.triu(wanted, 1).T
+    np.testing.assert_allclose(M[np.ix_(motors, gears)], wanted, rtol=1e-4, atol=1e-2)
+
+
+def test_other_frames_and_slides(tmp_path: Path) -> None:
     model = sk120_with()
-    text = mjcf_text(spring_arm(model, POSE, frame="reflector"))
-    moved = settled(text, "reflector", WRENCH) - settled(text, "reflector", np.zeros(6), steps=200)
+    arm = loaded(model, tmp_path, pose=POSE, frame="reflector")
     robot = model.robot
     point = (np.linalg.inv(robot.placement(POSE)) @ robot.placement(POSE, "reflector"))[:3, 3]
     expected = model.deflect(POSE[None], WRENCH[None], point=point)[0]
-    np.testing.assert_allclose(moved, expected, atol=2e-8)
+    moved = settled(arm, "reflector", POSE, WRENCH) - robot.placement(POSE, "reflector")[:3, 3]
+    np.testing.assert_allclose(moved, expected, atol=1e-7)
 
     slides = joint_spring_model(load_robot(mimic_tree()), [3e5, 1e7])
     pose = np.array([0.3, 0.1])
-    text = mjcf_text(spring_arm(slides, pose))
-    moved = settled(text, "f", WRENCH) - settled(text, "f", np.zeros(6), steps=200)
-    np.testing.assert_allclose(moved, slides.deflect(pose[None], WRENCH[None])[0], atol=2e-8)
+    arm = loaded(slides, tmp_path, pose=pose)
+    moved = settled(arm, "e", pose, WRENCH) - slides.robot.placement(pose)[:3, 3]
+    np.testing.assert_allclose(moved, slides.deflect(pose[None], WRENCH[None])[0], atol=1e-7)
 
 
-@pytest.mark.parametrize("extra", [(), ("joint_tilt:j2", "link_bending:link_3")])
-def test_a_heavy_arm_sags_as_the_model_does(extra: tuple[str, ...]) -> None:
-    robot = load_robot(six_axis_arm(seed=2))
-    model: Model = joint_spring_model(robot, [2e5, 2e5, 1e5, 5e4, np.inf, 3e4])
-    for name in extra:
-        model = with_effect(model, name)
-    text = mjcf_text(spring_arm(model, POSE))
-    unloaded = settled(text, "tool", np.zeros(6), steps=25_000)
-    rigid = robot.placement(POSE)[:3, 3]
-    assert np.linalg.norm(unloaded - rigid) > 1e-3
-    moved = settled(text, "tool", WRENCH, steps=25_000) - unloaded
-    np.testing.assert_allclose(moved, model.deflect(POSE[None], WRENCH[None])[0], atol=2e-8)
-
-
-def test_the_rest_is_an_equilibrium_to_the_last_digit() -> None:
-    """The oracle solves for the rest with hard constraints instead of stepping time."""
-    model = sk120_with("joint_tilt:joint_2_l")
-    arm = spring_arm(model, POSE)
-    text = mjcf_text(arm).replace('site name="tool0"', 'site name="tip"')
-    relaxed = {body.name: body.reference for body in arm.bodies}
-    found = Statics(text, relaxed).deflection(WRENCH)
-    expected = model.deflect(POSE[None], WRENCH[None])[0]
-    np.testing.assert_allclose(found.displacement, expected, atol=1e-11)
-
-
-def read_sdf(text: str) -> tuple[list[Spring], np.ndarray]:
-    """Springs and tip of an exported SDF without mimic joints."""
-
-    def pose(element: ET.Element) -> np.ndarray:
-        x, y, z, roll, pitch, yaw = map(float, element.findtext("pose", "").split())
-        turn = rotation([0, 0, 1], yaw) @ rotation([0, 1, 0], pitch) @ rotation([1, 0, 0], roll)
-        return transform([x, y, z], turn)
-
-    model = ET.fromstring(text).find("model")
-    assert model is not None
-    links = {link.get("name"): link for link in model.iter("link")}
-    springs = []
-    for joint in model.iter("joint"):
-        if joint.get("type") == "fixed":
+@pytest.mark.parametrize("name", ["ur5_robot.urdf", "panda.urdf", "motoman_sk120"])
+def test_it_has_the_users_shapes_and_frames(name: str, tmp_path: Path) -> None:
+    model = base_model(public(name))
+    robot = model.robot
+    arm = loaded(model, tmp_path)
+    assert arm.ngeom == len(visuals(robot).shapes) > 5
+    data = mujoco.MjData(arm)
+    data.qpos[:] = arm.key_qpos[0]
+    mujoco.mj_kinematics(arm, data)
+    rest = robot.rest
+    for frame in (robot.tool_frame, robot.document.root, *[j.child for j in robot.document.joints]):
+        try:
+            wanted = robot.placement(rest, frame)
+        except InputError:  # not carried by the base frame
             continue
-        child = links[joint.findtext("child")]
-        assert child.find("pose").get("relative_to") == joint.findtext("parent")
-        axis = joint.find("axis")
-        springs.append(
-            Spring(
-                origin=pose(child),
-                axis=np.array([float(x) for x in axis.findtext("xyz").split()]),
-                angle=float(axis.findtext("dynamics/spring_reference")),
-                stiffness=float(axis.findtext("dynamics/spring_stiffness")),
-                slide=joint.get("type") == "prismatic",
-            )
-        )
-    return springs, pose(model.find("frame"))
+        np.testing.assert_allclose(data.body(frame).xpos, wanted[:3, 3], atol=1e-9)
+        found = data.body(frame).xmat.reshape(3, 3)
+        np.testing.assert_allclose(found, wanted[:3, :3], atol=1e-9)
 
 
-def test_sdf_read_back_deflects_the_same() -> None:
-    robot = load_robot(six_axis_arm(seed=5))
-    model = joint_spring_model(robot, [2e5, 3e5, 1e5, np.inf, 4e4, 3e4])
-    model = with_effect(model, "joint_tilt:j2")
-    springs, tip = read_sdf(sdf_text(spring_arm(model, POSE)))
-    found = serial_statics(springs, tip).deflection(WRENCH)
-    massless = load_robot(without_masses(six_axis_arm(seed=5)))
-    light = with_effect(joint_spring_model(massless, model.joint_stiffness()), "joint_tilt:j2")
-    expected = light.deflect(POSE[None], WRENCH[None])[0]
-    np.testing.assert_allclose(found.displacement, expected, atol=1e-9)
-
-
-def without_masses(text: str) -> str:
-    root = ET.fromstring(text)
-    for link in root.iter("link"):
-        for inertial in link.findall("inertial"):
-            link.remove(inertial)
-    return ET.tostring(root, encoding="unicode")
-
-
-def test_sdf_of_the_sk120_has_its_mimic_joint() -> None:
-    arm = spring_arm(sk120_with(), POSE)
-    root = ET.fromstring(sdf_text(arm))
-    mimic = root.find(".//joint[@name='joint_elbow_parallel']/axis/mimic")
-    assert mimic is not None
-    assert mimic.get("joint") == "joint_2_l"
-    assert float(mimic.findtext("multiplier", "nan")) == -1.0
-    stiffness = {
-        joint.get("name"): float(joint.findtext("axis/dynamics/spring_stiffness"))
-        for joint in root.iter("joint")
-        if joint.find("axis/dynamics") is not None
-    }
-    assert stiffness == pytest.approx(
-        {"joint_1_s": 1.4098e6, "joint_2_l": 4.0076e5, "joint_3_u": 9.3528e5}
+def test_a_missing_mesh_costs_its_shape_alone(tmp_path: Path) -> None:
+    text = six_axis_arm().replace(
+        '<link name="link_2">',
+        '<link name="link_2"><visual><geometry><mesh filename="gone.stl"/></geometry></visual>'
+        '<visual><geometry><box size="1 2 3"/></geometry></visual>',
     )
-    assert arm.held.keys() == {"joint_4_r", "joint_5_b", "joint_6_t"}
+    model = base_model(load_robot(text))
+    made = exported(model, "mjcf", tmp_path / "arm.xml")
+    assert any("gone.stl" in note for note in made.notes)
+    assert loaded(model, tmp_path).ngeom == 1
 
 
-def test_what_cannot_be_exported_is_refused(tmp_path) -> None:
-    with pytest.raises(InputError, match="tie joints"):
-        sdf_text(spring_arm(sk120_with(MODELS["coupled through the linkage"][0]), POSE))
-    with pytest.raises(InputError, match="follows several"):
-        sdf_text(spring_arm(sk120_with("link_bending:link_2_l"), POSE))
+def test_it_can_be_driven(tmp_path: Path) -> None:
+    """A ramp of all commands under a load: the tool goes along, and ends where it should."""
+    model = sk120_with("base_rocking:base_link")
+    robot = model.robot
+    arm = loaded(model, tmp_path, pose=POSE)
+    data = mujoco.MjData(arm)
+    mujoco.mj_resetDataKeyframe(arm, data, 0)
+    site, goal, time = arm.site("tool0").id, POSE + 0.1, 2.0
+    far = 0.0
+    for step in range(4000):
+        share = min(step * arm.opt.timestep / time, 1.0)
+        data.ctrl[:] = POSE + share * (goal - POSE)
+        mujoco.mj_step(arm, data)
+        wanted = robot.placement(data.ctrl)[:3, 3]
+        far = max(far, np.linalg.norm(data.site_xpos[site] - wanted))
+    assert 1e-4 < far < 3e-3  # it moves at 0.2 m/s, 4 ms behind the command
+    np.testing.assert_allclose(data.site_xpos[site], robot.placement(goal)[:3, 3], atol=1e-7)
+
+
+def test_what_springs_cannot_be_is_told() -> None:
+    model = sk120_with(
+        "closure_rod:rod", "gravity_compensator:joint_2_l", "gear_hardening:joint_3_u",
+        "lost_motion:joint_2_l", "friction_hysteresis:joint_2_l", "force_scale:sensor",
+    )  # fmt: skip
+    made = exported(model, "mjcf", pose=POSE)
+    told = {told.effect: told.how for told in made.left_out}
+    assert "with the pose" in told["closure_rod:rod"]
+    assert "with the pose" in told["gravity_compensator:joint_2_l"]
+    assert "with the load" in told["gear_hardening:joint_3_u"]
+    assert "jumps" in told["lost_motion:joint_2_l"]
+    assert "instrument" in told["force_scale:sensor"]
+    assert {e.id for e in model.effects} == {t.effect for t in (*made.carried, *made.left_out)}
+    header = made.text[: made.text.index("<compiler")]
+    assert all(name in header for name in told)
+
+
+def test_a_compliance_that_goes_with_the_pose_is_right_at_the_pose(tmp_path: Path) -> None:
+    model = sk120_with("closure_rod:rod")
+    arm = loaded(model, tmp_path, pose=POSE)
+    found = settled(arm, "tool0", POSE, WRENCH)
+    np.testing.assert_allclose(found, resting(model, POSE, WRENCH), atol=1e-7)
+
+
+def test_what_cannot_be_exported_is_refused(tmp_path: Path) -> None:
     robot = four_bar(tmp_path)
     with pytest.raises(InputError, match="closed loop"):
-        spring_arm(joint_spring_model(robot, np.full(robot.n, 3e5)), np.zeros(robot.n))
+        exported(joint_spring_model(robot, np.full(robot.n, 3e5)), "mjcf")
     with pytest.raises(InputError, match="yields"):
-        spring_arm(Model(load_robot("motoman_sk120")), POSE)
+        exported(Model(load_robot("motoman_sk120")), "sdf")
