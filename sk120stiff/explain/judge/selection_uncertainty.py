@@ -2,7 +2,9 @@
 
 Where the readings cannot tell two names apart, or two laws of one gear, the springs come out
 differently under each. What a single model calls its standard error is then too small by far: the
-largest difference is added in squares.
+largest difference is added in squares. The spring of a bent gear is compared where all its laws
+mean the same by it, at no load: one law's parameter is the slope there, another's the slope beyond
+its last step.
 """
 
 from __future__ import annotations
@@ -12,7 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import Effect
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Effect, Elastic
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.attribution import unit
@@ -36,6 +39,7 @@ def with_selection_uncertainty(found: Attempt, findings: Sequence[Finding]) -> F
     final = found.final
     place = {parameter.name: k for k, parameter in enumerate(final.parameters)}
     doubt = np.zeros(len(final.x))
+    here = _at_no_load(final)
     for effects, must_fit in _others(found, findings):
         try:
             other = refit(found.base, effects)
@@ -43,11 +47,26 @@ def with_selection_uncertainty(found: Attempt, findings: Sequence[Finding]) -> F
             continue
         if must_fit and 2.0 * (final.log_likelihood - other.log_likelihood) > REFUTED:
             continue
-        for parameter, value in zip(other.parameters, other.x, strict=True):
+        for parameter, value in zip(other.parameters, _at_no_load(other), strict=True):
             if parameter.name in place:
                 k = place[parameter.name]
-                doubt[k] = max(doubt[k], abs(value - final.x[k]))
+                doubt[k] = max(doubt[k], abs(value - here[k]))
     return with_values(replace(final, doubt=doubt))
+
+
+def _at_no_load(fit: Fit) -> Array:
+    """(P_free,) the estimates; of springs that a law bends, the whole compliance at no load."""
+    x, model, situation = fit.x.copy(), fit.model, fit.problem.situation
+    rest = np.zeros((situation.count, 1))
+    for effect in model.effects:
+        if not (effect.bends_a_spring and isinstance(effect, Elastic)):
+            continue
+        values = np.array([p.internal for p in model.parameters if p.effect == effect])
+        slope = float(effect.elongation(rest, situation, values).by_torque.mean())
+        for k, parameter in enumerate(fit.parameters):
+            if parameter.effect.joint_spring and parameter.effect.where == effect.where:
+                x[k] += slope / fit.problem.scale[k]
+    return np.asarray(x)
 
 
 def _others(found: Attempt, findings: Sequence[Finding]) -> Iterator[tuple[list[Effect], bool]]:
