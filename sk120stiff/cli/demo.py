@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sk120stiff.cli.explain_output import (
+    Task,
     check_folder,
     findings,
     page_or_warning,
     said,
+    write_answer,
 )
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
@@ -34,8 +36,10 @@ if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
     from sk120stiff.robot import Robot
     from sk120stiff.show.stories.demo_facts import Demo
+    from sk120stiff.show.stories.hidden_cause import HiddenCause
 
 ROBOT = "motoman_sk120"
+HIDDEN = "hidden_cause"  # the campaign's files, and the folder of its answer
 Told = Callable[[int, int], None]
 
 
@@ -44,20 +48,73 @@ def command(
         Path, typer.Option("--out", metavar="DIR", help="Folder for the results.")
     ] = Path("sk120stiff-demo"),
 ) -> Answer:
-    """The main job on the paper's measured data, with a report.
+    """The main job on the paper's measured data, and on readings with a hidden cause.
 
     Puts the paper's springs to its measured deflections, identifies springs, asks what is missing,
-    and says what three poses can tell. Writes report.html, scene.html, model.yaml, verdict.json.
+    and says what three poses can tell. Then it explains a simulated campaign in which a cause was
+    hidden, and opens the truth. Writes report.html, scene.html, model.yaml, verdict.json, and the
+    campaign's own into the folder hidden_cause.
 
     Example: sk120stiff demo --out sk120stiff-demo
     """
     check_folder(out)
+    check_folder(out / HIDDEN)
     data = bundled_robots()[ROBOT] / "data" / "table2_measured.csv"
     readings, robot = open_data(data)
     with progress_bar("demo") as tell:
         made = demo_of(readings, robot, tell)
-        written = _write(made, readings, data, out, tell)
-    return Answer({**_document(made), **written}, parts=_parts(made, written))
+        cause, of_cause = _hidden_cause(data.with_name(f"{HIDDEN}.csv"), out / HIDDEN, tell)
+        written = _write(made, cause, readings, data, out, tell)
+    document = {**_document(made), HIDDEN: {**_of_hidden(cause), **of_cause}, **written}
+    return Answer(document, parts=[*_parts(made), *_told(cause), *_files(written)])
+
+
+def _hidden_cause(data: Path, out: Path, tell: Told) -> tuple[HiddenCause, dict[str, object]]:
+    """Explain the campaign, write its answer, then open the truth."""
+    from sk120stiff.show.stories.hidden_cause import opened
+
+    holdout = data.with_name(f"{data.stem}_holdout.csv")
+    readings, robot = open_data(data)
+    others, _ = open_data(holdout)
+    answer = explain(
+        base_model(robot),
+        readings,
+        holdout=others,
+        progress=lambda _, share: tell(40 + round(40 * share), 100),
+    )
+    task = Task(readings, data, [data, data.with_suffix(".yaml"), holdout], holdout)
+    written = write_answer(answer, task, out, report=True)
+    cause = opened(answer, data.with_name(f"{data.stem}_truth.json"))
+    return cause, {key: written[key] for key in ("model", "report", "scene") if key in written}
+
+
+def _of_hidden(cause: HiddenCause) -> dict[str, object]:
+    first, last = cause.answer.steps[0], cause.answer.steps[-1]
+    return {
+        "verdict": cause.answer.verdict,
+        "effects": list(cause.found),
+        "truth": list(cause.hidden),
+        "heldout_um": {"before": 1e6 * first.heldout_rms, "after": 1e6 * last.heldout_rms},
+        "parameters": [
+            {"name": p.name, "value": p.value, "std": p.std, "truth": cause.values[p.name],
+             "unit": p.spec.unit}
+            for p in cause.answer.final.parameters if p.name in cause.values
+        ],
+    }  # fmt: skip
+
+
+def _told(cause: HiddenCause) -> list[object]:
+    answer = cause.answer
+    steps = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
+    poses = len(answer.base.problem.situation.poses)
+    return [
+        f"4. A campaign of {poses} poses, simulated by other code, with a hidden cause",
+        said(answer),
+        *findings(answer),
+        table("Gap [µm rms per axis]", ["model", "fitted", "held out"], steps),
+        cause.opened(),
+        table("Found and hidden", ["parameter", "found", "hidden"], cause.rows),
+    ]
 
 
 def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
@@ -68,7 +125,7 @@ def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
     found = fit(paper, readings, method="trf")
     other = fit(paper, readings, method="lm")
     tell(10, 100)
-    answer = explain(paper, readings, progress=lambda _, share: tell(10 + round(60 * share), 100))
+    answer = explain(paper, readings, progress=lambda _, share: tell(10 + round(25 * share), 100))
     situation = situation_of(robot, readings.masked())
     present = {effect.id for effect in found.model.effects}
     absent = [
@@ -80,7 +137,12 @@ def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
 
 
 def _write(
-    made: Demo, readings: Measurements, data: Path, out: Path, tell: Told
+    made: Demo,
+    cause: HiddenCause,
+    readings: Measurements,
+    data: Path,
+    out: Path,
+    tell: Told,
 ) -> dict[str, object]:
     """Verdict and model first; a page that cannot be made is a warning."""
     from sk120stiff.show import reproducibility, scene_html
@@ -96,7 +158,7 @@ def _write(
             write_measurements(plan_of(made.answer, readings), out / following)
         write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
     written: dict[str, object] = {"model": out / "model.yaml"}
-    tell(75, 100)
+    tell(85, 100)
     scene = page_or_warning(
         "scene.html",
         lambda: scene_html(
@@ -111,12 +173,14 @@ def _write(
     )
     if scene is not None:
         written["scene"] = write_atomically(out / "scene.html", scene)
-    tell(80, 100)
+    tell(90, 100)
     inputs = [data, data.with_suffix(".yaml"), data.parent.parent / "sk120.urdf"]
     report = page_or_warning(
         "report.html",
         lambda: demo_report(
             made,
+            cause,
+            cause_link=f"{HIDDEN}/report.html" if (out / HIDDEN / "report.html").exists() else "",
             next_poses=following or "",
             scene=scene or "",
             scene_link="scene.html" if scene else "",
@@ -162,7 +226,12 @@ def _per_pose(made: Demo) -> list[tuple[str, float, float]]:
     return [(p, float(b), float(a)) for p, b, a in zip(poses, before, after, strict=True)]
 
 
-def _parts(made: Demo, written: Mapping[str, object]) -> list[object]:
+def _files(written: Mapping[str, object]) -> list[object]:
+    titles = {"report": "Report:", "scene": "Scene: "}
+    return [f"{title} {written[page]}" for page, title in titles.items() if page in written]
+
+
+def _parts(made: Demo) -> list[object]:
     from sk120stiff.show.wording import with_error
 
     given = {p.name: p for p in made.paper.parameters}
@@ -188,9 +257,4 @@ def _parts(made: Demo, written: Mapping[str, object]) -> list[object]:
         f"At their usual size {able} of {len(made.hidden)} other effects would leave enough beyond "
         "the springs to be named on these three poses."
     )
-    shown += [
-        f"{title} {written[page]}"
-        for title, page in (("Report:", "report"), ("Scene: ", "scene"))
-        if page in written
-    ]
     return shown

@@ -10,6 +10,9 @@ from typing import Any
 
 import pytest
 
+from tests.hidden.generator.build import build
+from tests.hidden.generator.writing import write_case
+from tests.hidden.make_cases import names
 from tests.show.test_report import Outline
 
 
@@ -31,7 +34,7 @@ def test_keys_of_the_contract(demo) -> None:
         assert (out.parent / document[key]).is_file()
     verdict = json.loads((out / "verdict.json").read_text(encoding="utf-8"))
     following = {"next_poses.csv", "next_poses.yaml"} if verdict["next_poses"] else set()
-    pages = {"report.html", "scene.html", "model.yaml", "verdict.json"}
+    pages = {"report.html", "scene.html", "model.yaml", "verdict.json", "hidden_cause"}
     assert {path.name for path in out.iterdir()} == pages | following
     assert verdict["verdict"] == document["verdict"]
 
@@ -93,7 +96,42 @@ def test_three_poses_are_no_ground_for_a_name(demo) -> None:
     assert document["effects"] == []
 
 
-def test_the_report_tells_three_acts_and_its_limits(demo) -> None:
+def test_a_hidden_cause_is_named_added_and_the_gap_shrinks(demo) -> None:
+    """The truth is what the generator wrote down, which shares no code with the program."""
+    out, document = demo
+    cause = document["hidden_cause"]
+    assert cause["verdict"] == "named"
+    assert cause["effects"] == cause["truth"] == ["gear_hardening:joint_3_u"]
+    gap = cause["heldout_um"]
+    assert gap["after"] < 0.4 * gap["before"]
+    found = {p["name"]: p for p in cause["parameters"]}
+    assert len(found) == 4  # three springs and the size of the cause
+    for p in found.values():
+        assert abs(p["value"] - p["truth"]) < 2.5 * p["std"] < 0.1 * p["value"]
+    for key in ("model", "report", "scene"):
+        assert (out.parent / cause[key]).is_file()
+    text = unescape((out / "report.html").read_text(encoding="utf-8"))
+    assert "that is what was named" in text and "hidden_cause/report.html" in text
+
+
+def test_the_campaign_is_the_generators_own(tmp_path) -> None:
+    """As SOURCES.md has it: case_0004 of eight of level L1, seed 2005."""
+    number = {name: number for name, _, number in names({"L1": 8}, 2005)}["case_0004"]
+    write_case(build("L1", 2005, number), "case", tmp_path / "cases", tmp_path)
+    bundled = Path("robots/motoman_sk120/data").resolve()
+    made = tmp_path / "cases" / "case"
+    for ending in ("csv", "yaml"):
+        assert (made / f"train.{ending}").read_bytes() == (
+            bundled / f"hidden_cause.{ending}"
+        ).read_bytes()
+        assert (made / f"holdout.{ending}").read_bytes() == (
+            bundled / f"hidden_cause_holdout.{ending}"
+        ).read_bytes()
+    truth = json.loads((bundled / "hidden_cause_truth.json").read_text(encoding="utf-8"))
+    assert json.loads((tmp_path / "case.json").read_text(encoding="utf-8")) == truth
+
+
+def test_the_report_tells_four_acts_and_its_limits(demo) -> None:
     out, document = demo
     page = (out / "report.html").read_text(encoding="utf-8")
     outline = Outline(page)
@@ -101,7 +139,8 @@ def test_the_report_tells_three_acts_and_its_limits(demo) -> None:
     shown = re.sub(r'srcdoc="[^"]*"|<svg.*?</svg>', "", page, flags=re.DOTALL)
     text = re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]+>", " ", shown)).replace("\u00a0", " "))
     for heading in ("1. The paper's springs", "2. Springs identified", "3. What is missing?",
-                    "How stiff the arm is", "What three poses can tell"):  # fmt: skip
+                    "How stiff the arm is", "What three poses can tell",
+                    "4. The proof: a hidden cause"):  # fmt: skip
         assert heading in text
     gap = document["gap_um"]
     assert f"by {gap['paper']:.1f} µm rms" in text and f"by {gap['identified']:.1f} µm" in text

@@ -31,6 +31,7 @@ from sk120stiff.show.report import (
 from sk120stiff.show.stories.demo_facts import OURS, PAPER, Demo
 from sk120stiff.show.stories.evidence_section import evidence_section
 from sk120stiff.show.stories.gap_section import on_the_arm, pose_rms, steps_table
+from sk120stiff.show.stories.hidden_cause import HiddenCause, hidden_section
 from sk120stiff.show.stories.limits_section import blind_section, next_section
 from sk120stiff.show.stories.stiffness_section import stiffness_section
 from sk120stiff.show.stories.verdicts import lead_of
@@ -49,17 +50,21 @@ WORTH_LISTING = 2e-6  # m rms at its usual size
 
 def demo_report(
     demo: Demo,
+    cause: HiddenCause,
     *,
     scene: str = "",
     scene_link: str = "",
+    cause_link: str = "",
     next_poses: str = "",
     reproducibility: Mapping[str, str] | None = None,
 ) -> Report:
     """Tell the demo as a report.
 
     Args:
-        demo: What was computed.
+        demo: What was computed of the paper's data.
+        cause: What was found in a campaign with a hidden cause.
         scene, scene_link: Text of the scene's page, and its address beside the report.
+        cause_link: Address of that campaign's own report; empty where there is none.
         next_poses: Address of the file with poses to measure next; empty where there is none.
         reproducibility: Name → text, shown last.
     """
@@ -79,6 +84,7 @@ def demo_report(
             _third_act(demo),
             _three_poses(demo),
             *([following] if following else []),
+            hidden_section(cause, cause_link),
             _onwards(),
         ],
         reproducibility=reproducibility or {},
@@ -126,6 +132,7 @@ def _answer(demo: Demo) -> Section:
         "The springs are identified again, with their uncertainty.",
         "The whole catalogue of effects is asked what is missing, and what these readings could "
         "show at all.",
+        "In a campaign of 20 poses a cause was hidden: it is found, and the truth opened.",
     ]
     return Section("The answer", [KeyFigures(figures), Items(acts, ordered=True)])
 

@@ -39,7 +39,7 @@ def gap_section(
         steps_table(answer),
     ]
     if len(answer.steps) > 1:
-        blocks.append(_waterfall(answer, floor))
+        blocks.append(waterfall(answer))
     models = models_of(answer)
     blocks += [_per_pose(answer.base, models, floor), on_the_arm(answer.base, models)]
     if scene:
@@ -71,7 +71,9 @@ def steps_table(answer: Explanation) -> Table:
     )
 
 
-def _waterfall(answer: Explanation, floor: float | None) -> Picture:
+def waterfall(answer: Explanation) -> Picture:
+    """The gap falling from step to step, fitted and held out, over what noise alone makes."""
+    floor = answer.noise_floor
     steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
     first, last = answer.steps[0], answer.steps[-1]
     return Picture(
