@@ -22,6 +22,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from sk120stiff import show as show
     from sk120stiff.effects import CATALOGUE, Catalogue, Effect, effect
     from sk120stiff.errors import InputError, Refusal, ToolkitError, ToolkitWarning
     from sk120stiff.explain.answer.explanation import Explanation
@@ -124,6 +125,8 @@ def __getattr__(name: str) -> object:
         from importlib.metadata import version
 
         return version("sk120stiff")
+    if name == "show":  # the one folder that is spoken of as such: sk.show.in_meshcat(...)
+        return import_module("sk120stiff.show")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = _found(name)

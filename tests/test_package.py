@@ -38,7 +38,9 @@ def test_type_checkers_see_the_same_names() -> None:
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("sk120stiff")
         for alias in node.names
     }
+    assert imported.pop("show") == "sk120stiff"  # the one folder among them
     assert imported == sk120stiff._HOME
+    assert sk120stiff.show is sys.modules["sk120stiff.show"]
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -18,12 +20,15 @@ from sk120stiff.cli.options import (
     ToolOption,
     WrenchOption,
 )
+from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
     from sk120stiff.model import Model
     from sk120stiff.show import Scene
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 DataOption = Annotated[
     Path | None,
@@ -57,6 +62,10 @@ HostOption = Annotated[
         help="Address to listen on. Anything but loopback shows the page to your network.",
     ),
 ]
+MeshcatOption = Annotated[
+    bool,
+    typer.Option("--meshcat", help="Open Meshcat's own viewer instead, on this machine alone."),
+]
 StaticOption = Annotated[
     Path | None,
     typer.Option(
@@ -76,6 +85,7 @@ def command(
     pose: PoseOption = None,
     wrench: WrenchOption = None,
     static: StaticOption = None,
+    meshcat: MeshcatOption = False,
     no_open: NoOpenOption = False,
     port: PortOption = 7400,
     host: HostOption = "127.0.0.1",
@@ -85,7 +95,9 @@ def command(
     """The robot, its ellipsoids and its gaps, live in the browser.
 
     Opens a page on this machine and runs until it is interrupted (Ctrl-C). The page has a slider
-    for every motor and for the load. With --static it writes the page as a file and ends.
+    for every motor and for the load. With --static it writes the page as a file and ends. With
+    --meshcat the viewer is Meshcat's, which other programs can draw into at the address printed;
+    with --data it plays the measured poses there.
 
     Example: sk120stiff view motoman_sk120 --wrench '0,0,-490 N' --static scene.html
     """
@@ -97,6 +109,9 @@ def command(
     believed = open_model(robot, model, base=base, tool=tool)
     file = model or model_file(robot)
     scene = _scene(believed, file, before, measured, pose, wrench)
+    if meshcat:
+        _refuse_beside_meshcat(static, before, host)
+        return _in_meshcat(scene, no_open=no_open)
     if static is not None:
         from sk120stiff.show import static_scene
 
@@ -106,7 +121,7 @@ def command(
     from sk120stiff.show.live import LiveServer
 
     server = LiveServer(scene, host=host, port=port)
-    if host not in ("127.0.0.1", "localhost", "::1"):
+    if host not in LOOPBACK:
         note(f"Everyone who can reach {host} can see this page.")
     parts = [f"Open {server.url}", "Ctrl-C ends it."]
     return Answer(
@@ -141,3 +156,37 @@ def _scene(
         wrench=None if wrench is None else wrench_of(wrench),
         model_file=file or "",
     )
+
+
+def _refuse_beside_meshcat(static: Path | None, before: Path | None, host: str) -> None:
+    for option, given in (("--static", static), ("--before", before)):
+        if given is not None:
+            raise InputError(f"--meshcat and {option} exclude each other", remedy="Leave one out.")
+    if host not in LOOPBACK:
+        raise InputError(
+            "Meshcat's own server guards nothing and stays on loopback",
+            where=f"--host {host}",
+            remedy="Leave --host out, or --meshcat.",
+        )
+
+
+def _in_meshcat(scene: Scene, *, no_open: bool) -> Answer:
+    from sk120stiff.show.meshcat import InMeshcat
+    from sk120stiff.show.meshcat.bridge import meshcat_on_loopback
+
+    viewer = meshcat_on_loopback()
+    shown = InMeshcat(viewer, scene)
+    visited = [pose for pose in scene.poses if pose.readings]
+    if len(visited) > 1:
+        loads = [pose.readings[-1].wrench for pose in visited]
+        shown.animate([pose.a for pose in visited], loads, steps=30, repetitions=10)
+    address = {"url": viewer.url(), "zmq_url": viewer.window.zmq_url}
+
+    def stay() -> None:
+        if not no_open:
+            viewer.open()
+        with suppress(KeyboardInterrupt):
+            Event().wait()
+
+    parts = [f"Open {address['url']}", f"Draw into it at {address['zmq_url']}", "Ctrl-C ends it."]
+    return Answer(address, parts, afterwards=stay)

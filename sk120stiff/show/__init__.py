@@ -25,6 +25,10 @@ Map (`sk120stiff.show.scene.cloud`)
     ``cloud_page(path, scene, cloud_of_map(open_map("map.zarr"), robot))``: the robot among the
     coloured points of a map. ``figures_of_map(dataset)``: slices of it as figures.
 
+Meshcat (`sk120stiff.show.meshcat`)
+    ``in_meshcat(visualizer, robot, pose, wrench, model=model)`` draws into a `meshcat.Visualizer`,
+    Pinocchio's among them; what it returns moves and plays.
+
 Live (`sk120stiff.show.live`)
     ``LiveServer(scene, port=...).serve(open_browser=...)``: the same page with everything computed
     by Python.
@@ -38,6 +42,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sk120stiff.show.figures.of_map import MapFigure, figures_of_map
     from sk120stiff.show.figures.saving import inline_svg, save_figure
+    from sk120stiff.show.meshcat import InMeshcat, in_meshcat
     from sk120stiff.show.report import (
         Code,
         Items,
@@ -61,6 +66,7 @@ _HOME = {
     "Cloud": "scene.cloud",
     "Code": "report",
     "Elastic": "scene.elastic",
+    "InMeshcat": "meshcat",
     "Items": "report",
     "KeyFigure": "report",
     "KeyFigures": "report",
@@ -78,6 +84,7 @@ _HOME = {
     "cloud_of_map": "scene.cloud",
     "cloud_page": "scene.cloud",
     "figures_of_map": "figures.of_map",
+    "in_meshcat": "meshcat",
     "inline_svg": "figures.saving",
     "save_figure": "figures.saving",
     "reproducibility": "report",
@@ -90,6 +97,7 @@ __all__ = [
     "Cloud",
     "Code",
     "Elastic",
+    "InMeshcat",
     "Items",
     "KeyFigure",
     "KeyFigures",
@@ -107,6 +115,7 @@ __all__ = [
     "cloud_of_map",
     "cloud_page",
     "figures_of_map",
+    "in_meshcat",
     "inline_svg",
     "reproducibility",
     "save_figure",

@@ -95,7 +95,9 @@ class Tree:
                 remedy=f"Frames are: {', '.join(self.frame_names)}.",
             )
         found = self._model.frames[self._model.getFrameId(frame, pin.FrameType.BODY)]
-        return int(found.parentJoint) - 1, np.asarray(found.placement.homogeneous)
+        # Pinocchio 2, which ROS and NumPy 1.26 may ask for, calls it `parent`.
+        carrier = found.parentJoint if hasattr(found, "parentJoint") else found.parent
+        return int(carrier) - 1, np.asarray(found.placement.homogeneous)
 
     def path(self, base: str, tool: str) -> tuple[int, ...]:
         """Moving joints met on the way from one frame to another.

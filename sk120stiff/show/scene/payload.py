@@ -45,7 +45,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
         "frame": frame,
         "elastic": {"label": _source(scene, live=live), "assumed": elastic.assumed},
         "joints": _joints(scene),
-        "limits": _limits(scene),
+        "limits": limits_of(scene),
         "links": list(tree.names),
         "bodies": bodies,
         "meshes": [_mesh(mesh) for mesh in meshes],
@@ -57,7 +57,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
             "wrench": _list(scene.first_load),
             "point": _list(np.asarray(scene.point, dtype=float)),
         },
-        "scale": _scale(scene),
+        "scale": scale_of(scene),
         "colours": {
             name.lower(): getattr(palette, name) for name in vars(palette) if name.isupper()
         },
@@ -130,7 +130,7 @@ def _joints(scene: Scene) -> list[dict[str, Any]]:
     return joints
 
 
-def _limits(scene: Scene) -> dict[str, Any]:
+def limits_of(scene: Scene) -> dict[str, Any]:
     """Largest values that the controls offer and that the live server takes."""
     loads = [r.wrench for pose in scene.poses for r in pose.readings]
     largest = np.max(np.abs([scene.first_load, *loads]), axis=0)
@@ -144,7 +144,7 @@ def _limits(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _scale(scene: Scene) -> dict[str, Any]:
+def scale_of(scene: Scene) -> dict[str, Any]:
     """Sizes that stay put while the sliders move, so that a change of stiffness can be seen."""
     robot = scene.robot
     reach = reach_of(robot, scene.frame)

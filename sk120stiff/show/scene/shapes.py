@@ -80,11 +80,11 @@ def capsules(tree: LinkTree, reach: float, links: Sequence[int] | None = None) -
             length = float(np.linalg.norm(end))
             thick = reach * (0.042 - 0.024 * depth[parent] / deepest)
             if length > 0.25 * thick:
-                placement = _along(end)
+                placement = along(end)
                 placement[:3, 3] = 0.5 * end
                 bodies.append(Body(int(parent), placement, "capsule", (0.82 * thick, length), LIMB))
         if k in chosen and tree.kinds[k] != FIXED:
-            placement = _along(tree.axes[k])
+            placement = along(tree.axes[k])
             bodies.append(Body(k, placement, "cylinder", (1.12 * radius, 2.3 * radius), HINGE))
     return bodies
 
@@ -124,7 +124,7 @@ def _clustered(mesh: Mesh, low: NDArray[np.float32], size: float) -> Mesh:
     return Mesh(vertices.astype(np.float32), faces[np.sort(first)].astype(np.uint32))
 
 
-def _along(direction: Array) -> Array:
+def along(direction: Array) -> Array:
     """(4, 4) rotation that turns z into a direction."""
     z = direction / np.linalg.norm(direction)
     other = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
