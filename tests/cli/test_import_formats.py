@@ -35,7 +35,11 @@ def test_import_then_identify(run, tmp_path: Path) -> None:
     assert outcome.code == 0, outcome.stderr
     found = outcome.document
     assert (found["rows"], found["mode"], found["registered"]) == (40, "positions", False)
-    assert found["unused"] == ["column Collection", "column Group"]
+    assert found["unused"][:3] == [
+        "column Collection",
+        "column Group",
+        "line 1: SpatialAnalyzer 2023.1",
+    ]
     assert 0.2 < found["registration"]["rms_mm"] < 1.0
     data = read_measurements(tmp_path / "own.csv")
     assert data.absolute is not None and data.absolute.frame == "unknown"
@@ -175,3 +179,52 @@ def test_markers_of_robodk_keep_their_places(run, tmp_path: Path) -> None:
     assert data.absolute is not None and set(data.absolute.markers) == {"M1", "M2"}
     np.testing.assert_allclose(data.absolute.point, places)
     assert run("identify", str(out), "--json").document["rms_um"] < 0.1
+
+
+def test_load_pairs_of_a_tracker_anywhere_give_the_springs(run, tmp_path: Path) -> None:
+    """Encoders jitter, the tracker is turned, the marker's place is not known, two loads a pose."""
+    robot = load_robot("motoman_sk120")
+    springs, rng = np.array([1.4098e6, 4.0076e5, 9.3528e5]), np.random.default_rng(1)
+    rows = ["name;X [mm];Y [mm];Z [mm];" + ";".join(f"A{k} [°]" for k in range(1, 7))
+            + ";Fx [N];Fy [N];Fz [N];reflector"]  # fmt: skip
+    for p, a in enumerate(rng.uniform(-0.6, 0.6, (10, 6))):
+        T, J = robot.placement(a), robot.jacobian(a, point=MARKER)[:3, :3]
+        for load in ([0.0, 0.0, 0.0], [300.0, 0.0, -490.0], [-300.0, 200.0, -900.0]):
+            moved = T[:3, 3] + T[:3, :3] @ MARKER + J @ ((J.T @ load) / springs)
+            seen = 1e3 * (TURN.apply(moved) + SHIFT) + rng.normal(0.0, 0.01, 3)
+            q = np.degrees(a + rng.normal(0.0, 2e-6, 6))
+            numbers = [*(f"{v:.4f}" for v in seen), *(f"{v:.6f}" for v in q), *map(str, load)]
+            rows.append(";".join([f"T{p}", *numbers, "SMR 1"]).replace(".", ","))
+    source, out = tmp_path / "loaded", tmp_path / "own.csv"
+    source.write_bytes("\n".join(rows).encode("cp1252"))
+    found = run("import", str(source), "--robot", "motoman_sk120", "--out", str(out), "--json")
+    assert found.code == 0, found.stderr
+    assert (found.document["mode"], found.document["registered"]) == ("load pairs", True)
+    assert (found.document["poses"], found.document["useful_poses"]) == (10, 10)
+    data = read_measurements(out)
+    assert data.poses[0] == "T0" and data.zero == "shared"
+    np.testing.assert_allclose(data.point, MARKER, atol=3e-5)
+    values = [p["value"] for p in run("identify", str(out), "--json").document["parameters"]]
+    assert values == pytest.approx(springs, rel=0.02)
+
+
+def test_a_payload_that_nothing_is_paired_with_stays_a_payload(run, tmp_path: Path) -> None:
+    mass = [f"{5 * (k % 3)}" for k in range(40)]
+    (tmp_path / "loads.csv").write_text("\n".join(["payload [kg]", *mass]))
+    arguments = exported(tmp_path)
+    found = run("import", *arguments, "--loads-file", str(tmp_path / "loads.csv"), "--json")
+    assert found.document["mode"] == "positions"
+    data = read_measurements(tmp_path / "own.csv")
+    assert data.absolute is not None
+    assert data.absolute.payload.tolist() == [float(m) for m in mass]
+    np.testing.assert_allclose(data.absolute.payload_point, MARKER, atol=3e-4)
+
+
+def test_files_in_each_other_s_place(run, tmp_path: Path) -> None:
+    points, _, joints, *rest = exported(tmp_path)
+    refused = run("import", joints, "--joints-file", points, *rest)
+    assert refused.code == 2
+    assert "Give the file with the points as FILE, and this one as --joints-file" in refused.stderr
+    alone = run("import", points, *rest)
+    assert alone.code == 2
+    assert "no joint values" in alone.stderr and "--joints-file" in alone.stderr

@@ -295,18 +295,16 @@ def _labels(
     stated = sheet.get("pose")
     if stated is not None and all(stated.cells):
         return stated.cells, stated, []
-    pose = rows_of_one_pose(q)
+    pose, said = rows_of_one_pose(q), "Rows with the same joint values are one pose."
+    if len(set(pose)) == len(pose) and np.ptp(W, axis=0).any() and not displaced:
+        pose = _clusters(q)
+        said = f"Rows whose joint values differ by less than {SAME_POSE:g} are one pose."
     names = sheet.get("name")
-    if len(set(pose)) == len(pose):
-        own = names.cells if names else ()
-        if names and len(set(own)) == len(pose) and not any(c[:1] in ("", "#") for c in own):
-            return own, names, []
-        if np.ptp(W, axis=0).any() and not displaced:
-            near = _clusters(q)
-            if len(set(near)) < len(pose):
-                said = f"Rows whose joint values differ by less than {SAME_POSE:g} are one pose."
-                return near, None, [said]
-    return pose, None, ["Rows with the same joint values are one pose."]
+    own = names.cells if names else ()
+    same = len(set(own)) == len(set(pose)) == len(set(zip(own, pose, strict=False)))
+    if same and not any(cell[:1] in ("", "#") for cell in own):
+        return own, names, []
+    return pose, None, [said]
 
 
 def _clusters(q: Array) -> tuple[str, ...]:

@@ -67,7 +67,7 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         placing = place(robot, rough)
     except InputError as error:
         raise Refusal(
-            f"{error.what}. These are not this robot's positions",
+            f"{error.what}. These are not this robot's positions as they stand",
             where=error.where,
             remedy=f"{error.remedy or ''} Units and columns are told by --length, --angle and "
             "--joints.".strip(),

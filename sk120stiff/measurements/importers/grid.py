@@ -12,10 +12,11 @@ from pathlib import Path
 
 from sk120stiff.errors import InputError
 
-_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas", " ": "blanks"}
+_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas", " ": "blanks", "": ""}
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[.,']\d{3})*(?:(?<=\.\d{3}),|(?<=[,']\d{3})\.)\d+")
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
 _COMMENT = ("//", "#", "%")
 _LOOKED_AT = 400  # lines that tell the separator
 
@@ -73,7 +74,8 @@ def text_grid(path: Path, data: bytes) -> Grid:
     mark = _separator([line for _, line in content[:_LOOKED_AT]])
     rows = [tuple(split(line, mark, f"{path}, line {number}")) for number, line in content]
     how = [encoding] if encoding != "UTF-8" else []
-    how.append(f"cells separated by {_SEPARATORS[mark]}")
+    if mark:
+        how.append(f"cells separated by {_SEPARATORS[mark]}")
     grid = Grid(path, tuple(rows), tuple(k for k, _ in content), tuple(comments), ", ".join(how))
     return with_points(grid)
 
@@ -97,9 +99,10 @@ def decoded(path: Path, data: bytes) -> tuple[str, str]:
             raise _no_text(path)
         return _decode(path, data, "utf-16-be" if even > odd else "utf-16-le"), "UTF-16"
     try:
-        return data.decode("utf-8"), "UTF-8"
+        data.decode("utf-8")
     except UnicodeDecodeError:
         return _decode(path, data, "cp1252"), "Windows-1252"
+    return _decode(path, data, "utf-8"), "UTF-8"
 
 
 def _decode(path: Path, data: bytes, encoding: str) -> str:
@@ -107,7 +110,7 @@ def _decode(path: Path, data: bytes, encoding: str) -> str:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:
         raise _no_text(path) from error
-    if "\0" in text:
+    if _CONTROL.search(text):
         raise _no_text(path)
     return text
 
@@ -125,14 +128,14 @@ def _separator(lines: Sequence[str]) -> str:
 
     def score(mark: str) -> float:
         cells = [split(line, mark, "") for line in lines]
-        many = [c for c in cells if len(c) > 1]
+        many = [c for c in cells if len(c) > 1 or not mark]
         if not many:
             return 0.0
         width = Counter(map(len, many)).most_common(1)[0][0]
         whole = [c for c in many if len(c) == width]
         good = sum(is_number(cell) or bool(_COMMA.fullmatch(cell)) for c in whole for cell in c)
         filled = sum(cell != "" for c in whole for cell in c)
-        return (good + 1e-3) / (filled + 1) * len(whole) / len(cells)
+        return (good + 1e-3 * len(mark)) / (filled + 1) * len(whole) / len(cells)
 
     return max(_SEPARATORS, key=score)
 
@@ -143,6 +146,8 @@ def split(line: str, mark: str, place: str) -> list[str]:
     Raises:
         InputError: A quotation mark that nothing closes.
     """
+    if not mark:
+        return [line.strip()]
     if mark == " ":
         line = line.replace("\t", " ").strip()
     try:

@@ -25,6 +25,7 @@ NEEDED = {
     "loads": (("fx", "fy", "fz"), ("payload",), ("load",)),
 }
 SEARCHED = 80  # rows that may stand above the headers
+LISTED = 12  # comments and lines above the table that are shown one by one
 BLANK = {"", "nan", "n/a", "na", "-", "--", "---", "none", "null", "#n/a"}
 _FRAME = re.compile(r"(?:working )?frame\W+(.+)", re.IGNORECASE)
 
@@ -210,7 +211,10 @@ def sheet_of(
     columns, spare, twice = _columns(
         layout, list(zip(*rows, strict=True)), dict(assumed_units or {})
     )
-    remarks = [f"line {number}: {text}" for number, text in layout.above]
+    above = [*grid.comments, *layout.above]
+    remarks = [f"line {number}: {text}" for number, text in above[:LISTED] if text]
+    if len(above) > LISTED:
+        remarks.append(f"{len(above) - LISTED} more comments and lines above the table")
     frame = next(
         (m[1] for _, t in (*grid.comments, *layout.above) if (m := _FRAME.search(t))), None
     )

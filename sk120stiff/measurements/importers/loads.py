@@ -10,6 +10,7 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, unit_of
+from sk120stiff.measurements.poses import rows_by_label
 
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition
 FORCES = ("fx", "fy", "fz")
@@ -110,10 +111,8 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
 
 def lightest(pose: tuple[str, ...], W: Array, use: Mask) -> tuple[Array, Mask, int]:
     """Loads less the lightest one of their pose; rows in use that differ from it; poses shifted."""
-    labels = np.array(pose)
     differences, shifted = W.copy(), 0
-    for label in np.unique(labels):
-        rows = np.flatnonzero(labels == label)
+    for rows in rows_by_label(np.unique(pose, return_inverse=True)[1]):
         among = rows[use[rows]] if use[rows].any() else rows
         force, moment = (np.linalg.norm(W[among, k : k + 3], axis=1) for k in (0, 3))
         least = W[among[np.lexsort((moment, force))[0]]]

@@ -111,6 +111,8 @@ def columns_for(
             names = enumerate(("mx", "my", "mz"), 3)
             columns += [(f"{n}[N*m]", _reprs(forces[:, k])) for k, n in names]
     readings, other = list(draft.readings), list(draft.other)
+    if mode != "positions":  # where the column marker means positions as such, here it is a note
+        other = [("marker_name" if h == "marker" else h, cells) for h, cells in other]
     if registered and fitted is not None:
         at = 1e3 * fitted.in_base(draft.measured)
         readings = [(f"{a}[mm]", _reprs(at[:, k])) for k, a in enumerate("xyz")]

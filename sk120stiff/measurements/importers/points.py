@@ -23,6 +23,8 @@ class Points:
         layout = layout_of(source)
         if layout is not None:
             return Guess(0.4, "its columns are named")
+        if _joints_alone(source):
+            return Guess(0.05, "its columns are joints")
         count, named, _ = shaped(source)
         if _names(source, count) is None:
             return NO
@@ -35,6 +37,12 @@ class Points:
             InputError: Positions and joints without headers, which may come in either order.
         """
         layout = layout_of(source)
+        if layout is None and _joints_alone(source):
+            raise InputError(
+                "this file holds joint values, and no positions",
+                where=str(source.path),
+                remedy="Give the file with the points as FILE, and this one as --joints-file.",
+            )
         if layout is None:
             count, named, _ = shaped(source)
             names = _names(source, count) or ()
@@ -57,6 +65,10 @@ class Points:
         if source.role != "points":
             why = "columns as told" if source.columns else f"its headers name the {source.role}"
         return sheet_of(source, layout, "a table of readings", why)
+
+
+def _joints_alone(source: Source) -> bool:
+    return source.role == "points" and layout_of(replace(source, role="joints")) is not None
 
 
 def _names(source: Source, count: int) -> tuple[str, ...] | None:

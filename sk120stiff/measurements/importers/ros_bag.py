@@ -157,7 +157,7 @@ def _standstills(q: Array) -> tuple[str, ...]:
 def _messages(source: Source) -> tuple[list[Any], list[Any], str, str]:
     """Joint states and positions with their times, the topic of these, and what is not used."""
     require("rosbags", needed_for="reading a ROS bag")
-    from rosbags.highlevel import AnyReader, AnyReaderError
+    from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 
     path = _folder(source.path)
@@ -182,7 +182,9 @@ def _messages(source: Source) -> tuple[list[Any], list[Any], str, str]:
                         place = getattr(place, part)
                     xyz = (float(place.x), float(place.y), float(place.z))
                     points.append((stamp, xyz, message.header.frame_id))
-    except AnyReaderError as error:
+    except InputError:
+        raise
+    except Exception as error:  # whatever a broken recording makes of it
         raise InputError(
             f"this recording cannot be read ({error})",
             where=str(source.path),

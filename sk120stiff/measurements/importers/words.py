@@ -8,9 +8,9 @@ from sk120stiff import units
 
 _AXIS = r"(?P<a>[xyz])"
 _AXES = {
-    "": rf"(?:(?:pos(?:ition)?|coord(?:inate)?|point|tracker|marker|"
+    "": rf"(?:(?:pos(?:ition)?|[ck]oord(?:inate)?|point|tracker|marker|"
     rf"(?:meas(?:ured)?|act(?:ual)?|ist)) )?{_AXIS}"
-    r"(?: (?:coord(?:inate)?|pos(?:ition)?|meas(?:ured)?|act(?:ual)?|ist|value|wert))?",
+    r"(?: (?:[ck]oord(?:inate)?|pos(?:ition)?|meas(?:ured)?|act(?:ual)?|ist|value|wert))?",
     "nominal ": rf"(?:nom(?:inal)?|target|soll|theo\w*|cmd|command(?:ed)?) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:nom(?:inal)?|t|target|soll|theo\w*|cmd)",
     "deviation ": rf"(?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta) {_AXIS}"
