@@ -65,9 +65,7 @@ def build(
         f"Speeds: {60e3 * feed:g} mm/min where the path says none, rapid moves {60e3 * rapid:g} "
         "mm/min.",
         *(["Settings: " + "; ".join(told) + "."] if told else []),
-        "Every move ends in a stop at its target."
-        if language.name != "gcode"
-        else "The tool keeps the orientation of the path.",
+        *language.remarks(settings),
     ]
     return Program(
         name=out.stem,

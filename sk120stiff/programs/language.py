@@ -20,7 +20,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.programs.program import Program, Setting, Targets
+from sk120stiff.programs.program import Program, Setting, Targets, positive
 from sk120stiff.robot.rotations import rotation_vector
 
 POSITION = 1e-6  # m: farther from its target no position may be written
@@ -80,6 +80,13 @@ class Language(ABC):
         """Step of the last digit of `axes`."""
         del program
         return self.axis_digit
+
+    def remarks(self, settings: Mapping[str, str]) -> list[str]:
+        """Sentences for the header: how its moves end."""
+        blend = positive(settings, "blend", zero=True) if "blend" in settings else 0.0
+        if blend:
+            return [f"Targets are passed without a stop, corners rounded within {blend:g} mm."]
+        return ["Every move ends in a stop at its target."]
 
     def in_part_frame(self, settings: Mapping[str, str]) -> bool:
         """Are targets stated in the frame of the part?"""

@@ -25,8 +25,9 @@ def part_frame(text: str) -> Array:
     """
     limits = {name: (-np.inf, np.inf, "length" if name in "xyz" else "angle") for name in _PLACES}
     values = dict.fromkeys(_PLACES, 0.0)
-    for axis in parse_axes([text], limits, where="--frame"):
-        if len(axis.values) != 1:
+    axes = parse_axes([text], limits, where="--frame")
+    for axis in axes:
+        if len(axis.values) != 1 or [other.name for other in axes].count(axis.name) > 1:
             raise InputError(
                 f"{axis.name} has several values",
                 where="--frame",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -117,4 +118,20 @@ def percent(settings: Mapping[str, str], key: str) -> int:
     """
     if not 1 <= (value := whole_number(settings, key)) <= 100:
         raise InputError(f"{value} % is no speed", where=f"--set {key}", remedy="Write 1 to 100.")
+    return value
+
+
+BLEND = Setting("0", "how far corners may be rounded [mm]; 0: a stop at every target")
+
+
+def positive(settings: Mapping[str, str], key: str, *, zero: bool = False) -> float:
+    """A setting that is a positive number, or zero where that is allowed.
+
+    Raises:
+        InputError: It is none.
+    """
+    text = settings[key].strip()
+    value = float(text) if re.fullmatch(r"[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?", text) else -1.0
+    if not (0.0 < value < 1e6 or (zero and value == 0.0)):
+        raise InputError(f"{settings[key]!r} is no positive number", where=f"--set {key}")
     return value

@@ -16,6 +16,8 @@ from sk120stiff.errors import InputError
 from sk120stiff.programs.arcs import arc_points
 
 MOST_POINTS = 500_000  # of one path
+FARTHEST = 1e4  # m from the part's origin
+FASTEST = 100.0  # m/s
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +82,7 @@ class Course:
         self, end: Array, line: int, *, feed: float, rapid: bool, axis: Array | None = None
     ) -> None:
         """Move to `end` (3,); it becomes a point once all its coordinates are known."""
+        self._sane(end, feed, line)
         start, known = self.here, bool(np.isfinite(self.here).all())
         self.here = end
         if not np.isfinite(end).all():
@@ -92,7 +95,9 @@ class Course:
             return
         pieces = 1
         if known and not rapid and np.isfinite(self.step):
-            pieces = max(1, int(np.ceil(np.linalg.norm(end - start) / self.step - 1e-9)))
+            parts = float(np.linalg.norm(end - start)) / self.step
+            self._room_for(parts, line)
+            pieces = max(1, int(np.ceil(parts - 1e-9)))
         share = np.arange(1, pieces + 1)[:, None] / pieces
         points = np.array([end]) if pieces == 1 else start + share * (end - start)
         points[-1] = end
@@ -112,6 +117,7 @@ class Course:
         """Turn right-handed about `normal` (3,) through `centre` (3,) to `end` (3,)."""
         if not np.isfinite(self.here).all():
             raise self.wrong("an arc begins where the tool is not known to stand", line)
+        self._sane(np.concatenate([end, centre]), feed, line)
         points = arc_points(
             self.here, end, centre, normal, turns=turns, chord=self.chord, most=MOST_POINTS
         )
@@ -120,14 +126,23 @@ class Course:
         self.here = end
         self._add(points, line, feed, False, axis)
 
-    def _add(self, points: Array, line: int, feed: float, rapid: bool, axis: Array | None) -> None:
-        count = len(points)
+    def _room_for(self, count: float, line: int) -> None:
         if len(self.position) + count > MOST_POINTS:
             raise self.wrong(
                 f"the path has more than {MOST_POINTS} points",
                 line,
                 "Allow a larger --chord or --step, or cut the path into parts.",
             )
+
+    def _sane(self, places: Array, feed: float, line: int) -> None:
+        if np.nanmax(np.abs(places), initial=0.0) > FARTHEST:
+            raise self.wrong(f"a place more than {FARTHEST:g} m from the origin", line)
+        if feed > FASTEST:
+            raise self.wrong(f"a feed of {feed:.3g} m/s", line)
+
+    def _add(self, points: Array, line: int, feed: float, rapid: bool, axis: Array | None) -> None:
+        count = len(points)
+        self._room_for(count, line)
         if axis is not None:
             before = self.axes[-1] if self.axes else axis
             share = np.arange(1, count + 1)[:, None] / count

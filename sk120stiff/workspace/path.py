@@ -139,7 +139,7 @@ def _loads(table: Table, constant: Array | None) -> Array:
             f"the column {missing[0]!r} is missing",
             where=table.place(missing[0]),
             remedy="Give the force on the robot as fx[N], fy[N], fz[N], zeros where nothing acts; "
-            "or one for all points by --wrench.",
+            "'compensate' takes one for all points by --wrench too.",
         )
     moments = np.zeros((len(table.lines), 3))
     if has & set(MOMENTS):

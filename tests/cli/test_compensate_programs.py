@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sk120stiff.programs import LANGUAGES
+from sk120stiff.programs import LANGUAGES, read_gcode
 from sk120stiff.robot import load_robot
 from tests.cli.conftest import Run
 from tests.corpus.robots import example
@@ -76,6 +76,9 @@ def test_all_outputs_of_one_path_lead_to_the_corrected_joints(
         assert found.document["language"] == language.name
         text = out.read_text()
         read = language.read(text)
+        if language.name == "gcode":  # what is written can be read as a path
+            again = read_gcode(out, chord=1e-3)
+            np.testing.assert_allclose(again.position, read.position, atol=1e-12)
         digit = np.radians(language.axis_digit)
         there = robot.placement(np.radians(read.joints))
         expected = in_part if language.name == "gcode" else place
@@ -238,6 +241,7 @@ def test_seven_joints_and_no_spherical_wrist(run: Run, tmp_path: Path) -> None:
         (("--wrench", "1,2 N"), "no wrench"),
         (("--wrench", "0,0,1 N", "--frame", "q=1 mm"), "no axis 'q'"),
         (("--wrench", "0,0,1 N", "--frame", "x=1:2:1 mm"), "several values"),
+        (("--wrench", "0,0,1 N", "--frame", "x=1 mm; x=2 mm"), "several values"),
         (("--wrench", "0,0,1 N", "--tool-rpy", "1 deg"), "--tool-rpy"),
         (("--wrench", "0,0,1 N", "--chord", "0 um"), "not positive"),
         (("--wrench", "0,0,1 N", "--feed", "3 mm"), "--feed"),

@@ -140,6 +140,9 @@ def test_long_feed_moves_are_divided(tmp_path: Path) -> None:
         ("G0 X0 Y0 Z0\nG1 X1 I4 F9\n", "belong to arcs"),
         ("G54 G0 X0 Y0 Z0\nG55 X1\n", "second part frame"),
         ("M98 P10\n", "another program"),
+        ("G0 X1" + "0" * 30 + "Y0 Z0\n", "from the origin"),
+        ("G0 X0 Y0 Z0\nG2 X1 I9999999999 F9\n", "from the origin"),
+        ("G0 X0 Y0 Z0\nG1 X1 F1" + "0" * 30, "a feed of"),
         ("(nothing)\nM3 S100\n", "moves nothing"),
         ("", "moves nothing"),
     ],
@@ -153,3 +156,8 @@ def test_what_is_not_understood_stops_with_its_line(tmp_path: Path, text: str, s
 def test_an_endless_arc_is_refused_before_it_is_made(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="more than 500000 points"):
         read(tmp_path, "G0 X1000 Y0 Z0\nG2 X1000 I-1000 P9999 F9\n", chord=1e-9)
+
+
+def test_a_step_of_nothing_is_refused_before_it_is_made(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="line 2: the path has more than 500000 points"):
+        read(tmp_path, "G0 X0 Y0 Z0\nG1 X100 F9\n", step=1e-18)

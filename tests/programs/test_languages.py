@@ -1,5 +1,6 @@
 """Every language: written, read again, and read where a maker's description has written it."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -235,6 +236,34 @@ def test_seven_axes_and_slides() -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "given_", "written"),
+    [
+        ("krl", {"blend": "0.5"}, "$APO.CDIS = 0.5"),
+        ("rapid", {"blend": "0.5"}, ", z_1, tool0"),
+        ("urscript", {"blend": "0.5"}, ", r=0.0005)"),
+        ("ls", {"termination": "CNT50"}, "cm/min CNT50 ;"),
+        ("jbi", {"pl": "3"}, " PL=3"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*rounded:sk120stiff.errors.ToolkitWarning")
+def test_targets_may_be_passed_without_a_stop(
+    name: str, given_: dict[str, str], written: str
+) -> None:
+    language = LANGUAGES[name]
+    text = language.text(program(language, settings=language.with_defaults(given_)))
+    assert written in text
+    assert written not in language.text(program(language))
+    move = [
+        line for line in text.splitlines() if re.search("MOV[JL]|[LP](IN|TP) |Move|[JL] P", line)
+    ]
+    if name not in ("krl", "urscript"):
+        assert written not in move[-1]  # the last one is reached
+    (stops,) = language.remarks(language.with_defaults({}))[:1]
+    assert "stop at its target" in stops
+    assert "stop at its" not in " ".join(language.remarks(language.with_defaults(given_)))
+
+
+@pytest.mark.parametrize(
     ("name", "given_", "says"),
     [
         ("krl", {"tool": "x"}, "'x' is no number"),
@@ -246,6 +275,12 @@ def test_seven_axes_and_slides() -> None:
         ("jbi", {"pulses": "1,2,3,4,5,0"}, "pulses per degree"),
         ("jbi", {"rconf": "2,0,0,0,0,0"}, "no form"),
         ("urscript", {"a": "0"}, "no positive number"),
+        ("krl", {"blend": "-1"}, "no positive number"),
+        ("rapid", {"blend": "x"}, "no positive number"),
+        ("ls", {"termination": "CNT101"}, "no termination"),
+        ("jbi", {"pl": "9"}, "no position level"),
+        ("jbi", {"group": "RB1\nEND"}, "no control group"),
+        ("urscript", {"joint_v": "0_2"}, "no positive number"),
     ],
 )
 def test_bad_settings(name: str, given_: dict[str, str], says: str) -> None:

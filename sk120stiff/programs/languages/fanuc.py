@@ -21,7 +21,7 @@ CM_PER_MIN = 0.01 / 60.0
 MOST = 12000  # cm/min
 _POINT = re.compile(r"P\[(\d+)[^]]*\]\{(.*?)\};", re.DOTALL)
 _VALUE = re.compile(r"([A-Z]\d?) =\s*(\S+) (?:mm|deg)")
-_MOVE = re.compile(r"[JL] P\[\d+\] (\d+)(cm/min|%) FINE")
+_MOVE = re.compile(r"[JL] P\[\d+\] (\d+)(cm/min|%) (?:FINE|CNT)")
 _CONFIG = re.compile(r"[NF] [UD] [TB], -?\d, -?\d, -?\d")
 
 
@@ -37,6 +37,7 @@ class Fanuc(Language):
         "frame": Setting("0", "number of the user frame; 0: the robot's base, else the part's"),
         "config": Setting("N U T, 0, 0, 0", "configuration of the places, as the pendant shows it"),
         "joint_speed": Setting("10", "speed of moves by joints [%]"),
+        "termination": Setting("FINE", "how moves end: FINE, a stop, or CNT0 to CNT100"),
     }
     frame = "frame"
     axis_digit = 1e-4
@@ -52,6 +53,12 @@ class Fanuc(Language):
                 f"{program.settings['config']!r} is no configuration",
                 where="--set config",
                 remedy="Write it like 'N U T, 0, 0, 0'.",
+            )
+        if not re.fullmatch(r"FINE|CNT(100|\d{1,2})", program.settings["termination"]):
+            raise InputError(
+                f"{program.settings['termination']!r} is no termination",
+                where="--set termination",
+                remedy="Write FINE, or CNT0 to CNT100.",
             )
         share = percent(program.settings, "joint_speed")
         speeds = np.round(program.speed / CM_PER_MIN).astype(int)
@@ -85,6 +92,12 @@ class Fanuc(Language):
             "day": program.date[2:10].replace("/", "-"),
             "time": f"{program.date[11:]}:00",
         }
+
+    def remarks(self, settings: Mapping[str, str]) -> list[str]:
+        """How its moves end."""
+        if settings["termination"] == "FINE":
+            return super().remarks(settings)
+        return [f"Targets are passed with {settings['termination']}, the last one is FINE."]
 
     def read(self, text: str) -> Targets:
         """Places and joints from /POS, speeds from /MN."""

@@ -35,6 +35,11 @@ class GCode(Language):
         del settings
         return True
 
+    def remarks(self, settings: Mapping[str, str]) -> list[str]:
+        """What it leaves to the control."""
+        del settings
+        return ["The tool keeps the orientation of the path."]
+
     def content(self, program: Program) -> dict[str, object]:
         """Places and joints of every point."""
         points = []

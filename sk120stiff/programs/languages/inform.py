@@ -24,6 +24,7 @@ _TYPE = re.compile(r"///(PULSE|RECTAN)\b")
 _POINT = re.compile(r"C\d{5}=(.*)")
 _MOVE = re.compile(r"MOV[JL] C\d{5} (V|VJ)=(\S+)")
 _FORM = re.compile(r"[01](,[01]){5}")
+_GROUP = re.compile(r"[A-Z]{2}[0-9]{1,2}(,[A-Z]{2}[0-9]{1,2})*")
 MOST = 1500.0  # mm/s
 MOST_POINTS = 99999
 
@@ -41,6 +42,7 @@ class Inform(Language):
         "pulses": Setting("", "pulses per degree, or mm, of every axis; empty: unknown"),
         "rconf": Setting("0,0,0,0,0,0", "form: no-flip, lower arm, rear, R, T, S over 180 deg"),
         "joint_speed": Setting("10", "speed of moves by joints [%]"),
+        "pl": Setting("0", "position level of moves: 0, a stop, to 8"),
         "group": Setting("RB1", "control group"),
     }
     frame = "user"
@@ -85,7 +87,11 @@ class Inform(Language):
                 where="--set rconf",
                 remedy="Write six times 0 or 1: '0,0,0,0,0,0'.",
             )
+        if not _GROUP.fullmatch(group := program.settings["group"]):
+            raise InputError(f"{group!r} is no control group", where="--set group", remedy="RB1.")
         share = percent(program.settings, "joint_speed")
+        if (level := whole_number(program.settings, "pl")) > 8:
+            raise InputError(f"{level} is no position level", where="--set pl", remedy="0 to 8.")
         speeds = np.round(1e3 * program.speed, 1)
         for bad in speeds[(speeds < 0.1) | (speeds > MOST)][:1]:
             raise InputError(
@@ -122,6 +128,15 @@ class Inform(Language):
             "tool": whole_number(program.settings, "tool"),
             "user": user,
         }
+
+    def remarks(self, settings: Mapping[str, str]) -> list[str]:
+        """How its moves end, and what fixes the branch."""
+        ends = super().remarks(settings)
+        if settings["pl"] != "0":
+            ends = [f"Targets are passed with position level {settings['pl']}, the last with 0."]
+        if not settings["pulses"].strip():
+            ends.append("Pulses are unknown: rconf alone fixes the branch of the first move.")
+        return ends
 
     def read(self, text: str) -> Targets:
         """Positions by their type, speeds of the moves, joints of the comments."""

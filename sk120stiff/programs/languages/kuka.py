@@ -14,7 +14,14 @@ import numpy as np
 
 from sk120stiff.programs.language import Language
 from sk120stiff.programs.orientation import from_kuka_abc, kuka_abc
-from sk120stiff.programs.program import Program, Setting, Targets, whole_number
+from sk120stiff.programs.program import (
+    BLEND,
+    Program,
+    Setting,
+    Targets,
+    positive,
+    whole_number,
+)
 
 AXES = [f"A{k}" for k in range(1, 7)] + [f"E{k}" for k in range(1, 7)]
 _AGGREGATE = re.compile(r"\{(E6AXIS|E6POS): ([^}]*)\}")
@@ -31,6 +38,7 @@ class Kuka(Language):
     settings: ClassVar[Mapping[str, Setting]] = {
         "tool": Setting("0", "number of TOOL_DATA; 0: the flange"),
         "base": Setting("0", "number of BASE_DATA; 0: the robot's base, else the part's frame"),
+        "blend": BLEND,
     }
     frame = "base"
     axis_digit = 1e-6
@@ -57,6 +65,7 @@ class Kuka(Language):
             speed = program.speed[k]
         return {
             "points": points,
+            "blend": positive(program.settings, "blend", zero=True),
             "tool": f"TOOL_DATA[{tool}]" if tool else "$NULLFRAME",
             "base": f"BASE_DATA[{base}]" if base else "$NULLFRAME",
         }

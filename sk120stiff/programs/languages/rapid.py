@@ -16,7 +16,7 @@ import numpy as np
 from sk120stiff.errors import InputError
 from sk120stiff.programs.language import Language, numbers
 from sk120stiff.programs.orientation import from_quaternion, quaternion
-from sk120stiff.programs.program import Program, Setting, Targets
+from sk120stiff.programs.program import BLEND, Program, Setting, Targets, positive
 
 _JOINTS = re.compile(r"CONST jointtarget j\d+ := \[\[([^]]*)\],\[([^]]*)\]\];")
 _PLACE = re.compile(r"CONST robtarget p\d+ := \[\[([^]]*)\],\[([^]]*)\],")
@@ -36,6 +36,7 @@ class Rapid(Language):
     settings: ClassVar[Mapping[str, Setting]] = {
         "tool": Setting("tool0", "name of the tooldata; tool0: the flange"),
         "wobj": Setting("wobj0", "name of the wobjdata; wobj0: the robot's base, else the part's"),
+        "blend": BLEND,
     }
     frame = "wobj"
     axis_digit = 1e-6
@@ -64,7 +65,8 @@ class Rapid(Language):
                 }
             )
         named = {name: f"{1e3 * speed:.4f}" for speed, name in speeds.items()}
-        return {"points": points, "speeds": named, "dof": len(program.axes)}
+        return {"points": points, "speeds": named, "dof": len(program.axes),
+                "blend": positive(program.settings, "blend", zero=True)}  # fmt: skip
 
     def read(self, text: str) -> Targets:
         """The data of the points, and the speeds of the moves."""

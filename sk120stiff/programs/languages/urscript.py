@@ -15,10 +15,10 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.programs.language import Language, numbers
-from sk120stiff.programs.program import Program, Setting, Targets
+from sk120stiff.programs.program import BLEND, Program, Setting, Targets, positive
 from sk120stiff.robot.rotations import rotation_of, rotation_vector
 
-_MOVE = re.compile(r"move(j|l)\(.*?v=([^)]*)\)")
+_MOVE = re.compile(r"move(j|l)\(.*?v=([^,)]*)")
 _JOINTS = re.compile(r"(?<!p)\[([^]]*)\]")
 _POSE = re.compile(r"p\[([^]]*)\]")
 
@@ -34,6 +34,7 @@ class UrScript(Language):
         "a": Setting("0.5", "acceleration of straight moves [m/s^2]"),
         "joint_a": Setting("0.8", "acceleration of moves by joints [rad/s^2]"),
         "joint_v": Setting("0.2", "speed of moves by joints [rad/s]"),
+        "blend": BLEND,
     }
     axis_digit = 1e-9 * 180.0 / np.pi
     angle_digit = 1e-9
@@ -48,15 +49,12 @@ class UrScript(Language):
                 where=f"--to {self.name}",
                 remedy="Choose another language, or --to csv.",
             )
-        for key, text in program.settings.items():
-            try:
-                good = 0.0 < float(text) < np.inf
-            except ValueError:
-                good = False
-            if not good:
-                raise InputError(f"{text!r} is no positive number", where=f"--set {key}")
+        for key in ("a", "joint_a", "joint_v"):
+            positive(program.settings, key)
+        blend = positive(program.settings, "blend", zero=True)
         turn = rotation_vector(program.rotation)
         return {
+            "blend": f", r={1e-3 * blend:g}" if blend else "",
             "points": [
                 {
                     "joints": _listed(program.joints[k]),
@@ -65,7 +63,7 @@ class UrScript(Language):
                     "line": program.lines[k],
                 }
                 for k in range(program.count)
-            ]
+            ],
         }
 
     def read(self, text: str) -> Targets:
