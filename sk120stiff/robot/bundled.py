@@ -16,7 +16,7 @@ def bundled_robots() -> dict[str, Path]:
     Examples:
         >>> import sk120stiff as sk
         >>> list(sk.bundled_robots())
-        ['motoman_sk120']
+        ['motoman_sk120', 'ur5e']
     """
     inside = _PACKAGE / "_robots"
     home = inside if inside.is_dir() else _PACKAGE.parent / "robots"
