@@ -7,30 +7,20 @@ Run:  python scripts/13_tracker_positions.py FOLDER_OF_DATA ur5_robot.urdf --out
 """
 
 import argparse
-import csv
 import subprocess
 import sys
 from pathlib import Path
 
-JOINTS = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
+import sk120stiff as sk
+from sk120stiff.measurements.importers import Told, import_readings
 
 
 def converted(grid: Path, urdf: Path, out: Path) -> Path:
-    """The published file under the headers that sk120stiff reads; target + difference [mm]."""
-    out.mkdir(parents=True, exist_ok=True)
-    path = out / "ur5.csv"
-    with grid.open(newline="") as source, path.open("w", newline="") as target:
-        table = csv.writer(target)
-        table.writerow(["order", *(f"{n}_joint[deg]" for n in JOINTS), "x[mm]", "y[mm]", "z[mm]"])
-        for row in csv.DictReader(source):
-            where = [float(row[f"{axis}_t"]) + float(row[f"{axis}_dif"]) for axis in "xyz"]
-            angles = [row[f"joint_{k}"] for k in range(1, 7)]
-            table.writerow([row["step_order"], *angles, *(f"{x:.6f}" for x in where)])
-    path.with_suffix(".yaml").write_text(
-        f"robot: {urdf.resolve()}\nbase_frame: base_link\ntool_frame: tool0\n"
-        "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
-    )
-    return path
+    """The published file, targets and differences, as measurements; so does 'sk120stiff import'."""
+    robot = sk.load_robot(urdf, base="base_link", tool="tool0")
+    found = import_readings(grid, robot, Told(length="mm", angle="deg"))
+    found.write(out / "ur5.csv")
+    return out / "ur5.csv"
 
 
 def main() -> None:

@@ -15,7 +15,10 @@ from sk120stiff.errors import InputError
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 _WITH_UNIT = re.compile(r"[+-]?[\d.]+\s*[^\d\s.,_+-]+.*")
-_COMMAS = "Separate the cells by commas and write decimals with a point: 1.5, not 1,5."
+_COMMAS = (
+    "Separate the cells by commas and write decimals with a point: 1.5, not 1,5. Files of other "
+    "programs 'sk120stiff import' reads as they are."
+)
 
 
 @dataclass(frozen=True)

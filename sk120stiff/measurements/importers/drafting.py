@@ -122,6 +122,8 @@ def drafted(
 def _why_unused(column: Column) -> str:
     if column.meaning.startswith("orientation"):
         return ": in which order and about which axes it turns is not stated"
+    if column.meaning in ("qw", "qx", "qy", "qz"):
+        return ": the axes of a marker are not those of the tool"
     if column.meaning.startswith(("nominal", "deviation")):
         return ": the measured position stands beside it"
     return ""
@@ -131,8 +133,9 @@ def _measured(
     sheet: Sheet, told: Told
 ) -> tuple[Array, Written, list[Column], Array | None, list[str]]:
     """(N, 3) positions or displacements [m], as they are written, and the columns they are from."""
+    nominal = [c for axis in POSITIONS if (c := sheet.get(f"nominal {axis}"))]
     for names in (POSITIONS, DISPLACEMENTS):
-        if sheet.has(*names):
+        if sheet.has(*names) and not (nominal and names == DISPLACEMENTS):
             columns = [c for name in names if (c := sheet.get(name))]
             units = [unit_of(sheet, c, "length", told) for c in columns]
             values = [quantity(sheet, c, "length", u) for c, u in zip(columns, units, strict=True)]
@@ -140,8 +143,7 @@ def _measured(
                 (f"{name}[{u}]", texts(c)) for name, u, c in zip(names, units, columns, strict=True)
             )
             return np.column_stack(values), written, columns, None, []
-    nominal = [c for axis in POSITIONS if (c := sheet.get(f"nominal {axis}"))]
-    deviation = [c for axis in POSITIONS if (c := sheet.get(f"deviation {axis}"))]
+    deviation = [c for a in POSITIONS if (c := sheet.get(f"deviation {a}") or sheet.get(f"d{a}"))]
     if len(nominal) == len(deviation) == 3:
         return _summed(sheet, told, nominal, deviation)
     there = ", ".join(c.header for c in (*sheet.columns, *sheet.spare))

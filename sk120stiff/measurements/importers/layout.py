@@ -20,7 +20,12 @@ from sk120stiff.measurements.importers.words import (
 
 POSITION = ("x", "y", "z")
 NEEDED = {
-    "points": (POSITION, ("nominal x", "nominal y", "nominal z"), ("dx", "dy", "dz")),
+    "points": (
+        POSITION,
+        ("measured x", "measured y", "measured z"),
+        ("nominal x", "nominal y", "nominal z"),
+        ("dx", "dy", "dz"),
+    ),
     "joints": (("joint 1",), ("joint 0",)),
     "loads": (("fx", "fy", "fz"), ("payload",), ("load",)),
 }
@@ -112,13 +117,27 @@ def _laid_out(
     above = [
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
-    meanings = tuple(meaning(name, source.actuated) if name else None for name, _ in named)
+    meanings = _measured(
+        [meaning(name, source.actuated) if name else None for name, _ in named],
+    )
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, known in enumerate(meanings):
         kind = kind_of(known[0]) if known else None
         if kind in said and units[k] is None:
             units[k], places[k] = said[kind], "the lines above the table"
     return Layout(headers, meanings, tuple(units), tuple(places), first, tuple(above))
+
+
+def _measured(
+    meanings: list[tuple[str, float] | None],
+) -> tuple[tuple[str, float] | None, ...]:
+    """What is called measured is the position; what stands plainly beside it was nominal."""
+    words = [known[0] if known else "" for known in meanings]
+    if {f"measured {axis}" for axis in POSITION} <= set(words):
+        other = {axis: f"nominal {axis}" for axis in POSITION}
+        other |= {f"measured {axis}": axis for axis in POSITION}
+        return tuple((other.get(k[0], k[0]), k[1]) if k else None for k in meanings)
+    return tuple(meanings)
 
 
 def _is_units(row: tuple[str, ...]) -> bool:
@@ -191,7 +210,9 @@ def sheet_of(
             raise InputError(
                 f"{len(row)} cells, but there are {width} columns",
                 where=grid.place(k),
-                remedy="Fill the missing cells, or delete the line if it is no reading.",
+                remedy="Names that hold the separator stand in quotation marks."
+                if len(row) > width
+                else "Fill the missing cells, or delete the line if it is no reading.",
             )
         row = (*row, *[""] * (width - len(row)))
         total += 1

@@ -8,9 +8,10 @@ from sk120stiff import units
 
 _AXIS = r"(?P<a>[xyz])"
 _AXES = {
-    "": rf"(?:(?:pos(?:ition)?|[ck]oord(?:inate)?|point|tracker|marker|"
-    rf"(?:meas(?:ured)?|act(?:ual)?|ist)) )?{_AXIS}"
-    r"(?: (?:[ck]oord(?:inate)?|pos(?:ition)?|meas(?:ured)?|act(?:ual)?|ist|value|wert))?",
+    "": rf"(?:(?:pos(?:ition)?|[ck]oord(?:inate)?|point|marker) )?{_AXIS}"
+    r"(?: (?:[ck]oord(?:inate)?|pos(?:ition)?|value|wert))?",
+    "measured ": rf"(?:meas(?:ured)?|act(?:ual)?|ist|tracker) {_AXIS}"
+    rf"|{_AXIS.replace('a>', 'b>')} (?:meas(?:ured)?|act(?:ual)?|ist|tracker)",
     "nominal ": rf"(?:nom(?:inal)?|target|soll|theo\w*|cmd|command(?:ed)?) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:nom(?:inal)?|t|target|soll|theo\w*|cmd)",
     "deviation ": rf"(?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta) {_AXIS}"
@@ -81,9 +82,9 @@ def is_unit(text: str) -> bool:
 def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] | None:
     """Meaning of a column's name without its unit, and the factor of its numbers; None: unknown.
 
-    ``x y z`` positions; ``nominal x``, ``deviation x``; ``dx`` displacements; ``sx`` standard
-    uncertainties; ``fx mx payload load`` loads; ``tcp x`` the marker in the tool frame; ``qw``
-    quaternions, ``orientation ...`` other ones; ``joint 3`` or ``joint NAME``; and labels.
+    ``x y z`` positions; ``measured x``, ``nominal x``, ``deviation x``; ``dx`` displacements;
+    ``sx`` standard uncertainties; ``fx mx payload load`` loads; ``tcp x`` the marker in the tool
+    frame; ``qw``, ``orientation ...`` turns; ``joint 3``; and labels.
     """
     if name in actuated:
         return f"joint {actuated.index(name) + 1}", 1.0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers import FORMATS, Column, Guess, Sheet, Source
 from tests.measurements.importers.reading import SIX, draft_of, sheet_of, written
 
 SAMPLES = Path(__file__).parent / "samples"
@@ -186,3 +187,43 @@ def test_nominal_and_deviation_add_up_in_decimals(tmp_path: Path) -> None:
     assert [cells[0] for _, cells in draft.readings] == ["100.13", "200.0", "300.35"]
     assert draft.reversed is not None
     np.testing.assert_allclose(draft.reversed[0], [0.10007, 0.2004, 0.30025])
+
+
+def test_what_is_called_measured_goes_before_what_is_not(tmp_path: Path) -> None:
+    joints = ",".join(f"{k}" for k in range(6))
+    for head in ("X,Y,Z,X meas,Y meas,Z meas", "X nom,Y nom,Z nom,Actual X,Actual Y,Actual Z"):
+        text = f"{head},{','.join(SIX)}\n1,2,3,1.5,2.5,3.5,{joints}\n"
+        draft = draft_of(tmp_path, text, angle="deg", length="mm")
+        assert [cells[0] for _, cells in draft.readings] == ["1.5", "2.5", "3.5"]
+        assert len([u for u in draft.unused if "the measured position stands beside it" in u]) == 3
+    text = f"X nom,Y nom,Z nom,dX,dY,dZ,{','.join(SIX)}\n1,2,3,0.5,0.5,0.5,{joints}\n"
+    draft = draft_of(tmp_path, text, angle="deg", length="mm")
+    assert not draft.displaced
+    assert [cells[0] for _, cells in draft.readings] == ["1.5", "2.5", "3.5"]
+
+
+class Mine:
+    """A format of somebody's own, in a dozen lines."""
+
+    name, title = "mine", "my own format"
+
+    def sniff(self, source: Source) -> Guess:
+        return Guess(0.95, "it says so") if source.data.startswith(b"MINE") else Guess(0.0)
+
+    def read(self, source: Source) -> Sheet:
+        values = source.data.decode().split()[1:]
+        columns = [Column(a, a, "mm", "my word", (v,)) for a, v in zip("xyz", values, strict=True)]
+        return Sheet(source.path, self.title, "it says so", tuple(columns), (1,), total=1)
+
+
+def test_formats_add(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text("MINE 1 2 3")
+    source = Source(path, SIX)
+    importer, why = (FORMATS + (Mine(),)).chosen(source)
+    assert (importer.name, why) == ("mine", "it says so")
+    assert importer.read(source).get("z").cells == ("3",)
+    assert FORMATS.chosen(source)[0].name == "points"
+    assert FORMATS.chosen(source, "sa")[0].name == "sa"
+    with pytest.raises(InputError, match=r"no format is called 'mine'.*sa, leica"):
+        FORMATS.chosen(source, "mine")
