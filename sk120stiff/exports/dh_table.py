@@ -39,6 +39,7 @@ class Table:
 
     Attributes:
         names, drivers, factors: (r,) joint, and what moves it: its value is factor · driver.
+        moves: (r,) the column that the value adds to, theta or d; empty where nothing moves.
         std: (r, 6) NaN: not known; infinite: the readings do not show it. None: the model stores
             no uncertainty.
     """
@@ -46,6 +47,7 @@ class Table:
     names: tuple[str, ...]
     drivers: tuple[str, ...]
     factors: tuple[float, ...]
+    moves: tuple[str, ...]
     values: Array
     std: Array | None
     layout: Layout
@@ -105,6 +107,7 @@ def table_of(model: Model, geometry: Geometry) -> Table:
         names[:shown],
         ("", *drivers, "", "")[:shown],
         (0.0, *factors, 0.0, 0.0)[:shown],
+        ("", *("theta" if turns else "d" for turns in geometry.revolute), "", "")[:shown],
         values[:shown],
         None if std is None else std[:shown],
         layout,
@@ -164,7 +167,7 @@ FORMAT = Format("dh", "DH table, standard and modified", (".csv",), make)
 def _header(known: bool) -> list[str]:
     units = list(zip(COLUMNS, UNITS, strict=True))
     return [
-        "convention", "joint", "driver", "factor", "form",
+        "convention", "joint", "moves", "driver", "factor", "form",
         *(f"{column}[{unit}]" for column, unit in units),
         *(f"std_{column}[{unit}]" for column, unit in units if known),
     ]  # fmt: skip
@@ -177,7 +180,7 @@ def _csv(
 
     lines = []
     for r, name in enumerate(table.names):
-        cells = [convention, *map(guarded_cell, (name, table.drivers[r]))]
+        cells = [convention, guarded_cell(name), table.moves[r], guarded_cell(table.drivers[r])]
         cells += [repr(table.factors[r]), forms[r], *(repr(float(x)) for x in values[r] * PUBLIC)]
         if std is not None:
             cells += [repr(float(x)) if np.isfinite(x) else "" for x in std[r] * PUBLIC]
@@ -191,6 +194,7 @@ def _document(
     return [
         {
             "joint": name,
+            "moves": table.moves[r] or None,
             "driver": table.drivers[r] or None,
             "factor": table.factors[r],
             "form": forms[r],
