@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -34,35 +34,64 @@ class Arm:
     waves: Array = field(default_factory=lambda: np.zeros((6, 2)))  # sin q, cos q
     weighs: bool = True
 
-    def pose(self, q: Array) -> tuple[Array, Array, float]:
-        """Marker (3,), tool axes (3, 3) and potential energy at true joint values."""
-        R, p, energy = np.eye(3), np.zeros(3), 0.0
+    def pose(self, q: Array) -> tuple[Array, Array, Array]:
+        """Marker (N, 3), tool axes (N, 3, 3) and potential energy (N,) at true joint values."""
+        R, p, energy = Rotation.identity(len(q)), np.zeros((len(q), 3)), np.zeros(len(q))
         for k in range(6):
-            p = p + R @ (ORIGINS[k] + self.shift[k])
-            R = R @ Rotation.from_rotvec(self.turn[k]).as_matrix()
-            R = R @ Rotation.from_rotvec(AXES[k] * q[k]).as_matrix()
-            energy += MASSES[k] * G * (p + R @ CENTRES[k])[2]
-        p = p + R @ TOOL
-        return p + R @ self.marker, R, energy
+            p = p + R.apply(ORIGINS[k] + self.shift[k])
+            R = R * Rotation.from_rotvec(self.turn[k])
+            R = R * Rotation.from_rotvec(AXES[k] * q[:, k, None])
+            energy += MASSES[k] * G * (p + R.apply(CENTRES[k]))[:, 2]
+        p = p + R.apply(TOOL)
+        return p + R.apply(self.marker), R.as_matrix(), energy
 
     def stands(self, a: Array) -> tuple[Array, Array]:
         """Marker (N, 3) and tool axes (N, 3, 3) at rest under its own weight."""
-        points, axes = [], []
-        for row in a:
-            start = row + self.waves[:, 0] * np.sin(row) + self.waves[:, 1] * np.cos(row)
-            q = start.copy()
-            for _ in range(4 if self.weighs and self.compliance.any() else 0):
-                torque = np.array([-self._slope(q, k) for k in range(6)])
-                q = start + self.compliance * torque
-            x, R, _ = self.pose(q)
-            points.append(x)
-            axes.append(R)
-        return np.array(points), np.array(axes)
+        start = a + self.waves[:, 0] * np.sin(a) + self.waves[:, 1] * np.cos(a)
+        q = start
+        for _ in range(4 if self.weighs and self.compliance.any() else 0):
+            q = start - self.compliance * np.stack([self._slope(q, k) for k in range(6)], axis=1)
+        x, R, _ = self.pose(q)
+        return x, R
 
-    def _slope(self, q: Array, k: int) -> float:
+    def _slope(self, q: Array, k: int) -> Array:
         step = np.zeros(6)
         step[k] = 1e-5
         return (self.pose(q + step)[2] - self.pose(q - step)[2]) / 2e-5
+
+
+def bound(arm: Arm, a: Array, sigma: float) -> Array:
+    """(6,) Cramér-Rao bound of the compliances from positions at poses (N, 6).
+
+    Free beside them: every joint's frame, the marker, the tracker's frame. Central differences of
+    `Arm`; infinite where the positions tell nothing of a joint.
+    """
+    columns: dict[str, list[Array]] = {"compliance": [], "rest": []}
+    for name, step in (("compliance", 1e-8), ("shift", 1e-5), ("turn", 1e-5), ("marker", 1e-5)):
+        value = getattr(arm, name)
+        for k in range(value.size):
+            change = np.zeros(value.size)
+            change[k] = step
+            ahead, behind = (
+                replace(arm, **{name: value + s * change.reshape(value.shape)}).stands(a)[0]
+                for s in (1.0, -1.0)
+            )
+            kind = name if name == "compliance" else "rest"
+            columns[kind].append((ahead - behind).ravel() / (2.0 * step))
+    x = arm.stands(a)[0]
+    for axis in np.eye(3):  # a tracker that stands elsewhere, as base axes see it
+        columns["rest"] += [np.tile(axis, (len(a), 1)).ravel(), np.cross(axis, x).ravel()]
+    out = np.full(6, np.inf)
+    for k, own in enumerate(columns["compliance"]):
+        others = [c for j, c in enumerate(columns["compliance"]) if j != k] + columns["rest"]
+        A = np.stack(others, axis=1)
+        size = np.linalg.norm(A, axis=0)
+        U, values, _ = np.linalg.svd(A[:, size > 0.0] / size[size > 0.0], full_matrices=False)
+        U = U[:, values > 1e-7 * values[0]]
+        left = np.linalg.norm(own - U @ (U.T @ own))
+        if left > 1e-7 * np.linalg.norm(own):
+            out[k] = sigma / left
+    return out
 
 
 def urdf(weighs: bool = True) -> str:

@@ -177,11 +177,11 @@ def _with(marker: list[float] | None = None, payload: tuple[float, Array] | None
         arm.marker = np.array(marker)
     if payload is not None:
         mass, centre = payload
-        bare: Callable[[Array], tuple[Array, Array, float]] = arm.pose
+        bare: Callable[[Array], tuple[Array, Array, Array]] = arm.pose
 
-        def pose(q: Array) -> tuple[Array, Array, float]:
+        def pose(q: Array) -> tuple[Array, Array, Array]:
             x, R, energy = bare(q)
-            return x, R, energy + mass * G * float((x - R @ arm.marker + R @ centre)[2])
+            return x, R, energy + mass * G * (x + R @ (centre - arm.marker))[:, 2]
 
         arm.pose = pose  # type: ignore[method-assign]
     return arm

@@ -52,6 +52,8 @@ def mark(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
         return _families(truth, answer)
     if level == "L12":
         return _beside(truth, answer)
+    if level.startswith("L11"):
+        return _positions(truth, answer)
     return _names(truth, answer)
 
 
@@ -151,10 +153,35 @@ def _beside(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     return share, 0, note
 
 
+def _positions(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """Exact set of what is asked for; geometry, which is off everywhere, and what hardly shows may
+    be named or not."""
+    if answer.verdict in {"error", "refused"}:
+        return 0.0, 0, answer.verdict
+    asked = {identity(e["name"], e["where"]): e["asked"] for e in truth["effects"]}
+    always = {identity_of(text) for text in truth["accepted"]}
+    found: set[str] = set()
+    credit, wrong = 1.0, 0
+    for group in sorted(answer.effects, key=len):
+        hit = sorted(group & asked.keys() - found, key=lambda name: not asked[name])
+        if hit:
+            found.add(hit[0])
+            if asked[hit[0]]:
+                credit /= len(group)
+        elif not group & always:
+            wrong += 1
+    missed = [name for name, must in asked.items() if must and name not in found]
+    if wrong or missed:
+        told = [g for g in answer.effects if not g & always]
+        spelled = " + ".join(" or ".join(sorted(group)) for group in told)
+        return 0.0, wrong, f"{answer.verdict} {spelled}, missed {' '.join(missed) or 'none'}"
+    return credit, 0, "" if credit == 1.0 else f"as one of a set: {_spell(answer)}"
+
+
 def at_work(truth: dict[str, Any], group: frozenset[str]) -> bool:
     """Whether one of these names is truly at work; at L10 the family counts, at L5 the class."""
     names = true_names(truth)
-    if truth["level"] == "L5":
+    if truth["level"] == "L5" or truth["level"].startswith("L11"):
         names += [identity_of(text) for text in truth["accepted"]]
     if truth["level"] == "L10":
         names = [member for name in names for member in kin(name)]

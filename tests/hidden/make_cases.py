@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from .generator.build import BUILDERS, build
+from .generator.position_case import PositionCase
 from .generator.writing import write_case
 
 
@@ -45,7 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if (given.out / "truth" / f"{name}.json").exists():
             continue
         case = build(level, given.seed, number)
-        write_case(case, name, given.out / "cases", given.out / "truth")
+        folders = name, given.out / "cases", given.out / "truth"
+        case.write(*folders) if isinstance(case, PositionCase) else write_case(case, *folders)
     about = {"seed": given.seed, "cases": wished}
     (given.out / "made.json").write_text(json.dumps(about), encoding="utf-8")
     print(f"{len(listed)} cases in {time.perf_counter() - started:.0f} s -> {given.out}")

@@ -37,6 +37,8 @@ GOALS: dict[str, tuple[str, float | None, float | None]] = {
     "L8": ("clean, messy noise", 0.98, None),
     "L9": ("unknown robot, all at once", None, None),
     "L10": ("right in kind, wrong in detail", 0.80, 0.03),
+    "L11": ("positions of a sagging arm", 0.80, None),
+    "L11.rigid": ("positions, geometry alone", 0.98, 0.02),
     "L12": ("known and foreign together", 0.80, None),
     "L0.plans": ("clean, other plans and noise", 0.98, None),
     "L1.plans": ("L1, other plans and noise", 0.95, None),

@@ -68,54 +68,74 @@ def candidates_at(
 
 
 def linear_at(
-    found: Calibration, wish: Options, catalogue: Catalogue
+    base: Calibration, wish: Options, catalogue: Catalogue, at: Calibration | None = None
 ) -> tuple[Linear, tuple[Effect, ...]]:
-    """Positions linearised at a fitted model, and candidates that do not show in them."""
-    problem, model = found.problem, found.fit.model
+    """Positions linearised, and candidates that do not show in them.
+
+    Args:
+        base: The calibration beside which candidates are judged.
+        wish: Which candidates are wanted.
+        catalogue: Where they come from.
+        at: A calibration with some of the candidates, about which to linearise: sag and errors of
+            geometry together are more than their sum. None: about the base.
+    """
+    seen = at or base
+    problem, model = seen.problem, seen.fit.model
     readings = problem.measurements
-    present = [effect.id for effect in model.effects]
+    present = [effect.id for effect in base.fit.model.effects]
     effects = candidates_at(model.robot, problem.situation, readings, present, wish, catalogue)
     sigma = problem.of_channels.sigma
-    Q = np.asarray(np.linalg.qr(found.fit.jacobian)[0])
-    shown: list[Effect] = []
-    blocks: list[Array] = []
-    positive: list[bool] = []
-    hidden: list[Effect] = []
-    for part in _parts(effects, model.robot):
+    residual = seen.fit.residual
+    own = [k for k, p in enumerate(seen.fit.parameters) if p.effect.id in present]
+    Q = np.asarray(np.linalg.qr(seen.fit.jacobian[:, own])[0])
+    found: dict[Effect, Array] = {}
+    fitted = {effect for effect in model.effects if effect.id not in present}
+    for part in _parts([effect for effect in effects if effect not in fitted], model.robot):
         wider = model
         for effect in part:
             wider = wider + effect
         slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
         first = len(model.parameters)
         for effect in part:
-            size = np.array([np.sqrt(s.typical * s.plausible) for s in effect.parameters])
-            own = slope[:, first : first + len(size)] * size / sigma[:, None]
-            first += len(size)
-            before = np.linalg.norm(own, axis=0)
-            own = own - Q @ (Q.T @ own)
-            own = own - Q @ (Q.T @ own)
-            own[:, np.linalg.norm(own, axis=0) <= FAINT * before] = 0.0
-            if not own.any():
-                hidden.append(effect)
-                continue
-            shown.append(effect)
-            blocks.append(own)
-            positive += [spec.lower == 0.0 for spec in effect.parameters]
+            found[effect] = slope[:, first : first + len(effect.parameters)]
+            first += len(effect.parameters)
+    if fitted:
+        slope = problem.channel_gap(model.values, derivative=True)[1]
+        for effect in fitted:
+            columns = [k for k, p in enumerate(model.parameters) if p.effect == effect]
+            found[effect] = slope[:, columns]
+            residual = residual + found[effect] @ model.values[columns] / sigma
+    shown: list[Effect] = []
+    blocks: list[Array] = []
+    positive: list[bool] = []
+    hidden: list[Effect] = []
+    for effect in effects:
+        size = np.array([np.sqrt(s.typical * s.plausible) for s in effect.parameters])
+        block = found[effect] * size / sigma[:, None]
+        before = np.linalg.norm(block, axis=0)
+        for _ in range(2):
+            block = block - Q @ (Q.T @ block)
+        block[:, np.linalg.norm(block, axis=0) <= FAINT * before] = 0.0
+        if not block.any():
+            hidden.append(effect)
+            continue
+        shown.append(effect)
+        blocks.append(block)
+        positive += [spec.lower == 0.0 for spec in effect.parameters]
     ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
     rows = problem.rows
     pose = situation_of(model.robot, readings).pose
     fold = pose_parts(readings, folds=FOLDS, seed=wish.seed)[pose]
-    count = len(found.fit.residual)
     linear = Linear(
-        residual=found.fit.residual - Q @ (Q.T @ found.fit.residual),
+        residual=residual - Q @ (Q.T @ residual),
         base=Q,
-        columns=np.concatenate(blocks, axis=1) if blocks else np.zeros((count, 0)),
+        columns=np.concatenate(blocks, axis=1) if blocks else np.zeros((len(residual), 0)),
         positive=np.array(positive, dtype=bool),
         candidates=tuple(shown),
         slices=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
         row=rows,
         fold=fold[rows],
-        stated=found.fit.sigma_known,
+        stated=seen.fit.sigma_known,
     )
     return linear, tuple(hidden)
 

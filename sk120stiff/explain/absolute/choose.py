@@ -105,10 +105,7 @@ def _plainer(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
         noise = linear.noise(chosen)
         aim = linear.score(chosen, noise) - RIVAL
         tried = _less(chosen, e)
-        for _ in range(len(effect.parameters)):
-            rest = [s for s in springs if s not in tried]
-            if not rest:
-                break
+        while rest := [s for s in springs if s not in tried]:
             score, best = max((linear.score((*tried, s), noise), s) for s in rest)
             tried = (*tried, best)
             if score >= aim:

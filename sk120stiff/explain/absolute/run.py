@@ -29,6 +29,7 @@ from sk120stiff.model import Model
 FEWEST = 10  # poses below which no other pose can confirm a name
 LEVEL = 0.01
 LARGEST = 5  # places told
+ROUNDS = 3  # of choosing anew about what was fitted
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,8 @@ class Explained:
         verdict: none, named, ambiguous or outside.
         named: Causes in the order in which they joined.
         base, final: Calibrations without them and with them.
-        linear: The positions linearised at the base.
+        linear: The positions linearised at the last fit but one, the base beside which all others
+            are judged.
         steps: The gap step by step.
         families: Family → rms per axis that its causes take off the held-out gap together [m].
         springs: What springs in all joints would take off the held-out gap beside the named causes,
@@ -130,13 +132,22 @@ def explain_positions(
     tell("searching the catalogue", 0.2)
     linear, hidden = linear_at(base, wish, catalogue)
     found = choose(linear)
-    tell("fitting exactly", 0.6)
-    final = refined(base, [linear.candidates[e] for e in found.order], readings)
+    tell("fitting exactly", 0.5)
+    final = refined(base, _picked(linear, found), readings)
+    seen = base
+    for _ in range(ROUNDS):
+        before, seen = _picked(linear, found), final
+        linear, hidden = linear_at(base, wish, catalogue, seen)
+        found = choose(linear)
+        again = _picked(linear, found)
+        if set(again) == set(before):
+            break
+        final = refined(base, again, readings)
     tell("what is left", 0.85)
     noise = linear.noise(found.order)
     named = tuple(_named(linear, found, e) for e in found.order)
     gap = linear.gap(found.order, noise, held_out=True)
-    sigma = base.problem.of_channels.sigma
+    sigma = seen.problem.of_channels.sigma
     remainder = chance = None
     if final.fit.sigma_known and final.fit.misfit is not None:
         chance = final.fit.misfit[2]
@@ -151,15 +162,19 @@ def explain_positions(
         base=base,
         final=final,
         linear=linear,
-        steps=_steps(linear, found, base),
+        steps=_steps(linear, found, base, seen),
         families=_families(linear, found, sigma),
         springs=_springs(linear, found),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
         remainder=remainder,
         chance=chance,
-        where=_where(linear, gap * sigma, base, readings),
+        where=_where(linear, gap * sigma, seen, readings),
     )
+
+
+def _picked(linear: Linear, found: Chosen) -> list[Effect]:
+    return [linear.candidates[e] for e in found.order]
 
 
 def _named(linear: Linear, found: Chosen, e: int) -> Named:
@@ -172,16 +187,18 @@ def _named(linear: Linear, found: Chosen, e: int) -> Named:
     )
 
 
-def _whole(linear: Linear, base: Calibration) -> Array:
+def _whole(linear: Linear, seen: Calibration) -> Array:
     """(M,) numbers that are coordinates of positions."""
     part = np.zeros(len(linear.residual), dtype=bool)
-    for kind, own in zip(base.problem.channels.present, base.problem.channels.kinds, strict=True):
+    for kind, own in zip(seen.problem.channels.present, seen.problem.channels.kinds, strict=True):
         part[own] = kind == "position"
     return part
 
 
-def _steps(linear: Linear, found: Chosen, base: Calibration) -> tuple[GapStep, ...]:
-    sigma, whole = base.problem.of_channels.sigma, _whole(linear, base)
+def _steps(
+    linear: Linear, found: Chosen, base: Calibration, seen: Calibration
+) -> tuple[GapStep, ...]:
+    sigma, whole = seen.problem.of_channels.sigma, _whole(linear, seen)
     first = " + ".join(effect.id for effect in base.fit.model.effects) or "rigid"
     labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
     steps = []
@@ -191,7 +208,7 @@ def _steps(linear: Linear, found: Chosen, base: Calibration) -> tuple[GapStep, .
         fitted = linear.gap(chosen, noise, held_out=False)
         held = linear.gap(chosen, noise, held_out=True)
         distance = lengths(held, linear, sigma, whole)
-        inside = base.problem.lengths
+        inside = seen.problem.lengths
         steps.append(
             GapStep(
                 label,
@@ -235,10 +252,10 @@ def _springs(linear: Linear, found: Chosen) -> float | None:
 
 
 def _where(
-    linear: Linear, gap: Array, base: Calibration, readings: Measurements
+    linear: Linear, gap: Array, seen: Calibration, readings: Measurements
 ) -> tuple[str, ...]:
     """Rows with the largest gaps left, and joints whose angle it goes with most."""
-    rows = np.flatnonzero(readings.use & ~base.wild)
+    rows = np.flatnonzero(readings.use & ~seen.wild)
     size = np.sqrt(np.bincount(linear.row, gap**2, minlength=len(rows)))
     worst = np.argsort(-size)[:LARGEST]
     places = ", ".join(f"{readings.pose[rows[k]]} ({1e6 * size[k]:.0f} µm)" for k in worst)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .case import Case
 from .equilibrium import NoEquilibrium
-from .levels import Builder, NotThisTime, clean, pair, several, single
+from .levels import Builder, NotThisTime, Rng, clean, pair, several, single
 from .levels_hard import alias, clean_messy, outside, wild
+from .levels_positions import positions
 from .levels_real import beside, lifelike, otherwise, still
+from .position_case import PositionCase
 
-BUILDERS: dict[str, Builder] = {
+AnyCase = Case | PositionCase
+
+BUILDERS: dict[str, Builder | Callable[[str, tuple[int, ...], Rng], PositionCase]] = {
     "L0": clean,
     "L1": single,
     "L2": single,
@@ -26,10 +32,12 @@ BUILDERS: dict[str, Builder] = {
     "L1.plans": otherwise,
     "L2.plans": otherwise,
     "L0.plans": still,
+    "L11": positions,
+    "L11.rigid": positions,
 }
 
 
-def build(level: str, seed: int, number: int) -> Case:
+def build(level: str, seed: int, number: int) -> AnyCase:
     """A case that depends on nothing but its arguments.
 
     Draws that cannot show what the level asks for are thrown away; the number of throws is part
@@ -41,14 +49,13 @@ def build(level: str, seed: int, number: int) -> Case:
         rng = np.random.default_rng(key)
         try:
             case = BUILDERS[level](level, key, rng)
-            for rows in (case.train, case.holdout, case.sealed):
-                case.world.observe(rows)  # every set has to have an equilibrium
+            case.check()
             return case
         except (NotThisTime, NoEquilibrium, np.linalg.LinAlgError):
             continue
     raise RuntimeError(f"no {level} case for seed {seed}, number {number}")
 
 
-def rebuild(level: str, key: list[int]) -> Case:
+def rebuild(level: str, key: list[int]) -> AnyCase:
     """The case whose truth file holds this level and seed."""
     return BUILDERS[level](level, tuple(key), np.random.default_rng(tuple(key)))

@@ -53,6 +53,11 @@ class Case:
         causes = [cause for cause in self.world.causes if cause.name != "zero_offset"]
         return self.world.with_causes(*causes).displacement(rows)
 
+    def check(self) -> None:
+        """Every set has to have an equilibrium."""
+        for rows in (self.train, self.holdout, self.sealed):
+            self.world.observe(rows)
+
     def sealed_sigma(self) -> float:
         """Root mean variance of a sealed displacement's noise [m], outliers left out."""
         displacement, position, _ = self.world.observe(self.sealed)
