@@ -60,38 +60,49 @@ class Arm:
         return (self.pose(q + step)[2] - self.pose(q - step)[2]) / 2e-5
 
 
+SPAN = {"shift": 0.016, "turn": 0.05, "marker": 2.0}  # m, rad; no arm is off by more
+KNOWN = 3.0  # standard sizes that such an error must make, or it is taken for known
+
+
 def bound(arm: Arm, a: Array, sigma: float) -> Array:
     """(6,) Cramér-Rao bound of the compliances from positions at poses (N, 6).
 
-    Free beside them: every joint's frame, the marker, the tracker's frame. Central differences of
-    `Arm`; infinite where the positions tell nothing of a joint.
+    Free beside them: every joint's frame, the marker, the tracker's frame, as far as a rigid arm
+    shows them. Central differences of `Arm`; infinite where nothing is told of a joint.
     """
-    columns: dict[str, list[Array]] = {"compliance": [], "rest": []}
-    for name, step in (("compliance", 1e-8), ("shift", 1e-5), ("turn", 1e-5), ("marker", 1e-5)):
-        value = getattr(arm, name)
-        for k in range(value.size):
-            change = np.zeros(value.size)
-            change[k] = step
-            ahead, behind = (
-                replace(arm, **{name: value + s * change.reshape(value.shape)}).stands(a)[0]
-                for s in (1.0, -1.0)
-            )
-            kind = name if name == "compliance" else "rest"
-            columns[kind].append((ahead - behind).ravel() / (2.0 * step))
-    x = arm.stands(a)[0]
-    for axis in np.eye(3):  # a tracker that stands elsewhere, as base axes see it
-        columns["rest"] += [np.tile(axis, (len(a), 1)).ravel(), np.cross(axis, x).ravel()]
+    rigid = replace(arm, compliance=np.zeros(6))
+    springs = _columns(arm, a, "compliance", 1e-8)
+    both = []
+    for own in (rigid, arm):
+        x = own.stands(a)[0]
+        frame = [np.tile(axis, (len(a), 1)).ravel() for axis in np.eye(3)]
+        frame += [np.cross(axis, x).ravel() for axis in np.eye(3)]
+        parts = [SPAN[name] * _columns(own, a, name, 1e-5) for name in SPAN]
+        both.append(np.column_stack([*parts, 10.0 * np.array(frame).T]) / sigma)
+    _, shown, ways = np.linalg.svd(both[0], full_matrices=False)
+    geometry = both[1] @ ways[shown > KNOWN].T
     out = np.full(6, np.inf)
-    for k, own in enumerate(columns["compliance"]):
-        others = [c for j, c in enumerate(columns["compliance"]) if j != k] + columns["rest"]
-        A = np.stack(others, axis=1)
+    for k in range(6):
+        A = np.column_stack([geometry, np.delete(springs, k, axis=1)])
         size = np.linalg.norm(A, axis=0)
         U, values, _ = np.linalg.svd(A[:, size > 0.0] / size[size > 0.0], full_matrices=False)
-        U = U[:, values > 1e-7 * values[0]]
-        left = np.linalg.norm(own - U @ (U.T @ own))
-        if left > 1e-7 * np.linalg.norm(own):
+        U = U[:, values > 1e-9 * values[0]]
+        left = np.linalg.norm(springs[:, k] - U @ (U.T @ springs[:, k]))
+        if left > 1e-6 * np.linalg.norm(springs[:, k]):
             out[k] = sigma / left
     return out
+
+
+def _columns(arm: Arm, a: Array, name: str, step: float) -> Array:
+    """(3N, p) derivative of the positions by one of the arm's attributes."""
+    value, out = getattr(arm, name), []
+    for way in np.eye(value.size):
+        change = step * way.reshape(value.shape)
+        ahead, behind = (
+            replace(arm, **{name: value + s * change}).stands(a)[0] for s in (1.0, -1.0)
+        )
+        out.append((ahead - behind).ravel() / (2.0 * step))
+    return np.array(out).T
 
 
 def urdf(weighs: bool = True) -> str:
