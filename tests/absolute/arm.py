@@ -49,7 +49,7 @@ class Arm:
         """Marker (N, 3) and tool axes (N, 3, 3) at rest under its own weight."""
         start = a + self.waves[:, 0] * np.sin(a) + self.waves[:, 1] * np.cos(a)
         q = start
-        for _ in range(4 if self.weighs and self.compliance.any() else 0):
+        for _ in range(3 if self.weighs and self.compliance.any() else 0):
             q = start - self.compliance * np.stack([self._slope(q, k) for k in range(6)], axis=1)
         x, R, _ = self.pose(q)
         return x, R

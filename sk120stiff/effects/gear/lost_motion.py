@@ -22,7 +22,7 @@ SIDES = {"": 0, "_positive": 1, "_negative": -1}  # end of a name → sign of th
 
 @dataclass(frozen=True)
 class LostMotion(GearEffect, Switching):
-    """e = Σ b_k [s_k(τ + τ_g) − s_k(τ_g)], τ_g the weight's torque.
+    """e = Σ b_k [s_k(τ + τ_g) − s_k(τ_g)], τ_g the weight's torque; positions: Σ b_k s_k(τ + τ_g).
 
     Without flanks s is the sign: the play is crossed when the total torque turns round. Teeth take
     hold gradually, over a flank T of a few percent of the rated torque: s = tanh(τ/T). Where the
@@ -110,9 +110,12 @@ class LostMotion(GearEffect, Switching):
         return f"The gear of {self.where} has lost motion: it jumps when its torque turns round."
 
     def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
-        """See `Elastic.elongation`."""
+        """See `Elastic.elongation`. A position has no zero reading to be subtracted."""
         weight = self.weight_torque(situation)
-        return constant_in_torque(self._shapes(torques + weight) - self._shapes(weight), values)
+        shapes = self._shapes(torques + weight)
+        if not situation.absolute:
+            shapes = shapes - self._shapes(weight)
+        return constant_in_torque(shapes, values)
 
     def _shapes(self, torque: Array) -> Array:
         """(N, p) twist per unit of each parameter at torques (N, 1)."""

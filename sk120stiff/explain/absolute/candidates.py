@@ -21,6 +21,7 @@ from sk120stiff.effects import (
     Situation,
     situation_of,
 )
+from sk120stiff.effects.gear import LostMotion
 from sk120stiff.explain.absolute.linear import FAINT, Linear
 from sk120stiff.explain.options import Options
 from sk120stiff.identify import pose_parts
@@ -53,7 +54,7 @@ def candidates_at(
             continue
         if issubclass(kind, LoadError) and not (loaded or kind.only_absolute):
             continue
-        if issubclass(kind, Elastic) and not issubclass(kind, LinearElastic):
+        if issubclass(kind, Elastic) and not issubclass(kind, LinearElastic | LostMotion):
             continue
         for where in kind.places(model_robot):
             effect = kind.at(model_robot, where, told)
@@ -159,10 +160,10 @@ def _parts(effects: Sequence[Effect], robot: Robot) -> Iterator[list[Effect]]:
 
 def family(effect: Effect) -> str:
     """What a cause belongs to, in one word."""
+    if effect.name in ("transmission_error", "joint_coupling", "approach_side", "lost_motion"):
+        return "transmission"
     if isinstance(effect, Elastic):
         return "sag"
-    if effect.name in ("transmission_error", "joint_coupling", "approach_side"):
-        return "transmission"
     if isinstance(effect, ReadingError):
         return "instrument"
     if isinstance(effect, Imposed):

@@ -57,6 +57,7 @@ def candidates(arm: Arm, visits: Visits, *, yields: bool) -> list[Candidate]:
         out.append(Candidate("payload", arm.tool_frame, (1.0, 0.1, 0.1, 0.1), _load))
     out += [Candidate("transmission_error", n, (2e-4,) * 4, _wave(n)) for n in turning]
     out += [Candidate("joint_coupling", pair, (3e-4,), _coupled(pair)) for pair in pairs]
+    out += [Candidate("lost_motion", n, (1e-4,), _played(n)) for n in turning]
     if still:
         out += [Candidate("approach_side", n, (5e-5,), _sided(n)) for n in turning]
     if warms:
@@ -120,6 +121,10 @@ def _coupled(pair: str) -> Callable[[Truth, Array], Truth]:
 
 def _sided(name: str) -> Callable[[Truth, Array], Truth]:
     return lambda truth, size: replace(truth, side=_more(truth.side, name, size))
+
+
+def _played(name: str) -> Callable[[Truth, Array], Truth]:
+    return lambda truth, size: replace(truth, play=_more(truth.play, name, size))
 
 
 def _grown(link: str) -> Callable[[Truth, Array], Truth]:
@@ -219,7 +224,7 @@ def positions(level: str, seed: tuple[int, ...], rng: Rng) -> PositionCase:
     sizes = []
     for cause in hidden:
         usual_size = np.array([around(rng, s) for s in cause.sizes])
-        if cause.name not in ONE_SIGNED:
+        if cause.name not in (*ONE_SIGNED, "lost_motion"):
             usual_size *= rng.choice([-1.0, 1.0], len(usual_size))
         sizes.append(usual_size)
         truth = cause.put(truth, usual_size)

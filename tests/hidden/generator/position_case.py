@@ -15,7 +15,8 @@ from .rotations import Array
 GEOMETRY = ("joint_frame", "joint_offset", "link_length")
 SETTLED = {
     "transmission_error": ("sin_1", "cos_1", "sin_2", "cos_2"), "joint_coupling": ("ratio",),
-    "approach_side": ("half_width",), "thermal_growth": ("growth",),
+    "approach_side": ("half_width",), "lost_motion": ("half_width",),
+    "thermal_growth": ("growth",),
     "payload": ("mass", "moment_x", "moment_y", "moment_z"), "marker_shift": ("1.x", "1.y", "1.z"),
 }  # fmt: skip
 

@@ -12,12 +12,18 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .arm import Arm
-from .equilibrium import Springs, settle
+from .equilibrium import Law, Springs, settle
 from .mechanism import GRAVITY, Insert, Mechanism, Standing
 from .rotations import Array, exponential, placement
 from .world import Cause
 
+TEETH = 0.5  # N m
 MOVED = 1e-3  # rad; a smaller movement is jitter of the encoder
+
+
+def _play(index: int, half: float) -> Law:
+    """A gear leans to the side to which weight pushes it; teeth take hold within some N m."""
+    return lambda f, _x: (index, half * np.tanh(f[index] / TEETH))
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,7 @@ class Truth:
     compliance: Mapping[str, float] = field(default_factory=dict)  # joint -> rad/(N m)
     waves: Mapping[str, Array] = field(default_factory=dict)  # sin q, cos q, sin 2q, cos 2q
     coupling: Mapping[str, float] = field(default_factory=dict)  # "driver,driven" -> ratio
+    play: Mapping[str, float] = field(default_factory=dict)  # joint -> half of it [rad]
     side: Mapping[str, float] = field(default_factory=dict)  # joint -> half of the lost way
     growth: Mapping[str, float] = field(default_factory=dict)  # link -> m/K
     remount: Array = field(default_factory=lambda: np.zeros(3))  # of the marker in later series
@@ -91,13 +98,14 @@ class Truth:
             compliance[mechanism.column[name]] = value
         for part in inserts:
             compliance[mechanism.column[part.label]] = part.compliance
+        laws = [_play(mechanism.column[name], half) for name, half in self.play.items()]
         weight = (visits.payload + self.load[0])[:, None] * GRAVITY
 
         def load(at: Standing) -> tuple[Array, Array, Array]:
             moment = np.cross(at.tool_rotation @ self.load[1:], GRAVITY)
             return at.point(visits.hung), weight, moment
 
-        return settle(mechanism, commanded, None, Springs(compliance), load).standing
+        return settle(mechanism, commanded, None, Springs(compliance, (), laws), load).standing
 
     def _stands_at(self, visits: Visits) -> dict[str, Array]:
         """Joint values without sag, by what encoders say and what gears make of it."""
