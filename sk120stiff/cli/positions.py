@@ -153,5 +153,10 @@ def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]
     shown += findings(answer.final, readings)
     shown += answer.dropped
     shown += answer.left_over()
+    if answer.following is not None:
+        one, other = answer.following.between
+        shown.append(
+            f"Measure next what stands in {out / 'next_poses.csv'}: it tells {one} from {other}."
+        )
     shown.append(f"Results are in {out}.")
     return shown

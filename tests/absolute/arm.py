@@ -32,6 +32,7 @@ class Arm:
     turn: Array = field(default_factory=lambda: np.zeros((6, 3)))  # of joint frames
     marker: Array = field(default_factory=lambda: np.array([0.05, -0.08, 0.12]))
     waves: Array = field(default_factory=lambda: np.zeros((6, 2)))  # sin q, cos q
+    play: Array = field(default_factory=lambda: np.zeros(6))  # half of it
     weighs: bool = True
 
     def pose(self, q: Array) -> tuple[Array, Array, Array]:
@@ -49,8 +50,10 @@ class Arm:
         """Marker (N, 3) and tool axes (N, 3, 3) at rest under its own weight."""
         start = a + self.waves[:, 0] * np.sin(a) + self.waves[:, 1] * np.cos(a)
         q = start
-        for _ in range(3 if self.weighs and self.compliance.any() else 0):
-            q = start - self.compliance * np.stack([self._slope(q, k) for k in range(6)], axis=1)
+        yields = self.compliance.any() or self.play.any()
+        for _ in range(3 if self.weighs and yields else 0):
+            torque = -np.stack([self._slope(q, k) for k in range(6)], axis=1)
+            q = start + self.compliance * torque + self.play * np.sign(torque)
         x, R, _ = self.pose(q)
         return x, R
 

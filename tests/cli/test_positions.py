@@ -32,6 +32,12 @@ def test_the_command_writes_its_folder(run, tmp_path: Path) -> None:
     assert verdict["remainder"]["interval_95"][0] < 10.0  # beside a noise of 20 µm, which is stated
     assert "Left beyond the stated noise" in outcome.stdout
     assert "looks for" not in outcome.stdout
+    marker = [p for p in verdict["parameters"] if p["name"].startswith("tool_offset")]
+    assert len(marker) == 3 and max(abs(p["value"]) for p in marker) > 0.1  # m
+    assert all(p["plausible"] for p in marker)
+    assert "more than is plausible" not in (out / "report.html").read_text()
+    assert verdict["smallest_detectable"] and verdict["next_poses"] is None
+    assert {p["name"] for p in verdict["probabilities"]} >= {"transmission_error:j3"}
     told = run("identify", str(path), "--json", "--out", str(tmp_path / "m.yaml")).document
     assert told["mean_distance_um"] < 60 and told["frozen"]
     assert told["robot"] == "six"

@@ -30,6 +30,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
 
 FOLDS = 5
+SOFT = 5.0  # times the typical compliance: what is usual
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _ONLY_LOADED = ("reading_rotation", "zero_offset", "joint_offset", "link_length")
 
@@ -111,7 +112,7 @@ def linear_at(
     positive: list[bool] = []
     hidden: list[Effect] = []
     for effect in effects:
-        size = np.array([np.sqrt(s.typical * s.plausible) for s in effect.parameters])
+        size = usual_sizes(effect)
         block = found[effect] * size / sigma[:, None]
         before = np.linalg.norm(block, axis=0)
         for _ in range(2):
@@ -139,6 +140,19 @@ def linear_at(
         stated=seen.fit.sigma_known,
     )
     return linear, tuple(hidden)
+
+
+def usual_sizes(effect: Effect) -> Array:
+    """(p,) standard sizes that parameters have before anything is read.
+
+    What yields is plausible up to a thousand times the compliance of an arm's own parts; so far a
+    usual one does not reach.
+    """
+    wide = isinstance(effect, LinearElastic)
+    return np.array(
+        [s.typical * min(np.sqrt(s.plausible / s.typical), SOFT if wide else np.inf)
+         for s in effect.parameters]
+    )  # fmt: skip
 
 
 def _parts(effects: Sequence[Effect], robot: Robot) -> Iterator[list[Effect]]:

@@ -50,7 +50,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
     """Forward by evidence, backward as the picture changes, then confirmed at poses left out."""
     chosen: tuple[int, ...] = ()
     dropped: dict[int, str] = {}
-    threshold = CLEAR + float(np.log(max(len(linear.candidates), 1)))
+    threshold = _threshold(linear)
     seen: set[frozenset[int]] = set()
     while len(chosen) < most:
         noise = linear.noise(chosen)
@@ -82,6 +82,15 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
             chosen = tuple(c for c in chosen if c != e)
             dropped[e] = f"{linear.candidates[e].id} is not confirmed by poses left out."
     return Chosen(chosen, dropped)
+
+
+def _threshold(linear: Linear) -> float:
+    return CLEAR + float(np.log(max(len(linear.candidates), 1)))
+
+
+def entry_price(linear: Linear, e: int) -> float:
+    """Evidence that a candidate must bring to join."""
+    return _threshold(linear) - usual(linear.candidates[e])
 
 
 def usual(effect: Effect) -> float:
@@ -153,6 +162,23 @@ def gain(linear: Linear, chosen: tuple[int, ...], e: int) -> Gain:
 
 def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple[int, ...], float]:
     """Candidates that explain as much in the place of one of the chosen, and its probability."""
+    rivals, _, weight = _rivals(linear, chosen, e)
+    return rivals, float(weight[:-1].sum() / weight.sum())
+
+
+def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
+    """Probability of one of the chosen, and of each that explains as much in its place."""
+    rivals, prior, weight = _rivals(linear, chosen, e)
+    weight = weight * np.exp([*prior, 0.0])
+    share = weight / weight.sum()
+    names = [linear.candidates[c].id for c in (e, *rivals)]
+    return dict(zip(names, map(float, share), strict=False))
+
+
+def _rivals(
+    linear: Linear, chosen: tuple[int, ...], e: int
+) -> tuple[tuple[int, ...], list[float], Array]:
+    """Rivals, their usual odds with those of the chosen one first, and weights, last of nothing."""
     noise = linear.noise(chosen)
     rest = _less(chosen, e)
     nothing = linear.score(rest, noise)
@@ -167,8 +193,8 @@ def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple
         and score > nothing
     )
     scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
-    weight = np.exp(scores - scores.max())
-    return rivals, float(weight[:-1].sum() / weight.sum())
+    prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
+    return rivals, prior, np.exp(scores - scores.max())
 
 
 def lengths(gap: Array, linear: Linear, sigma: Array, whole: Array) -> Array:

@@ -12,9 +12,10 @@ import numpy as np
 
 from sk120stiff.arrays import Mask
 from sk120stiff.effects import situation_of
+from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.run import Explained, Named
 from sk120stiff.explain.answer.document import parameter_entry
-from sk120stiff.explain.answer.saving import VERDICT, replacing_results
+from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
@@ -35,7 +36,11 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
         "schema": SCHEMA,
         "verdict": answer.verdict,
         "effects": [_effect(answer, item, reasons) for item in answer.named],
-        "parameters": [_parameter(p, reasons) for p in final.fit.model.parameters if p.free],
+        "parameters": [
+            _parameter(p, reasons, final.problem.reach(p))
+            for p in final.fit.model.parameters
+            if p.free
+        ],
         "gap": {
             "unit": "um",
             "noise_floor": None if stated is None else stated * 1e6,
@@ -62,15 +67,17 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
             "where": list(answer.where),
         },
         "probabilities": [
-            {"name": item.effect.id, "probability": min(item.probability, SURE)}
-            for item in answer.named
+            {"name": name, "probability": min(p, SURE)}
+            for name, p in sorted(answer.probabilities.items(), key=lambda item: -item[1])
         ],
         "where": list(answer.where),
         "not_named": list(answer.dropped),
         "not_observable": list(answer.hidden),
         "frozen": [item.name for item in final.frozen],
         "weak_directions": [item.sentence() for item in final.frozen],
-        "smallest_detectable": [],
+        "smallest_detectable": [
+            {"name": item.name, "value": item.value, "unit": item.unit} for item in answer.smallest
+        ],
         "noise": {
             "model": gap_sentence(final),
             "source": "stated" if stated is not None else "unknown",
@@ -81,7 +88,7 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
             ],
         },
         "said": findings(final, readings),
-        "next_poses": None,
+        "next_poses": None if answer.following is None else NEXT_POSES,
     }
 
 
@@ -95,6 +102,8 @@ def save_positions(
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
         write_atomically(out / "gaps.csv", csv_text(table.items()))
+        if answer.following is not None:
+            write_atomically(out / NEXT_POSES, _next_csv(answer.following))
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
     return document
 
@@ -117,11 +126,27 @@ def gaps_table(model: Model, readings: Measurements, wild: Mask | None = None) -
     return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
 
 
+def _next_csv(following: NextPoses) -> str:
+    """Poses to go to, under the headers of readings; what stands in them is for the tracker."""
+    readings = following.readings
+    columns: dict[str, list[object]] = {"pose": list(readings.pose)}
+    for k, (name, kind) in enumerate(zip(readings.joint_names, readings.joint_kinds, strict=True)):
+        unit, factor = ("deg", 180.0 / np.pi) if kind == "angle" else ("mm", 1e3)
+        columns[f"{name}[{unit}]"] = np.round(readings.joints[:, k] * factor, 4).tolist()
+    said = readings.absolute
+    if said is not None and said.payload.any():
+        columns["payload[kg]"] = said.payload.tolist()
+    if said is not None and any(said.markers):
+        columns["marker"] = list(said.markers)
+    return csv_text(columns.items())
+
+
 def _um(metres: float | None) -> float | None:
     return None if metres is None or not np.isfinite(metres) else metres * 1e6
 
 
 def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[str, Any]:
+    problem = answer.final.problem
     own = [p for p in answer.final.fit.model.parameters if p.effect == item.effect]
     share = None
     for before, step in pairwise(answer.steps):
@@ -134,7 +159,7 @@ def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[
         "exact_aliases": [],
         "probability": min(item.probability, SURE),
         "share_um": _um(share),
-        "parameters": [_parameter(p, reasons) for p in own],
+        "parameters": [_parameter(p, reasons, problem.reach(p)) for p in own],
         "sentence": item.effect.sentence(),
         "equation": item.effect.equation,
         "axes": item.effect.axes,
@@ -147,6 +172,6 @@ def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[
     }
 
 
-def _parameter(p: Parameter, reasons: Mapping[str, str]) -> dict[str, Any]:
+def _parameter(p: Parameter, reasons: Mapping[str, str], reach: float) -> dict[str, Any]:
     reason = reasons.get(p.name) or (None if p.free else "counted in others, see weak_directions")
-    return {**parameter_entry(p, reason), "plausible": abs(p.internal) <= p.spec.plausible}
+    return {**parameter_entry(p, reason), "plausible": abs(p.internal) <= reach}

@@ -11,6 +11,13 @@ from scipy import stats
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError
+from sk120stiff.explain.absolute.advice import (
+    NextPoses,
+    detectable,
+    next_poses,
+    open_pair,
+    probabilities,
+)
 from sk120stiff.explain.absolute.candidates import family, linear_at
 from sk120stiff.explain.absolute.choose import (
     Chosen,
@@ -21,6 +28,7 @@ from sk120stiff.explain.absolute.choose import (
     lengths,
 )
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.findings import Detectable
 from sk120stiff.explain.options import Options
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, refined
 from sk120stiff.measurements import Measurements
@@ -72,6 +80,9 @@ class Explained:
             None: no noise is stated.
         chance: Probability of as large a misfit if the noise were all; None where none is stated.
         where: Where what is left lives, in sentences.
+        smallest: Sizes that would have been named beside the named causes.
+        probabilities: Name → probability of its being at work, of all that have one worth telling.
+        following: Readings that would tell the first open pair of names apart, or None.
     """
 
     verdict: str
@@ -87,6 +98,9 @@ class Explained:
     remainder: tuple[float, float, float] | None
     chance: float | None
     where: tuple[str, ...]
+    smallest: tuple[Detectable, ...]
+    probabilities: dict[str, float]
+    following: NextPoses | None
 
     def left_over(self) -> tuple[str, ...]:
         """What is left beyond the stated noise and where it lives, in sentences."""
@@ -154,6 +168,7 @@ def explain_positions(
         remainder = _beyond(final)
     lacking = chance is not None and chance < LEVEL
     verdict = "outside" if lacking else "none"
+    pair = open_pair([(item.effect, item.alternatives) for item in named], linear)
     if named:
         verdict = "ambiguous" if any(item.alternatives for item in named) else "named"
     return Explained(
@@ -170,6 +185,9 @@ def explain_positions(
         remainder=remainder,
         chance=chance,
         where=_where(linear, gap * sigma, seen, readings),
+        smallest=detectable(linear, found),
+        probabilities=probabilities(linear, found),
+        following=None if pair is None else next_poses(final, *pair, seed=wish.seed),
     )
 
 

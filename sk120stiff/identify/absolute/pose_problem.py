@@ -16,6 +16,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Channels
 from sk120stiff.measurements.absolute import Absolute
+from sk120stiff.model import Parameter
 from sk120stiff.model.pose_reading import read_poses
 
 ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
@@ -92,12 +93,13 @@ class PoseProblem(Problem):
     @cached_property
     def span(self) -> Array:
         """(P_free,) sizes in scaled units beyond which a value is implausible."""
-        sizes = []
-        for k in self.free:
-            parameter = self.model.parameters[k]
-            rough = self.said.fit_point and isinstance(parameter.effect, ToolOffset | MarkerShift)
-            sizes.append(ROUGH if rough else parameter.spec.plausible)
+        sizes = [self.reach(self.model.parameters[k]) for k in self.free]
         return np.array(sizes) / self.scale
+
+    def reach(self, parameter: Parameter) -> float:
+        """Size beyond which a value is implausible; a marker that is fitted may sit anywhere."""
+        rough = self.said.fit_point and isinstance(parameter.effect, ToolOffset | MarkerShift)
+        return ROUGH if rough else parameter.spec.plausible
 
     @cached_property
     def prior(self) -> Array:

@@ -97,7 +97,9 @@ def _values(answer: Explained) -> Table:
         if p.name in reasons:
             rows.append((p.name, None, None, p.spec.unit, reasons[p.name]))
         else:
-            far = "" if abs(p.internal) <= p.spec.plausible else "more than is plausible"
+            far = (
+                "" if abs(p.internal) <= answer.final.problem.reach(p) else "more than is plausible"
+            )
             rows.append((p.name, p.value, p.std, p.spec.unit, p.note or far))
     return Table(("parameter", "value", "±", "unit", "note"), rows, "Fitted exactly, together.")
 

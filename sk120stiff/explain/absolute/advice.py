@@ -1,0 +1,183 @@
+"""What positions could not have shown, what else is how probable, and which poses would tell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
+from sk120stiff.explain.absolute.candidates import usual_sizes
+from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, entry_price, standing
+from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.advise.detectable import length_named
+from sk120stiff.explain.findings import Detectable
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.measurements import Measurements
+from sk120stiff.plan import Region, Rivalry, lowest_points
+from sk120stiff.plan.pool import base_column, random_pool
+
+# What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
+CONFIRMED = 2.0 * (SURE + 0.84)
+LEAST = 0.01  # probability below which nobody is told
+POOL, COUNT = 200, 8  # poses to choose from, and chosen
+
+
+@dataclass(frozen=True, eq=False)
+class NextPoses:
+    """Readings that tell two names apart.
+
+    Attributes:
+        readings: K readings to take; what they hold of positions means nothing.
+        between: The two names.
+        before, after: √λ between them without and with these, in units of the noise.
+    """
+
+    readings: Measurements
+    between: tuple[str, str]
+    before: float
+    after: float
+
+
+def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
+    """Smallest size of every candidate's parameters that would have brought a name, its own or that
+    of what explains as much.
+
+    See `sk120stiff.explain.advise.detectable`; the price is that of evidence and of confirmation.
+    """
+    chosen = found.order
+    noise = linear.noise(chosen)
+    inside = linear.picked(chosen)
+    Q = np.asarray(np.linalg.qr(np.column_stack([linear.base, linear.columns])[:, inside])[0])
+    left = linear.columns - Q @ (Q.T @ linear.columns)
+    out = []
+    for e, (effect, own) in enumerate(zip(linear.candidates, linear.slices, strict=True)):
+        if e in chosen:
+            continue
+        block = left[:, own]
+        volume = float(np.linalg.slogdet(np.eye(block.shape[1]) + block.T @ block / noise)[1])
+        price = 2.0 * entry_price(linear, e) + volume
+        fall = max(price, 2.0 * SHARE * len(linear.residual))
+        need = max(length_named(round(fall, 1), block.shape[1]), CONFIRMED) * np.sqrt(noise)
+        for k, (spec, usual) in enumerate(zip(effect.parameters, usual_sizes(effect), strict=True)):
+            size = float(np.linalg.norm(block[:, k]))
+            value = float(need / size * usual) if size > 0.0 else np.inf
+            shown = spec.public(value) if value <= spec.plausible else None
+            out.append(Detectable(f"{effect.id}.{spec.name}", shown, spec.unit))
+    return tuple(out)
+
+
+def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
+    """Name → probability of its being at work, of all above `LEAST`.
+
+    Named causes share theirs with what explains as much; others stand beside the named ones. What
+    fitted and was not confirmed by poses left out is not counted.
+    """
+    out: dict[str, float] = {}
+    for e in found.order:
+        for name, share in standing(linear, found.order, e).items():
+            out[name] = max(out.get(name, 0.0), share)
+    noise = linear.noise(found.order)
+    now = linear.score(found.order, noise)
+    for e, effect in enumerate(linear.candidates):
+        if e in found.order or e in found.dropped or effect.id in out:
+            continue
+        odds = linear.score((*found.order, e), noise) - now - entry_price(linear, e)
+        out[effect.id] = float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
+    return {name: p for name, p in out.items() if p >= LEAST}
+
+
+def next_poses(
+    final: Calibration, effect: Effect, rival: Effect, *, seed: int, count: int = COUNT
+) -> NextPoses | None:
+    """Poses at which positions tell a named cause from another that explains as much.
+
+    They go no lower than the poses that were measured and keep clear of the base column; payload
+    and temperature are as there. None where no such pose is found.
+    """
+    problem = final.problem
+    robot, readings = problem.model.robot, problem.measurements
+    situation = problem.situation
+    floor = float(lowest_points(robot, situation.a, situation.point[0]).min())
+    region = Region(lowest=floor, column=base_column(robot))
+    try:
+        pool = random_pool(
+            robot, poses=POOL, directions=1, force=1.0, point=situation.point[0], seed=seed,
+            region=region,
+        )  # fmt: skip
+    except Refusal:
+        return None  # no other pose can be driven as far as is known
+    a = pool.situation.a
+    rows = np.random.default_rng(seed).integers(readings.n_readings, size=len(a))
+    like = readings.select(rows)
+    drawn = replace(
+        like, joints=a, pose=tuple(f"pool_{k + 1}" for k in range(len(a))),
+        zero_group=np.arange(len(a)), zero_joints=None,
+    )  # fmt: skip
+    pairs = ((effect, rival), (rival, effect))
+    gains = [_information(problem, drawn, *pair, each=True) for pair in pairs]
+    known = [_information(problem, readings, *pair, each=False) for pair in pairs]
+    ridge = np.eye(gains[0].shape[-1])
+    ridge[-1, -1] = 0.0
+    size = gains[0].shape[-1]
+    if gains[1].shape[-1] != size:
+        size = max(block.shape[-1] for block in gains)
+        gains = [_padded(block, size) for block in gains]
+        known = [_padded(block, size) for block in known]
+        ridge = np.eye(size)
+        ridge[-1, -1] = 0.0
+    both = Rivalry(np.array(gains), np.array([block[0] + ridge for block in known]))
+    choice = both.best(min(count, len(a)))
+    picked = drawn.select(np.array(choice.rows))
+    return NextPoses(
+        replace(picked, pose=tuple(f"next_{k + 1}" for k in range(len(choice.rows)))),
+        (effect.id, rival.id),
+        choice.before,
+        choice.after,
+    )
+
+
+def _information(
+    problem: PoseProblem, readings: Measurements, effect: Effect, rival: Effect, *, each: bool
+) -> Array:
+    """(M or 1, k, k) information on everything else over plausible ranges, last the signature."""
+    model = problem.model
+    for added in (effect, rival):
+        if added.id not in {own.id for own in model.effects}:
+            model = model + added
+    here = replace(problem, model=model, measurements=readings)
+    slope = here.channel_gap(model.values, derivative=True)[1] / here.of_channels.sigma[:, None]
+    owner = np.array([p.effect.id for p in model.parameters])
+    free = np.array([p.free for p in model.parameters])
+    plausible = np.array([p.spec.plausible for p in model.parameters])
+    own = owner == effect.id
+    sizes = model.values[own]
+    if not sizes.any():
+        sizes = np.array([p.spec.typical for p in model.parameters])[own]
+    others = free & ~own
+    A = np.column_stack([slope[:, others] * plausible[others], slope[:, own] @ sizes])
+    if not each:
+        return np.asarray((A.T @ A)[None])
+    out = np.zeros((readings.n_readings, A.shape[1], A.shape[1]))
+    np.add.at(out, here.rows, A[:, :, None] * A[:, None, :])
+    return out
+
+
+def _padded(block: Array, size: int) -> Array:
+    missing = size - block.shape[-1]
+    return np.pad(block, [(0, 0), (missing, 0), (missing, 0)])
+
+
+def open_pair(named: Sequence[tuple[Effect, tuple[str, ...]]], linear: Linear) -> (
+    tuple[Effect, Effect] | None
+):  # fmt: skip
+    """The first name that something else explains as well, and what."""
+    known = {effect.id: effect for effect in linear.candidates}
+    for effect, others in named:
+        if others:
+            return effect, known[others[0]]
+    return None

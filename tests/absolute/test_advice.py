@@ -1,0 +1,98 @@
+"""What positions could not show, and the poses that tell: both hold when it is tried."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sk120stiff as sk
+from sk120stiff.explain.absolute.candidates import usual_sizes
+from sk120stiff.explain.absolute.choose import choose
+from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.model import Model
+from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
+
+SIGMA = 2e-5
+FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
+NOISE = "noise: {sigma: 20, unit: um}\n"
+
+
+def explained(tmp_path: Path, a: Array, x: Array, settings: str = FIT + NOISE) -> Explained:
+    noise = SIGMA * np.random.default_rng(7).normal(size=x.shape)
+    data = sk.read(write(tmp_path, a, tracked(x) + noise, settings))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    return explain_positions(Model(robot), data.with_joints(robot.actuated))
+
+
+def test_sizes_told_as_detectable_bring_a_name_and_smaller_ones_do_not(tmp_path: Path) -> None:
+    a = poses(60, 1)
+    found = explained(tmp_path, a, Arm().stands(a)[0])
+    assert found.verdict == "none"
+    smallest = {item.name: item.value for item in found.smallest}
+    linear, rng = found.linear, np.random.default_rng(2)
+    ids = [effect.id for effect in linear.candidates]
+    tried = {1.0: [0, 0], 0.4: [0, 0]}
+    for name, wave in (
+        ("joint_coupling:j2,j3", "ratio"), ("transmission_error:j3", "sin_2"),
+        ("joint_springs:j2", "stiffness"), ("joint_frame:j3", "x"),
+    ):  # fmt: skip
+        e = ids.index(name)
+        effect = linear.candidates[e]
+        k = [spec.name for spec in effect.parameters].index(wave)
+        spec, column = effect.parameters[k], linear.columns[:, linear.slices[e].start + k]
+        size = spec.internal(smallest[f"{name}.{wave}"]) / usual_sizes(effect)[k]
+        for share, counts in tried.items():
+            for _ in range(8):
+                noise = rng.normal(size=len(linear.residual))
+                noise -= linear.base @ (linear.base.T @ noise)
+                picked = choose(replace(linear, residual=noise + share * size * column))
+                counts[0] += bool(picked.order)  # its own name, or what explains as much
+                counts[1] += 1
+    named, count = tried[1.0]
+    assert 0.55 <= named / count <= 0.97, tried
+    assert tried[0.4][0] <= 0.15 * count
+
+
+def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
+    """Joints 3 to 6 hardly move: the weight's torque on joint 2 goes with its angle alone."""
+    arm = Arm(compliance=np.array([0, 1 / 6e5, 0, 0, 0, 0]))
+    a = poses(60, 3)
+    a[:, 2:] = 1.2 + 0.01 * (a[:, 2:] - a[:, 2:].mean(axis=0))
+    first = explained(tmp_path, a, arm.stands(a)[0])
+    assert first.verdict == "ambiguous" and first.following is not None
+    following = first.following
+    assert following.before < 3.3 < 6.0 < following.after, following
+    both = [item for item in first.named if item.alternatives]
+    names = {both[0].effect.id, *both[0].alternatives}
+    assert set(following.between) <= names and "joint_springs:j2" in names
+    shares = [first.probabilities[name] for name in names if name in first.probabilities]
+    assert sum(shares) <= 1.0 + 1e-6
+    a = np.concatenate([a, following.readings.joints])
+    second = explained(tmp_path, a, arm.stands(a)[0])
+    told = [(item.effect.id, item.alternatives) for item in second.named]
+    assert told == [("joint_springs:j2", ())]
+
+
+def test_a_payload_that_nobody_stated_is_named_from_a_rigid_start(tmp_path: Path) -> None:
+    """A load bends nothing that is rigid: it shows only beside springs that were named before."""
+    from tests.absolute.test_forms import _with
+
+    a = poses(70, 5)
+    arm = _with(payload=(30.0, np.array([0.0, 0.0, 0.12])))
+    found = explained(tmp_path, a, arm.stands(a)[0])
+    ids = {item.effect.id for item in found.named}
+    assert "payload:tool" in ids, ids
+
+
+def test_play_under_weight_is_named(tmp_path: Path) -> None:
+    arm = errors(3)
+    arm.compliance, arm.play = np.zeros(6), np.array([0, 0, 2e-4, 0, 0, 0])
+    a = poses(90, 8)
+    found = explained(tmp_path, a, arm.stands(a)[0])
+    names = [item.effect.id for item in found.named if item.effect.name != "joint_frame"]
+    assert names == ["lost_motion:j3"]
+    half = found.final.fit.model.parameter("lost_motion:j3.half_width")
+    assert half.value == pytest.approx(2e-4, abs=4.0 * half.std)
