@@ -30,7 +30,6 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
 
 FOLDS = 5
-SOFT = 5.0  # times the typical compliance: what is usual
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _ONLY_LOADED = ("reading_rotation", "zero_offset", "joint_offset", "link_length")
 
@@ -143,16 +142,8 @@ def linear_at(
 
 
 def usual_sizes(effect: Effect) -> Array:
-    """(p,) standard sizes that parameters have before anything is read.
-
-    What yields is plausible up to a thousand times the compliance of an arm's own parts; so far a
-    usual one does not reach.
-    """
-    wide = isinstance(effect, LinearElastic)
-    return np.array(
-        [s.typical * min(np.sqrt(s.plausible / s.typical), SOFT if wide else np.inf)
-         for s in effect.parameters]
-    )  # fmt: skip
+    """(p,) standard sizes that parameters have before anything is read."""
+    return np.array([np.sqrt(s.typical * s.plausible) for s in effect.parameters])
 
 
 def _parts(effects: Sequence[Effect], robot: Robot) -> Iterator[list[Effect]]:

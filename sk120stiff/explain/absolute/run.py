@@ -156,7 +156,7 @@ def explain_positions(
         again = _picked(linear, found)
         if set(again) == set(before):
             break
-        final = refined(base, again, readings)
+        final = refined(base, again, readings, final)
     tell("what is left", 0.85)
     noise = linear.noise(found.order)
     named = tuple(_named(linear, found, e) for e in found.order)

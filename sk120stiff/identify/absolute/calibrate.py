@@ -339,10 +339,20 @@ def with_values_of(model: Model, other: Model) -> Model:
     )
 
 
-def refined(base: Calibration, effects: Sequence[Effect], readings: Measurements) -> Calibration:
-    """A calibration with further effects, fitted exactly; what cannot be told of them is frozen."""
+def refined(
+    base: Calibration,
+    effects: Sequence[Effect],
+    readings: Measurements,
+    near: Calibration | None = None,
+) -> Calibration:
+    """A calibration with further effects, fitted exactly; what cannot be told of them is frozen.
+
+    `near`: one with much the same effects, from whose values to start.
+    """
     model = base.fit.model
     for effect in effects:
         model = model + effect
+    if near is not None:
+        model = with_values_of(model, near.fit.model)
     found, frozen, wild = _fitted(model, readings, base.wild)
     return replace(base, fit=found, frozen=frozen, wild=wild)

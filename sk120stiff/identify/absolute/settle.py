@@ -15,7 +15,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.solve.polish import Evaluate, Minimum
 
-STEPS, HALVINGS = 20, 8
+STEPS, HALVINGS = 60, 8  # an unknown load on unknown springs takes a curved way
 ENOUGH = 1e-3  # a step that changes the predictions by less than this share of their noise is none
 
 
