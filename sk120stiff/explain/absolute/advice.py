@@ -18,8 +18,7 @@ from sk120stiff.explain.findings import Detectable
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
-from sk120stiff.plan import Region, Rivalry, lowest_points
-from sk120stiff.plan.pool import base_column, random_pool
+from sk120stiff.plan import Region, Rivalry, base_column, lowest_points, random_pool
 
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
 CONFIRMED = 2.0 * (SURE + 0.84)
