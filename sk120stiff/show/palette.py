@@ -27,6 +27,7 @@ PREDICTED: Final = ORANGE
 GAP: Final = VERMILION
 ENHANCED: Final = GREEN
 CONVENTIONAL: Final = PURPLE
+NAMED: Final = "#6A3D9A"  # where a named effect acts; told from `CONVENTIONAL` by its depth
 LOAD: Final = INK
 NOISE: Final = "#8A96A3"
 

@@ -1,20 +1,65 @@
 """Scenes check their shapes at birth; payloads are JSON that cannot break out of the page."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from sk120stiff import load_robot
+from sk120stiff.effects import effect
 from sk120stiff.errors import InputError
+from sk120stiff.measurements import read_measurements
 from sk120stiff.model import base_model
-from sk120stiff.show import Elastic, Reading, Scene, ScenePose, scene_html, static_scene
+from sk120stiff.show import (
+    Elastic,
+    Reading,
+    Scene,
+    ScenePose,
+    scene_html,
+    scene_of_model,
+    static_scene,
+)
 from sk120stiff.show.scene.bodies import bodies_of
 from sk120stiff.show.scene.links import link_tree
 from sk120stiff.show.scene.payload import scene_payload
 from sk120stiff.show.scene.shapes import Mesh, capsules, simplified, welded
 from sk120stiff.show.scene.static import json_for_script, viewer_script
-from tests.show.scenes import TWO_SLIDES, sk120, sk120_scene
+from tests.show.scenes import DATA, TWO_SLIDES, sk120, sk120_scene
+
+
+def test_what_was_named_is_marked_where_it_acts() -> None:
+    robot = load_robot("motoman_sk120")
+    model = base_model(robot)
+    places = {"joint_tilt": "joint_3_u", "link_bending": "link_2_l", "force_scale": "sensor"}
+    named = [effect(robot, name, where) for name, where in places.items()]
+    scene = scene_of_model(model, named=named)
+    assert scene.marks == {
+        "link_3_u": "joint_tilt at joint_3_u",
+        "link_2_l": "link_bending at link_2_l",
+    }
+    page = scene_payload(scene)
+    assert [page["links"][link] for link, _ in page["marks"]] == list(scene.marks)
+    with pytest.raises(InputError, match="no link 'elbow' to mark"):
+        replace(scene, marks={"elbow": "joint_tilt"})
+
+
+def test_a_scene_opens_where_the_gap_is_widest() -> None:
+    data = read_measurements(DATA, load_robot("motoman_sk120").actuated)
+    robot = load_robot("motoman_sk120")
+    scene = scene_of_model(
+        base_model(robot), data, named=[effect(robot, "joint_tilt", "joint_1_s")]
+    )
+    gaps = {
+        (pose.label, reading.label): np.linalg.norm(reading.measured - reading.predicted["model"])
+        for pose in scene.poses
+        for reading in pose.readings
+    }
+    label, number = max(gaps, key=lambda key: gaps[key])
+    pose = next(pose for pose in scene.poses if pose.label == label)
+    wrench = next(r.wrench for r in pose.readings if r.label == number)
+    np.testing.assert_array_equal(scene.first_pose, pose.a)
+    np.testing.assert_array_equal(scene.first_load, wrench)
 
 
 def test_payload_is_strict_json_with_the_data_in_it() -> None:

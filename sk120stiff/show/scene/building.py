@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,10 +15,11 @@ from sk120stiff.show.scene.elastic import Elastic
 from sk120stiff.show.scene.scene import Reading, Scene, ScenePose
 
 if TYPE_CHECKING:
-    from sk120stiff.effects import Situation
+    from sk120stiff.effects import Effect, Situation
     from sk120stiff.measurements import Measurements
     from sk120stiff.model import Model
     from sk120stiff.robot import Robot
+    from sk120stiff.show.scene.links import LinkTree
 
 
 def scene_of_model(
@@ -31,6 +33,7 @@ def scene_of_model(
     a: ArrayLike | None = None,
     wrench: ArrayLike | None = None,
     model_file: str | os.PathLike[str] = "",
+    named: Sequence[Effect] = (),
 ) -> Scene:
     """The scene of a modelled robot, with the poses of its data.
 
@@ -41,8 +44,10 @@ def scene_of_model(
         models: Name → model whose predictions are shown beside the measured displacements, before
             and after an explanation for example; ``{"model": model}`` by default.
         title, subtitle, label: Headings, and where the springs come from.
-        a, wrench: (n,) pose and (6,) load shown at first; the first reading's by default.
+        a, wrench: (n,) pose and (6,) load shown at first; by default those of the first reading,
+            or of the reading that the first model misses most where something is named.
         model_file: The model's file, for "copy as command".
+        named: Effects whose places are marked on the arm.
 
     Raises:
         InputError: The data belong to another robot, or nothing in the model yields.
@@ -50,7 +55,9 @@ def scene_of_model(
     robot = model.robot
     shown = {"model": model} if models is None else dict(models)
     poses = poses_of(robot, data, shown) if data is not None else ()
-    return Scene(
+    if a is None and wrench is None and named:
+        a, wrench = _widest_gap(poses)
+    scene = Scene(
         robot=robot,
         elastic=Elastic.of_model(model, label=label),
         poses=poses,
@@ -62,6 +69,34 @@ def scene_of_model(
         robot_argument=robot.source,
         model_argument=os.fspath(model_file),
     )
+    return replace(scene, marks=_marks(scene.tree, named))
+
+
+def _widest_gap(poses: Sequence[ScenePose]) -> tuple[Array | None, Array | None]:
+    """Pose and load of the reading that the first model misses most; None where none is told."""
+    gaps = [
+        (float(np.linalg.norm(r.measured - next(iter(r.predicted.values())))), pose.a, r.wrench)
+        for pose in poses
+        for r in pose.readings
+        if r.measured is not None and r.predicted
+    ]
+    _, a, wrench = max(gaps, key=lambda gap: gap[0], default=(0.0, None, None))
+    return a, wrench
+
+
+def _marks(tree: LinkTree, effects: Sequence[Effect]) -> dict[str, str]:
+    """Link → the effects that act there: at a link itself, or at the joint that carries it.
+
+    What an instrument misreads has no place on the arm and is not marked.
+    """
+    carried = dict(zip(tree.joints, tree.names, strict=True))
+    marks: dict[str, list[str]] = {}
+    for effect in effects:
+        for where in effect.where.split(","):
+            link = carried.get(where, where)
+            if link in tree.names:
+                marks.setdefault(link, []).append(f"{effect.name} at {where}")
+    return {link: ", ".join(dict.fromkeys(texts)) for link, texts in marks.items()}
 
 
 def poses_of(

@@ -48,6 +48,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
         "limits": limits_of(scene),
         "links": list(tree.names),
         "bodies": bodies,
+        "marks": [[tree.names.index(link), text] for link, text in scene.marks.items()],
         "meshes": [_mesh(mesh) for mesh in meshes],
         "kinematics": None if live else serialised(scene),
         "poses": [_pose(pose) for pose in scene.poses],
@@ -177,6 +178,7 @@ def scale_of(scene: Scene) -> dict[str, Any]:
         "reach": reach,
         "references": references,
         "exaggeration": _exaggeration(scene, reach),
+        "gap": _gap_factor(scene, reach),
     }
 
 
@@ -194,6 +196,19 @@ def _exaggeration(scene: Scene, reach: float) -> float:
     if largest < 1e-12:
         return 100.0
     return float(np.clip(_round_up(0.1 * reach / largest) / 2.0, *EXAGGERATION))
+
+
+def _gap_factor(scene: Scene, reach: float) -> float:
+    """A round factor that makes the largest gap about an eighth of the arm."""
+    gaps = [
+        float(np.linalg.norm(reading.measured - predicted))
+        for pose in scene.poses
+        for reading in pose.readings
+        for predicted in reading.predicted.values()
+        if reading.measured is not None
+    ]
+    largest = max(gaps, default=0.0)
+    return _round_up(0.25 * reach / largest) / 2.0 if largest > 1e-12 else 1.0
 
 
 def _round_up(value: float) -> float:

@@ -54,6 +54,8 @@ class Scene:
         wrench: (6,) load shown at first; that of the first reading by default, else none.
         a: (n,) pose shown at first; the first of the list by default, else all zero.
         frame: Name of the frame that carries the point; the tool frame by default.
+        marks: Link → what acts there: parts of the arm that are coloured and named, such as those
+            of the effects that an explanation added.
         robot_argument, model_argument: How a command line names robot and model, for "copy as
             command".
     """
@@ -67,6 +69,7 @@ class Scene:
     wrench: Array | None = None
     a: Array | None = None
     frame: str | None = None
+    marks: Mapping[str, str] = field(default_factory=dict)
     robot_argument: str = ""
     model_argument: str = ""
 
@@ -78,6 +81,9 @@ class Scene:
         for what, values, size in (("the load", self.wrench, 6), ("the pose", self.a, n)):
             if values is not None:
                 _check(what, values, size)
+        unknown = sorted(set(self.marks) - set(self.tree.names))
+        if unknown:
+            raise InputError(f"{self.robot.name} has no link {unknown[0]!r} to mark")
         for pose in self.poses:
             _check(f"pose {pose.label!r}", pose.a, n)
             for reading in pose.readings:

@@ -74,7 +74,7 @@ def demo_report(
     return Report(
         title="How stiff is a Motoman SK120, and what is missing from its model?",
         subtitle=f"Measured deflections of Table II of the 2005 paper, {counts}",
-        lead=demo_lead(demo),
+        lead=f"{demo_lead(demo)} {cause.in_short()}",
         sections=[
             _answer(demo),
             _first_act(demo),

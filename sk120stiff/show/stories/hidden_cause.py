@@ -49,6 +49,18 @@ class HiddenCause:
         return f"Only now the truth is opened: {listed(self.hidden)} was hidden, {verdict}."
 
 
+    def in_short(self) -> str:
+        """What came of the campaign, in a sentence."""
+        first, last = self.answer.steps[0], self.answer.steps[-1]
+        if set(self.found) != set(self.hidden):
+            return "In a simulated campaign with a hidden cause, that cause was not found."
+        return (
+            f"In a simulated campaign with a hidden cause, `{listed(self.found)}`, that cause is "
+            f"named and added, and the gap at new poses falls from {um(first.heldout_rms)} to "
+            f"{um(last.heldout_rms)} µm."
+        )
+
+
 def opened(answer: Explanation, truth: Path) -> HiddenCause:
     """An answer beside the truth, which is read from its file only here."""
     document = json.loads(truth.read_text(encoding="utf-8"))

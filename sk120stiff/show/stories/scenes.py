@@ -30,6 +30,7 @@ def explain_scene(answer: Explanation, *, subtitle: str = "", model_file: str = 
         title=answer.base.model.robot.name,
         subtitle=subtitle,
         model_file=model_file,
+        named=[finding.effect for finding in answer.findings],
     )
 
 

@@ -151,9 +151,10 @@ SK.makeActors = (stage, scene) => {
       element.style.display = inside ? "" : "none";
       if (inside) boxes.push({ element, x: ((spot.x + 1) / 2) * width, y: ((1 - spot.y) / 2) * height, width: 6.9 * element.textContent.length });
     }
+    for (const box of boxes) box.x = Math.max(box.width / 2 + 4, Math.min(width - box.width / 2 - 4, box.x));
     spread(boxes);
     for (const { element, x, y } of boxes) element.style.transform = `translate(-50%, -50%) translate(${x}px, ${y}px)`;
   };
 
-  return { makeArrow, makeFrame, makeEllipsoid, labels };
+  return { makeArrow, makeFrame, makeEllipsoid, makeLabel, labels };
 };

@@ -9,7 +9,7 @@ SK.start = (scene) => {
     a: scene.start.a.slice(), wrench: scene.start.wrench.slice(), point: scene.start.point.slice(),
     exaggeration: scale.exaggeration, scale: 1, quantity: "compliance", formulation: "enhanced",
     pose: -1, reading: -1, model: scene.models[scene.models.length - 1] || "",
-    show: { ellipsoid: true, labels: true, deflected: true, load: true, displacements: true, frames: false },
+    show: { ellipsoid: !scene.marks.length, labels: true, deflected: true, load: true, displacements: true, frames: false },
   };
   const same = (a, b) => a.every((value, k) => Math.abs(value - b[k]) < 1e-12);
   state.pose = poses.findIndex((pose) => same(pose.a, state.a));
@@ -23,10 +23,12 @@ SK.start = (scene) => {
   const arrows = {
     force: actors.makeArrow("force", colours.ink),
     moment: actors.makeArrow("moment", colours.ink, { doubled: true }),
-    measured: actors.makeArrow("measured", colours.measured, { label: "measured" }),
-    predicted: actors.makeArrow("predicted", colours.predicted, { label: "predicted" }),
-    gap: actors.makeArrow("gap", colours.gap, { label: "gap" }),
+    measured: actors.makeArrow("measured", colours.measured),
+    predicted: actors.makeArrow("predicted", colours.predicted),
+    gap: actors.makeArrow("gap", colours.gap),
+    before: actors.makeArrow("before", colours.noise),
   };
+  const marks = scene.marks.map(([link, text]) => ({ link, text, words: actors.makeLabel("named") }));
   const frames = { base: actors.makeFrame("base", 0.16 * reach), tool: actors.makeFrame("tool", 0.1 * reach) };
   let frame = null, pending = false, asked = 0, flight = 0, gliding = false, timer = 0;
 
@@ -85,8 +87,13 @@ SK.start = (scene) => {
       const predicted = reading.predicted[state.model];
       if (reading.measured) arrows.measured.set(from, m.scaled(reading.measured, factor));
       if (predicted) arrows.predicted.set(from, m.scaled(predicted, factor));
-      if (predicted && reading.measured)
-        arrows.gap.set(m.add(from, m.scaled(predicted, factor)), m.scaled(m.minus(reading.measured, predicted), factor));
+      const first = reading.predicted[scene.models[0]];
+      const gap = (arrow, model, name) => {
+        const vector = m.minus(reading.measured, model);
+        arrow.set(from, m.scaled(vector, scale.gap), `${name} ${number(1e6 * m.norm(vector))} µm`);
+      };
+      if (first && reading.measured && state.model !== scene.models[0]) gap(arrows.before, first, `gap ${scene.models[0]}`);
+      if (predicted && reading.measured) gap(arrows.gap, predicted, "gap");
     }
   }
 
@@ -99,6 +106,7 @@ SK.start = (scene) => {
     if (bent) stage.placeTwin(frame.deflected, frame.links);
     drawEllipsoids();
     drawArrows();
+    marks.forEach(({ link, text, words }) => words.set(frame.links[link].slice(12, 15), state.show.labels ? text : ""));
     frames.base.set([0, 0, 0], baseAxes, state.show.frames);
     frames.tool.set(frame.position, frame.rotation, state.show.frames);
     readouts.refresh(frame, currentReading());
@@ -121,7 +129,9 @@ SK.start = (scene) => {
     const times = `\u00d7 ${Number(state.exaggeration.toPrecision(3))}`;
     if (state.show.deflected && m.norm(state.wrench) > 0) rows.push(entry("deflected", frame.deflected ? `deflected shape, ${times}` : "no equilibrium: beyond the critical load"));
     if (currentReading() && state.show.displacements)
-      rows.push(entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", `predicted, ${state.model}`), entry("gap", "gap")] : []));
+      rows.push(entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", `predicted, ${state.model}`), entry("gap", `gap, \u00d7 ${Number(scale.gap.toPrecision(3))}`)] : []),
+        ...(scene.models.length > 1 && state.model !== scene.models[0] ? [entry("before", `gap ${scene.models[0]}, the same scale`)] : []));
+    if (scene.marks.length) rows.push(entry("named", "where what was named acts"));
     document.getElementById("legend").replaceChildren(...rows);
   }
 

@@ -26,10 +26,11 @@ SK.makeMaterials = (colours) => {
   const line = (colour, opacity = 1) => new THREE.LineBasicMaterial({
     color: linear(colour), transparent: opacity < 1, opacity,
   });
+  const named = new THREE.MeshStandardMaterial({ color: linear(colours.named), roughness: 0.5, metalness: 0.05, side: THREE.DoubleSide });
   const ghost = new THREE.MeshStandardMaterial({
     color: linear(colours.sky), transparent: true, opacity: 0.42, roughness: 0.8,
     side: THREE.DoubleSide, depthWrite: true,
     polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8, // behind the link where they touch
   });
-  return { body, glass, flat, line, ghost, linear };
+  return { body, glass, flat, line, ghost, named, linear };
 };

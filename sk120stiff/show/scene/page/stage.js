@@ -53,7 +53,7 @@ SK.makeStage = (pane, scene) => {
   put(["room", "fill"], fill);
 
   // The robot, and its deflected twin.
-  const nodes = { robot: [], deflected: [] };
+  const nodes = { robot: [], deflected: [] }, marked = new Set(scene.marks.map(([link]) => link));
   scene.links.forEach((name, link) => {
     const mine = scene.bodies.filter((body) => body.link === link);
     for (const [group, list] of Object.entries(nodes)) {
@@ -61,7 +61,7 @@ SK.makeStage = (pane, scene) => {
       list.push(mine.length ? find(path) : null);
       mine.forEach((body, k) => {
         const twin = group === "deflected";
-        const mesh = new THREE.Mesh(shapes.geometryOf(body), twin ? materials.ghost : materials.body(body.colour));
+        const mesh = new THREE.Mesh(shapes.geometryOf(body), twin ? materials.ghost : marked.has(link) ? materials.named : materials.body(body.colour));
         if (body.kind === "mesh") mesh.scale.fromArray(body.size);
         mesh.castShadow = mesh.receiveShadow = !twin;
         viewer.set_object(path.concat(String(k)), mesh);
