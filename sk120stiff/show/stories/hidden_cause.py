@@ -48,7 +48,6 @@ class HiddenCause:
         verdict = "and that is what was named" if same else "and that is not what was named"
         return f"Only now the truth is opened: {listed(self.hidden)} was hidden, {verdict}."
 
-
     def in_short(self) -> str:
         """What came of the campaign, in a sentence."""
         first, last = self.answer.steps[0], self.answer.steps[-1]
