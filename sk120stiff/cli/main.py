@@ -32,7 +32,7 @@ COMMANDS = {
     "effects": "What every effect and its numbers mean: law, axes, sign, unit.",
     "plan": "The poses and loads to measure next.",
     "simulate": "Synthetic measurements from a model: loads, noise, zeros.",
-    "import": "A calibration file of marker positions as measurements.",
+    "import": "Readings of trackers and calibration programs as measurements.",
     "compensate": "Joint commands that cancel the deflection along a loaded path.",
     "export": "The modelled arm as a file for MuJoCo or SDF simulators.",
     "posture": "The stiffest or least deflected posture for a tool path.",
