@@ -79,7 +79,8 @@ def standing_budget(
 ) -> tuple[Share, ...]:
     """What each effect moves a loaded tool by, for commands (N, n) under loads (N, 6).
 
-    Weight and wrong geometry count too. Standard errors where the model stores its uncertainty.
+    Weight and wrong geometry count too. Standard errors where the model stores its uncertainty, and
+    the readings of its fit show the effect.
     """
     physical, a, load, at = _seen(model, commanded, wrench, frame, point)
     found = [derivative for _, derivative in _derivatives(physical, a, load, at)]
@@ -88,8 +89,10 @@ def standing_budget(
         return ()
     covariance = None
     if model.uncertainty is not None:
-        L, _ = model.uncertainty.factors(physical.names)
-        covariance = L @ L.T
+        L, B = model.uncertainty.factors(physical.names)
+        covariance = L @ L.T + B @ B.T
+        unknown = np.isinf(spread(L, B, 0.0))
+        covariance[unknown, unknown] = np.inf
     return shares(physical, derivative, covariance)
 
 

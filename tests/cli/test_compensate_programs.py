@@ -1,6 +1,8 @@
 """`compensate` from G-code, APT and CSV to robot programs, through the command line."""
 
 import csv
+import re
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -146,6 +148,29 @@ def test_the_controllers_own_axes_stand_in_the_program(run: Run, tmp_path: Path)
     (folder / "robot.yaml").write_text(broken)
     bad = run("compensate", str(folder), str(path), "--out", str(tmp_path / "p.src"))
     assert bad.code == 2 and "joint_9" in bad.stderr
+
+
+def test_the_two_commands_of_the_docs_lead_from_gcode_to_a_job(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = (ROOT / "docs/FILES.md").read_text(encoding="utf-8")
+    part, commands = re.findall(r"```(?:gcode|bash)\n(.*?)```", page.partition("part.nc -->")[2],
+                                re.DOTALL)[:2]  # fmt: skip
+    (tmp_path / "part.nc").write_text(part)
+    (tmp_path / "robots").symlink_to(ROOT / "robots")
+    monkeypatch.chdir(tmp_path)
+    first, second = (shlex.split(line)[1:] for line in commands.splitlines())
+    assert run(*first).code == 0
+    done = run(*second, "--json")
+    assert done.code == 0, done.stderr
+    job = (tmp_path / "part.jbi").read_text()
+    assert job.startswith("/JOB\n//NAME PART\n") and job.endswith("\nEND\n")
+    assert f"///NPOS {done.document['rows']}," in job
+    fitted = "".join(job.replace("'", "").split())
+    assert "Fittedto" in fitted and "table2_measured.csv" in fitted and "sha256:" in fitted
+    assert done.document["before_um"] > 500.0 > 100.0 > done.document["after_um"]
+    assert done.document["uncertainty"]["after_std_parameters_um"] > 1.0
+    assert (tmp_path / "part.html").stat().st_size > 50_000
 
 
 def csv_joints(out: Path) -> np.ndarray:

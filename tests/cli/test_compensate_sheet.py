@@ -1,6 +1,7 @@
 """The sheet of a path: before and after, the shares, and the points that came back."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -146,6 +147,20 @@ def test_the_error_of_a_share_is_that_of_its_spring(fitted: Path) -> None:
     for share in standing_budget(model, a, [[100, 0, -490, 0, 0, 0]]):
         k = known.names.index(f"{share.name}.stiffness")
         assert share.std == pytest.approx(share.rms * known.std[k] / known.values[k], rel=1e-6)
+
+
+def test_a_share_that_no_reading_shows_has_no_error(fitted: Path) -> None:
+    model = read_model(fitted)
+    known = model.uncertainty
+    assert known is not None
+    unseen = np.zeros((1, len(known.names)))
+    unseen[0, known.names.index("joint_springs:joint_2_l.stiffness")] = known.values.max()
+    doubtful = model.known(replace(known, unseen=unseen))
+    a = np.radians([[10, 20, -30, 0, -60, 0]])
+    found = standing_budget(doubtful, a, [[100, 0, -490, 0, 0, 0]])
+    told = {share.name: share.std for share in found}
+    assert told["joint_springs:joint_2_l"] is None
+    assert told["joint_springs:joint_3_u"] is not None
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,8 @@ class UrScript(Language):
         """Joints and pose of every point."""
         if len(program.axes) != 6 or any(program.slides):
             raise InputError(
-                f"URScript is for six turning joints, this arm has {len(program.axes)}",
+                f"URScript is for six turning joints, this arm has {len(program.axes)} joints, "
+                f"{sum(program.slides)} of which slide",
                 where=f"--to {self.name}",
                 remedy="Choose another language, or --to csv.",
             )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import new_figure, styled, subplots
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 COLOURS = {"before": palette.ORANGE, "after": palette.BLUE}
 LONGEST_ARROW = 0.16  # of the picture's extent
 MOST_ARROWS = 40
+MOST_POINTS = 1500  # drawn; more only make the page heavy
 _VIEWS = ((0, 1), (0, 2), (1, 2))
 
 
@@ -36,27 +37,37 @@ def error_along(
     """
     if not len(length):
         raise InputError("no point to draw")
+    shown = thinned(next(iter(predicted.values())))
     with styled():
         figure = new_figure(3.0)
         panel = figure.subplots()
-        x = 1e3 * length
+        x = 1e3 * length[shown]
         for run, values in predicted.items():
-            panel.plot(x, 1e6 * values, color=COLOURS[run], label=f"{run}, predicted",
+            panel.plot(x, 1e6 * values[shown], color=COLOURS[run], label=f"{run}, predicted",
                        marker="o" if len(x) < 3 else "", zorder=2)  # fmt: skip
         if std is not None and np.isfinite(std).any():
             panel.fill_between(
-                x, 0.0, 1e6 * (predicted["after"] + std), color=palette.SKY, alpha=0.35,
+                x, 0.0, 1e6 * (predicted["after"] + std)[shown], color=palette.SKY, alpha=0.35,
                 linewidth=0.0, label="after, ± one standard distance", zorder=1,
             )  # fmt: skip
         for run, values in measured.items():
-            panel.plot(x, 1e6 * values, "o", color=COLOURS[run], markerfacecolor=palette.PAPER,
-                       markersize=4, label=f"{run}, measured", zorder=3)  # fmt: skip
+            panel.plot(x, 1e6 * values[shown], "o", color=COLOURS[run], zorder=3, markersize=4,
+                       markerfacecolor=palette.PAPER, label=f"{run}, measured")  # fmt: skip
         panel.set_xlabel("way along the path [mm]")
         panel.set_ylabel("off its place [µm]")
         panel.set_ylim(bottom=0.0)
         panel.margins(x=0.01)
         figure.legend(loc="outside upper left", ncols=3)
     return figure
+
+
+def thinned(size: Array) -> Index:
+    """Which of N points to draw: evenly spread, with the largest among them."""
+    if len(size) <= MOST_POINTS:
+        return np.arange(len(size))
+    spread = np.linspace(0, len(size) - 1, MOST_POINTS).astype(np.intp)
+    largest = np.flatnonzero(size == np.nanmax(size))[:1] if np.isfinite(size).any() else spread[:0]
+    return np.unique(np.concatenate([spread, largest]))
 
 
 def path_map(position: Array, away: Array, worst: int) -> Figure:
@@ -67,6 +78,10 @@ def path_map(position: Array, away: Array, worst: int) -> Figure:
         away: (N, 3) how far off it stands [m].
         worst: The point to mark.
     """
+    mark = position[worst]
+    scale = exaggeration(position, away)
+    shown = thinned(np.linalg.norm(away, axis=1))
+    position, away = position[shown], away[shown]
     extent = np.ptp(position, axis=0)
     first = max(
         _VIEWS, key=lambda view: extent[view[0]] * extent[view[1]] + extent[list(view)].sum()
@@ -74,7 +89,6 @@ def path_map(position: Array, away: Array, worst: int) -> Figure:
     rest = [view for view in _VIEWS if view != first]
     second = max(rest, key=lambda view: np.abs(away[:, list(view)]).sum())
     size = 1e6 * np.linalg.norm(away, axis=1)
-    scale = exaggeration(position, away)
     every = slice(None, None, -(-len(position) // MOST_ARROWS))
     with styled():
         figure, panels = subplots(1, 2, height=3.6)
@@ -88,7 +102,7 @@ def path_map(position: Array, away: Array, worst: int) -> Figure:
                            alpha=0.7, zorder=2)  # fmt: skip
             drawn = panel.scatter(1e3 * position[:, a], 1e3 * position[:, b], c=size, s=16,
                                   cmap="viridis", zorder=3)  # fmt: skip
-            panel.plot(*(1e3 * position[worst, [a, b]]), "o", markersize=11, zorder=4,
+            panel.plot(*(1e3 * mark[[a, b]]), "o", markersize=11, zorder=4,
                        markerfacecolor="none", markeredgecolor=palette.VERMILION)  # fmt: skip
             panel.set_xlabel(f"{'xyz'[a]} [mm]")
             panel.set_ylabel(f"{'xyz'[b]} [mm]")
