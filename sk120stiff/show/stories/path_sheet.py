@@ -112,7 +112,7 @@ class PathSheet:
                       f"at most {_small(_most(after))}"),
             KeyFigure(
                 "± of a prediction", "–" if self.std is None else um(_rms(self.std)), "µm",
-                "one standard distance" if self.std is not None else "not stored in the model",
+                "one standard distance" if self.std is not None else "unknown, see below",
             ),
         ]  # fmt: skip
         figures += [
