@@ -119,6 +119,7 @@ class _Builder:
             sites = [(f"{self.frame}{MEASURED}", *sites[0][1:]), (self.frame, *flange)]
         return MovingArm(
             robot.name,
+            robot.actuated,
             tuple(self.bodies),
             tuple(
                 (name, *place)

@@ -40,7 +40,10 @@ def make(model: Model, request: Request) -> Exported:  # noqa: ARG001
     into = [np.linalg.inv(own) @ frame for own, frame in zip(nominal, frames[1:], strict=True)]
     before = [frames[0], *into]
     steps = [np.linalg.inv(before[k]) @ geometry.placements[k] @ into[k] for k in range(len(NAMES))]
-    lines = ["kinematics:"]
+    left_out = (*geometry.left_out, *_left_out(model, geometry))
+    lines = [f"# {robot.name}, calibrated, written by sk120stiff; lengths in m, angles in rad"]
+    lines += [f"# left out: {one.effect}: {one.how}" for one in left_out]
+    lines.append("kinematics:")
     values = []
     for name, T in zip(NAMES, steps, strict=True):
         row = [*T[:3, 3], *rpy_from_rotation(T[:3, :3])]
@@ -55,7 +58,7 @@ def make(model: Model, request: Request) -> Exported:  # noqa: ARG001
     return Exported(
         "\n".join(lines) + "\n",
         geometry.carried if not geometry.measured.any() else _without_marker(geometry),
-        (*geometry.left_out, *_left_out(model, geometry)),
+        left_out,
         notes=(
             "The hash is this file's own: the driver will say that it is not the controller's. "
             "Put the controller's hash there to silence it.",

@@ -1,8 +1,8 @@
 """MJCF: the arm for MuJoCo, with position actuators, springs behind them, and the user's shapes.
 
 The world's axes are those of the base frame. A command is one number for each actuated joint, in
-``data.ctrl``; the keyframe ``commanded`` stands at the pose. A load acts at the site that bears the
-name of the frame (``mj_applyFT``, each step).
+their order, in ``data.ctrl``; the keyframe ``commanded`` stands at the pose. A load acts at the
+site that bears the name of the frame (``mj_applyFT``, each step).
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def details_of(arm: MovingArm) -> dict[str, object]:
              "unit": "N/m" if joint.slides else "N*m/rad"}
             for joint, total in compliances(arm)
         ],
-        "servos": {joint.name: joint.servo for joint in arm.joints if joint.servo},
+        "servos": {joint.name: joint.servo for joint in arm.motors},
         "coupled": [{"weights": one.weights, "stiffness": one.stiffness} for one in arm.springs],
         "followers": [
             {"joint": j.name, "driver": j.leader[0], "factor": j.leader[1], "offset": j.leader[2]}
@@ -78,7 +78,7 @@ def details_of(arm: MovingArm) -> dict[str, object]:
 
 def rows_of(arm: MovingArm) -> list[tuple[object, ...]]:
     """Springs for people: of the joint as a whole, and the servo's."""
-    servos = {f"{joint.name}.spring": joint.servo for joint in arm.joints if joint.servo}
+    servos = {f"{joint.name}.spring": joint.servo for joint in arm.motors}
     return [
         (joint.name.removesuffix(".spring"), 1.0 / total, "N/m" if joint.slides else "N*m/rad",
          servos.get(joint.name, ""))
@@ -88,7 +88,7 @@ def rows_of(arm: MovingArm) -> list[tuple[object, ...]]:
 
 def compliances(arm: MovingArm) -> list[tuple[Joint, float]]:
     """Joints with a spring of their own, and the compliance of spring and servo together."""
-    servos = {f"{joint.name}.spring": joint.servo for joint in arm.joints if joint.servo}
+    servos = {f"{joint.name}.spring": joint.servo for joint in arm.motors}
     return [
         (joint, 1.0 / joint.stiffness + (1.0 / servos[joint.name] if joint.name in servos else 0.0))
         for joint in arm.joints
@@ -164,7 +164,7 @@ def _document(
     yield from _ties(arm)
     yield from _actuators(arm)
     qpos = numbers(np.array([joint.value for joint in order]))
-    ctrl = numbers(np.array([joint.value for joint in arm.joints if joint.servo]))
+    ctrl = numbers(np.array([joint.value for joint in arm.motors]))
     yield f'  <keyframe><key name="commanded" qpos="{qpos}" ctrl="{ctrl}"/></keyframe>'
     yield "</mujoco>"
 
@@ -229,9 +229,7 @@ def _ties(arm: MovingArm) -> Iterable[str]:
 
 def _actuators(arm: MovingArm) -> Iterable[str]:
     yield "  <actuator>"
-    for joint in arm.joints:
-        if not joint.servo:
-            continue
+    for joint in arm.motors:
         limit = ""
         if np.isfinite(joint.limits).all():
             low, high = min(joint.limits[0], joint.value), max(joint.limits[1], joint.value)

@@ -100,7 +100,7 @@ class MovingArm:
     """A whole robot that can be driven.
 
     Attributes:
-        name: Of the robot.
+        name, actuated: Of the robot, and its actuated joints in their order.
         bodies: Carriers before what they carry.
         frames: Every other frame: (name, index of its body, (4, 4) placement on it).
         sites: The same for the frames at which loads may act.
@@ -111,6 +111,7 @@ class MovingArm:
     """
 
     name: str
+    actuated: tuple[str, ...]
     bodies: tuple[Body, ...]
     frames: tuple[tuple[str, int, Array], ...]
     sites: tuple[tuple[str, int, Array], ...]
@@ -128,6 +129,12 @@ class MovingArm:
     def joints(self) -> tuple[Joint, ...]:
         """All joints, in the order of the bodies."""
         return tuple(body.joint for body in self.bodies if body.joint is not None)
+
+    @property
+    def motors(self) -> tuple[Joint, ...]:
+        """Joints that servos hold, in the order of the robot's actuated joints."""
+        found = {joint.name: joint for joint in self.joints if joint.servo}
+        return tuple(found[name] for name in self.actuated)
 
     @property
     def heavy(self) -> bool:

@@ -98,9 +98,8 @@ def _document(
         yield f"    <frame name={quoteattr(name)} attached_to={quoteattr(names[at])}>"
         yield f"      <pose>{_pose(T)}</pose>"
         yield "    </frame>"
-    for joint in arm.joints:
-        if joint.servo:
-            yield from _controller(joint)
+    for joint in arm.motors:
+        yield from _controller(joint)
     yield "  </model>"
     yield "</sdf>"
 

@@ -19,7 +19,7 @@ from sk120stiff.effects import Elastic
 from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers
 from sk120stiff.exports.geometry import MEASURED, Geometry, geometry_of
 from sk120stiff.model import Model
-from sk120stiff.robot import Robot
+from sk120stiff.robot import Robot, find_robot
 from sk120stiff.robot.rotations import rotation_vector
 from sk120stiff.robot.urdf import Mimic, document_tree, resolve
 from sk120stiff.robot.urdf.clean import rpy_from_rotation
@@ -53,6 +53,8 @@ def make(model: Model, request: Request) -> Exported:
     meshes = _moved_meshes(root, robot, request.out)
     tree = root.getroottree()
     text = etree.tostring(tree, encoding="utf-8", xml_declaration=True).decode("utf-8") + "\n"
+    head, robot_tag, body = text.partition("<robot")  # lxml puts what stands before it in one line
+    text = head.replace("-->", "-->\n") + robot_tag + body
     return Exported(
         text,
         geometry.carried,
@@ -143,6 +145,9 @@ def _add_extension(root: Element, model: Model, geometry: Geometry) -> None:
             etree.SubElement(element, "parameter", said)
     etree.indent(extension, space="  ", level=1)
     extension.tail = "\n"
+    before = extension.getprevious()
+    if before is not None and not (before.tail or "").strip():
+        before.tail = "\n  "
 
 
 def _moved_meshes(root: Element, robot: Robot, out: Path) -> list[str]:
@@ -170,6 +175,8 @@ def _notes(robot: Robot, coupled: tuple[str, ...], missing: list[str]) -> tuple[
     repaired = [str(f) for f in robot.document.warnings if f.code == "xacro_expanded"]
     if repaired:
         notes.append("The xacro is written out as a plain URDF.")
+    if find_robot(robot.source).folder is not None:
+        notes.append("What robot.yaml says still holds: name this file under urdf in a copy of it.")
     notes.append(
         "Do not put this model on the exported robot again: its geometry would count twice."
     )

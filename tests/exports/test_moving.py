@@ -149,6 +149,49 @@ def test_other_frames_and_slides(tmp_path: Path) -> None:
     np.testing.assert_allclose(moved, slides.deflect(pose[None], WRENCH[None])[0], atol=1e-7)
 
 
+def driven_from_the_side() -> str:
+    """Joint j2 of a slanting, heavy arm mimics a motor that sits beside the chain; j4 slides."""
+
+    def joint(name: str, ends: str, axis: str, more: str = "", kind: str = "revolute") -> str:
+        parent, child = ends
+        return (
+            f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f'<origin xyz="0.3 0.1 0.4" rpy="0.1 -0.2 0.3"/><axis xyz="{axis}"/>'
+            f'<limit lower="-2" upper="2" effort="1" velocity="1"/>{more}</joint>'
+        )
+
+    heavy = "".join(
+        f'<link name="{name}"><inertial><origin xyz="0.1 0 0.1"/><mass value="20"/><inertia '
+        'ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        for name in "abcdm"
+    )
+    return (
+        '<robot name="side"><link name="world"/><link name="o"/><link name="t"/>'
+        '<joint name="up" type="fixed"><parent link="world"/><child link="o"/>'
+        f'<origin xyz="0 0 1" rpy="0.4 0 0"/></joint>{heavy}'
+        + joint("j1", "oa", "0 0 1")
+        + joint("motor", "am", "0 1 0")
+        + joint("j2", "ab", "0 1 0", '<mimic joint="motor" multiplier="-0.5" offset="0.2"/>')
+        + joint("j3", "bc", "1 0 0")
+        + joint("j4", "cd", "0 0 1", kind="prismatic")
+        + '<joint name="tool" type="fixed"><parent link="d"/><child link="t"/>'
+        '<origin xyz="0 0 0.3" rpy="0 0.7 0"/></joint></robot>'
+    )
+
+
+def test_commands_have_the_order_of_the_actuated_joints(tmp_path: Path) -> None:
+    robot = load_robot(
+        driven_from_the_side(), base="o", tool="t", actuated=["j3", "motor", "j4", "j1"]
+    )
+    model = with_random(joint_spring_model(robot, [1e5, 2e5, 1e6, 1e5]), "joint_offset")
+    model = with_effect(model, "joint_tilt:j3")
+    arm = loaded(model, tmp_path)
+    assert [arm.actuator(k).name for k in range(arm.nu)] == list(robot.actuated)
+    for pose in np.random.default_rng(8).uniform(-1.0, 1.0, (2, 4)):
+        found = settled(arm, "t", pose, 0.3 * WRENCH)
+        np.testing.assert_allclose(found, resting(model, pose, 0.3 * WRENCH), atol=1e-7)
+
+
 @pytest.mark.parametrize("name", ["ur5_robot.urdf", "panda.urdf", "motoman_sk120"])
 def test_it_has_the_users_shapes_and_frames(name: str, tmp_path: Path) -> None:
     model = base_model(public(name))
