@@ -210,9 +210,15 @@ def said(answer: Explanation) -> str:
         return _none(answer.adequacy)
     return {
         "named": "Something was missing, and it has a name.",
-        "ambiguous": "Something is missing; these readings cannot tell which of several names.",
+        "ambiguous": _ambiguous(answer),
         "outside": _outside(answer),
     }[answer.verdict]
+
+
+def _ambiguous(answer: Explanation) -> str:
+    if all(set(each.alternatives) <= set(each.exact) for each in answer.findings):
+        return "Something seems to be missing; its name is likely, but not sure."
+    return "Something is missing; these readings cannot tell which of several names."
 
 
 def _none(left: Adequacy) -> str:

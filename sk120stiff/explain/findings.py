@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sk120stiff.effects import Effect
+
+NAMED = 0.95  # probability from which on a name stands alone
 
 
 @dataclass(frozen=True)
@@ -98,8 +100,13 @@ class Finding:
 
     @property
     def settled(self) -> bool:
-        """No further poses could tell more."""
-        return set(self.alternatives) <= set(self.exact)
+        """One name, or one class of names, is sure enough; no further poses could tell more."""
+        return set(self.alternatives) <= set(self.exact) and self.probability >= NAMED
+
+    def doubted(self, impostor: float) -> Finding:
+        """The same where, with this probability, it imitates part of what has no name."""
+        odds = {name: (1.0 - impostor) * share for name, share in self.evidence.odds.items()}
+        return replace(self, evidence=replace(self.evidence, odds=odds))
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,9 @@ from sk120stiff.errors import InputError
 
 USUAL = 0.1  # of every effect without an entry
 SOMETHING_ELSE = 0.1  # that a cause is at work which the catalogue lacks
+# Of a name that stands beside such a cause: that it imitates a part of it all the same. On the
+# draws that the judgement was made with, one name in twenty-five did (`judge/imitation.py`).
+IMPOSTOR = 0.04
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
+from sk120stiff.explain.priors import IMPOSTOR
 from sk120stiff.explain.select.best_attempt import best_attempt, held_against
 from sk120stiff.explain.select.stepwise import Attempt, attempt
 from sk120stiff.identify import refuse_unusable
@@ -90,13 +91,13 @@ def explain(
     found, named = exactly if exact else beside_model_form(base, under, seed=options.seed)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
-    findings = named.findings
+    remainder = remainder_of(held_against(noise, found.final))
+    findings = tuple(each.doubted(IMPOSTOR * remainder.something_else) for each in named.findings)
     effects = [finding.effect for finding in findings]
     final = with_selection_uncertainty(found, findings)
     verdict = _verdict(findings, left)
     if verdict == "none":
         left.refuse_contradicted(str(measurements.path or "the measurements"))
-    remainder = remainder_of(held_against(noise, found.final))
     if remainder.significant:
         lives = where_sentences(localise(held_against(noise, found.final)))
         remainder = replace(remainder, where=lives[1 : 1 + TOLD])

@@ -13,3 +13,17 @@ def family(name: str) -> frozenset[str]:
         if name in members:
             return members
     return frozenset({name})
+
+
+# Causes whose law no catalogue has, but whose kind and place it does: what a user is told by the
+# name is true, and what it leaves over is a remainder. The others have no name at all.
+KINDS = {
+    "foreign_memory": "friction_hysteresis",  # a gear that lags, across the whole series
+    "foreign_quadratic_mount": "base_rocking",  # the floor yields, with the square of the moment
+    "foreign_rubber_mount": "tool_compliance",  # the mount of the tool yields, and stiffens
+}
+
+
+def kind(name: str) -> str | None:
+    """The catalogue's name for the kind of a foreign cause; None where there is none."""
+    return KINDS.get(name)

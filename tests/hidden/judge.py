@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from .answers import Answer, identity, identity_of
-from .families import GEAR, HYSTERETIC, REVERSIBLE, family
+from .families import GEAR, HYSTERETIC, REVERSIBLE, family, kind
 
 TOLD_APART = 3.3  # sqrt(lambda) below which the data cannot tell two causes apart
 NEGLIGIBLE = 4.0  # a hidden cause this weak beyond the others need not be found
@@ -43,7 +43,7 @@ def mark(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     if truth["expected"] == "none":
         return _nothing(truth, answer)
     if level == "L7":
-        return _outside(answer)
+        return _outside(truth, answer)
     if level == "L4":
         return _pair(truth, answer)
     if level == "L5":
@@ -70,10 +70,25 @@ def _nothing(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     return 0.0, wrong, f"false alarm: {answer.verdict} {_spell(answer)}"
 
 
-def _outside(answer: Answer) -> tuple[float, int, str]:
+def _outside(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
+    """No name; or, of a cause whose kind the catalogue has, its kind and place alone."""
     if answer.verdict == "outside" and not answer.names:
         return 1.0, 0, ""
-    return 0.0, 1 if answer.names else 0, f"{answer.verdict} {_spell(answer)}"
+    wrong = [group for group in answer.effects if not group & of_its_kind(truth)]
+    if answer.effects and not wrong:
+        return 1.0 / max(len(group) for group in answer.effects), 0, f"by kind: {_spell(answer)}"
+    return 0.0, 1 if wrong else 0, f"{answer.verdict} {_spell(answer)}"
+
+
+def of_its_kind(truth: dict[str, Any]) -> frozenset[str]:
+    """Identities that name the foreign cause of a case by its kind, at its place."""
+    causes = [f"{entry['name']}:{entry['where']}" for entry in truth["effects"]]
+    found: set[str] = set()
+    for text in (*causes, str(truth.get("foreign", ""))):
+        own, _, where = text.partition(":")
+        known = kind(own)
+        found |= {identity(known, where)} if known else set()
+    return frozenset(found)
 
 
 def _names(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
@@ -138,12 +153,20 @@ def _curve(name: str) -> frozenset[str]:
 
 
 def _beside(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
-    """The known cause named, and beside it a significant remainder whose interval holds."""
-    share, wrong, note = _names(truth, answer)
+    """The known cause named, and beside it a significant remainder whose interval holds.
+
+    Where the foreign one is named by its kind too, what is left is less than its remainder.
+    """
+    known = set(true_names(truth))
+    strange = [g for g in answer.effects if g & of_its_kind(truth) and not g & known]
+    rest = tuple(group for group in answer.effects if group not in strange)
+    share, wrong, note = _names(truth, replace(answer, effects=rest))
     if share == 0.0:
-        return share, wrong, note
+        return share, wrong, f"{answer.verdict} {_spell(answer)}"
     told, true = answer.remainder, truth["remainder_um"]
     named = f"{_spell(answer)} named, remainder"
+    if strange and told is not None and told.low <= true:
+        return share / max(map(len, strange)), 0, f"the foreign one by kind: {_spell(answer)}"
     if told is None:
         return 0.0, 0, f"{named} missing (true {true:.1f} um)"
     if not told.significant:
@@ -179,13 +202,14 @@ def _positions(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
 
 
 def at_work(truth: dict[str, Any], group: frozenset[str]) -> bool:
-    """Whether one of these names is truly at work; at L10 the family counts, at L5 the class."""
+    """Whether one of these names is truly at work; at L10 the family counts, at L5 the class, of
+    foreign causes the kind."""
     names = true_names(truth)
     if truth["level"] == "L5" or truth["level"].startswith("L11"):
         names += [identity_of(text) for text in truth["accepted"]]
     if truth["level"] == "L10":
         names = [member for name in names for member in kin(name)]
-    return bool(group & set(names))
+    return bool(group & {*names, *of_its_kind(truth)})
 
 
 def _pair(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:

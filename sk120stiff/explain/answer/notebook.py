@@ -16,7 +16,7 @@ from sk120stiff.explain.findings import Finding
 HEADINGS = {
     "none": "Nothing is missing that these readings could show",
     "named": "Model and readings disagree, and the reason has a name",
-    "ambiguous": "Model and readings disagree, and more than one name fits",
+    "ambiguous": "Model and readings disagree, and no one name is sure",
     "outside": "Model and readings disagree, and no effect of the catalogue explains it",
 }
 FULL = 160.0  # width of the longest bar [px]

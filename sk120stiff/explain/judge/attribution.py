@@ -28,6 +28,7 @@ MISSPECIFICATION = (
 NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
+ALONG = 0.75  # share of draws' square along one direction, of which chance gives a third
 CONTENDERS = 24  # rivals looked at for every effect
 NEAR = 40.0  # difference of scores within which a rival's neighbours may take other laws
 
@@ -146,6 +147,15 @@ def _objection(
             f"{stronger.effect.id} leaves over; it is not named.",
             misspecification=True,
         )
+    gear = _gear_that_drifts(found, finding, before)
+    if gear is not None:
+        return Fallen(
+            name,
+            f"{name} fits, but what poses have of their own lies along the turn of "
+            f"{gear.effect.where}: the gear of {gear.effect.id} does not begin every pose alike. "
+            "It is not named.",
+            misspecification=True,
+        )
     if finding.effect.exchangeable and not _constant(found, finding.effect):
         return Fallen(
             name,
@@ -181,6 +191,30 @@ def unit(regression: Regression, model: Scored) -> float:
     if regression.sigma_known:
         return 1.0
     return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
+
+
+def _gear_that_drifts(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
+    """The stronger law of a gear along whose turn the draws of a finding lie; None: of no gear.
+
+    A gear that rubs begins a pose with what the pose before left in it, which its law takes for
+    nothing. Draws of the tracker know no joint: a third of their square lies along its turn.
+    """
+    gears = [other for other in before if other.effect.of_gear]
+    if not (finding.effect.exchangeable and gears):
+        return None
+    fit = found.final
+    situation = fit.problem.situation
+    own = np.array([parameter.effect == finding.effect for parameter in fit.model.parameters])
+    _, full = fit.model.predict_with_sensitivities(situation)
+    drawn = np.einsum("nij,nj->ni", situation.reading_axes, full[:, :, own] @ fit.model.values[own])
+    for gear in gears:
+        joint = situation.robot.actuated.index(gear.effect.where)
+        way = situation.nominal.linear_jacobian[:, :, joint]
+        length = np.maximum(np.linalg.norm(way, axis=1), 1e-300)
+        along = np.einsum("ni,ni->n", drawn, way) / length
+        if (along**2).sum() > ALONG * (drawn**2).sum():
+            return gear
+    return None
 
 
 def _constant(found: Attempt, effect: Effect) -> bool:

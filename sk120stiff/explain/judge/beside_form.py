@@ -12,21 +12,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
-from sk120stiff.explain.findings import Finding
-from sk120stiff.explain.judge.adequacy import explained, structure
 from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged
-from sk120stiff.explain.select.best_attempt import held_against
+from sk120stiff.explain.judge.imitation import imitates
 from sk120stiff.explain.select.stepwise import Attempt, with_effects
-from sk120stiff.identify import Fit, yardstick
+from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
-from sk120stiff.measurements.model_form import EXACT
 
 ROUNDS = 3  # of estimating, searching and judging
-IMITATED = 0.3  # structure left, over what the names explain, from which on they may imitate
-DECISIVE = 1e-8  # probability of such structure if what is left were as irregular as draws
 WORTH = 2.0  # gain in -2 ln L by which structure has to beat noise that is merely larger
 
 Try = Callable[[NoiseModel], Attempt]
@@ -51,40 +44,19 @@ def beside_model_form(base: Fit, under: Try, *, seed: int) -> tuple[Attempt, Nam
 
 
 def _unless_imitating(found: Attempt, named: Named, seed: int) -> tuple[Attempt, Named]:
-    """The same without names that may imitate part of a cause that the catalogue lacks.
+    """The same without names that imitate part of a cause that the catalogue lacks.
 
-    What no arm is free of is as irregular as draws, pose by pose. A cause that the catalogue lacks
-    leaves more than that beside whatever comes nearest to it: where much of what is left is
-    structured, nothing is named. And what explains less than is left falls beside a stronger name.
+    They fall one at a time, the weakest first, and the others are judged anew; those that stand do
+    so beside whatever is left.
     """
-    noise = yardstick(found.final)
-    if not (named.findings and noise.freedom):
-        return found, named  # nothing tells noise from structure
-    left = structure(found.final, {effect.id for effect in found.effects})
-    if left.probability < DECISIVE and left.excess > IMITATED * left.explained:
-        undone = tuple(Fallen(each.effect.id, _imitates(each)) for each in named.findings)
-        return with_effects(found, []), Named((), (*undone, *named.fallen))
-    exactly = held_against(replace(found.final.problem.noise, form=EXACT), found.final)
-    left = structure(exactly, {effect.id for effect in found.effects})
-    weakest = named.findings[-1]
-    unit = float(np.sqrt(yardstick(exactly).scale))
-    if (
-        len(named.findings) == 1
-        or left.probability >= DECISIVE
-        or explained(exactly, {weakest.effect.id}) >= unit * left.excess
-    ):
-        return found, named
-    kept = [finding.effect for finding in named.findings[:-1]]
-    found, again = judged(with_effects(found, kept), seed=seed, least=MARGIN)
-    fallen = (*named.fallen, Fallen(weakest.effect.id, _imitates(weakest)), *again.fallen)
-    return _unless_imitating(found, Named(again.findings, fallen), seed)
-
-
-def _imitates(finding: Finding) -> str:
-    return (
-        f"{finding.effect.id} fits, but what is left over is too structured to be what any arm "
-        "leaves over, and it may imitate part of another cause; it is not named."
-    )
+    for finding in reversed(named.findings):
+        reason = imitates(found.final, finding.effect)
+        if reason is not None:
+            kept = [other.effect for other in named.findings if other is not finding]
+            found, again = judged(with_effects(found, kept), seed=seed, least=MARGIN)
+            fallen = (*named.fallen, Fallen(finding.effect.id, reason), *again.fallen)
+            return _unless_imitating(found, Named(again.findings, fallen), seed)
+    return found, named
 
 
 def with_model_form(fit: Fit) -> NoiseModel:

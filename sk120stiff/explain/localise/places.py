@@ -50,7 +50,7 @@ def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
         fit: The fitted model, usually the base model.
         noise: What to hold the gap against; None: the fit's own `yardstick`.
     """
-    look = _look(fit, noise or yardstick(fit))
+    look = look_at(fit, noise or yardstick(fit))
     test = lack_of_fit(fit)
     situation = fit.problem.situation
     poses = _poses(look)
@@ -76,7 +76,7 @@ def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
 
 
 @dataclass(frozen=True, eq=False)
-class _Look:
+class Look:
     """What every question needs: the gap raw and white, the model's columns, the noise."""
 
     fit: Fit
@@ -120,7 +120,8 @@ class _Look:
         return max(float((self.gap**2).sum() - 3.0 * self.floor.sum()), 1e-300)
 
 
-def _look(fit: Fit, noise: Yardstick) -> _Look:
+def look_at(fit: Fit, noise: Yardstick) -> Look:
+    """The gap of a fitted model, whitened, and all that its own parameters can do of it."""
     problem = fit.problem
     axes = problem.situation.reading_axes
     predicted, full = fit.model.predict_with_sensitivities(problem.situation)
@@ -133,7 +134,7 @@ def _look(fit: Fit, noise: Yardstick) -> _Look:
     white = drawn.whiten(raw)
     white = white - inside @ (inside.T @ white)
     own, zero = problem.noise.variances(problem.measurements, problem.sizes)
-    return _Look(
+    return Look(
         fit=fit,
         gap=np.einsum("nij,nj->ni", axes, raw),
         predicted=np.einsum("nij,nj->ni", axes, predicted),
@@ -147,7 +148,7 @@ def _look(fit: Fit, noise: Yardstick) -> _Look:
     )
 
 
-def _poses(look: _Look) -> tuple[PoseShare, ...]:
+def _poses(look: Look) -> tuple[PoseShare, ...]:
     situation = look.fit.problem.situation
     square = (look.gap**2).sum(1)
     rows = [np.flatnonzero(situation.pose == k) for k in range(len(situation.poses))]
@@ -163,7 +164,7 @@ def _poses(look: _Look) -> tuple[PoseShare, ...]:
     return tuple(found)
 
 
-def _chance_of_pose(look: _Look, white: Array, rows: Index) -> float:
+def _chance_of_pose(look: Look, white: Array, rows: Index) -> float:
     """Probability of such a gap at one pose: beside the noise, or beside the gaps of the others."""
     own, count = float(white[rows].sum()), 3 * len(rows)
     if look.known:
@@ -175,12 +176,12 @@ def _chance_of_pose(look: _Look, white: Array, rows: Index) -> float:
     return float(stats.f.sf(own / count / (rest / freedom), count, freedom))
 
 
-def _noise(look: _Look, rows: Index | slice) -> float | None:
+def _noise(look: Look, rows: Index | slice) -> float | None:
     """Rms per axis that noise alone leaves [m]; None where nothing tells."""
     return float(np.sqrt(look.variance[rows].mean())) if look.known else None
 
 
-def _levels(look: _Look) -> tuple[LoadLevel, ...]:
+def _levels(look: Look) -> tuple[LoadLevel, ...]:
     """The gap at the lower, the middle and the upper third of the loads."""
     size = np.linalg.norm(look.fit.problem.situation.wrench[:, :3], axis=1)
     edges = np.quantile(size, [1 / 3, 2 / 3])
@@ -199,7 +200,7 @@ def _levels(look: _Look) -> tuple[LoadLevel, ...]:
     )
 
 
-def _directions(look: _Look) -> tuple[DirectionShare, ...]:
+def _directions(look: Look) -> tuple[DirectionShare, ...]:
     out = []
     for axes in axes_of(look.fit.problem.situation):
         along = np.einsum("nij,ni->nj", axes.directions, look.gap)
@@ -209,7 +210,7 @@ def _directions(look: _Look) -> tuple[DirectionShare, ...]:
     return tuple(out)
 
 
-def _postures(look: _Look, poses: Sequence[PoseShare]) -> tuple[PostureTrend, ...]:
+def _postures(look: Look, poses: Sequence[PoseShare]) -> tuple[PostureTrend, ...]:
     """Does the gap grow with reach, height, or the position of a joint?"""
     situation = look.fit.problem.situation
     if len(poses) < FEWEST_POSES:
@@ -236,7 +237,7 @@ def _postures(look: _Look, poses: Sequence[PoseShare]) -> tuple[PostureTrend, ..
 
 
 @dataclass(frozen=True, eq=False)
-class _Lineup:
+class Lineup:
     """All suspects, with their columns in reading axes and whitened."""
 
     suspects: tuple[Suspect, ...]
@@ -245,12 +246,13 @@ class _Lineup:
     parts: tuple[slice, ...]
 
 
-def _lineup(look: _Look) -> _Lineup:
+def line_up(look: Look) -> Lineup:
+    """Everything that the gap may go with."""
     situation = look.fit.problem.situation
     suspects = suspects_of(look.fit.model, situation, look.predicted)
     reading = [np.swapaxes(situation.reading_axes, 1, 2) @ s.columns for s in suspects]
     ends = np.cumsum([0, *(s.columns.shape[2] for s in suspects)])
-    return _Lineup(
+    return Lineup(
         suspects=suspects,
         reading=reading,
         white=look.whiten(np.concatenate(reading, axis=2)),
@@ -258,7 +260,7 @@ def _lineup(look: _Look) -> _Lineup:
     )
 
 
-def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion, int]]:
+def _ranked(look: Look, lineup: Lineup, known: Array) -> list[tuple[Suspicion, int]]:
     """Suspects with their places in the line-up, the strongest first.
 
     `known` (3N, k) is an orthonormal basis of what is in the model already. Shares are of the whole
@@ -284,9 +286,9 @@ def _ranked(look: _Look, lineup: _Lineup, known: Array) -> list[tuple[Suspicion,
     )
 
 
-def _suspicions(look: _Look) -> tuple[tuple[Suspicion, ...], tuple[Suspicion, ...]]:
+def _suspicions(look: Look) -> tuple[tuple[Suspicion, ...], tuple[Suspicion, ...]]:
     """All suspects, the strongest first; and the others once the strongest is in the model."""
-    lineup = _lineup(look)
+    lineup = line_up(look)
     ranked = _ranked(look, lineup, look.inside)
     shown = _to_show([suspicion for suspicion, _ in ranked])
     alone = tuple(
@@ -301,7 +303,7 @@ def _suspicions(look: _Look) -> tuple[tuple[Suspicion, ...], tuple[Suspicion, ..
 
 
 def _suspicion(
-    suspect: Suspect, T: float, rank: int, total: float, freedom: int, look: _Look
+    suspect: Suspect, T: float, rank: int, total: float, freedom: int, look: Look
 ) -> Suspicion:
     """The statistic with its probability, not yet corrected for the number of looks."""
     noise = look.noise
@@ -334,7 +336,7 @@ def _to_show(ranked: Sequence[Suspicion]) -> set[int]:
     return set(sorted(shown)[:SHOWN])
 
 
-def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: _Look) -> Suspicion:
+def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: Look) -> Suspicion:
     """The gap along the suspect's direction, with the model's parameters refitted beside it."""
     problem = look.fit.problem
     S = reading.reshape(len(look.white), -1)

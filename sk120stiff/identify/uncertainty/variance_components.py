@@ -119,6 +119,7 @@ class Deviance:
         rows: Whitened readings.
         scale: σ of one reading [m].
         known: σ is known; else its likeliest value is taken at every form.
+        signatures: How many of the random effects, the last ones, are signatures.
     """
 
     proportional: int
@@ -128,18 +129,20 @@ class Deviance:
     rows: int
     scale: float  # m
     known: bool
+    signatures: int = 0
 
     @property
     def freedom(self) -> int:
         """Rows less parameters."""
         return max(self.rows - len(self.xx) + 1, 1)
 
-    def __call__(self, form: ModelForm) -> float:
+    def __call__(self, form: ModelForm, spread: float = 0.0) -> float:
         """-2 ln L, up to a constant; where σ is not known, at its likeliest value.
 
-        Then `form` is relative to the noise assumed: the likeliest factor goes over both.
+        Then `form` is relative to the noise assumed: the likeliest factor goes over both. `spread`
+        is the size of what poses have of the signature.
         """
-        logdet, information, square = self._terms(form)
+        logdet, information, square = self._terms(form, spread)
         if self.known:
             return logdet + information + square
         return logdet + information + self.freedom * float(np.log(square / self.freedom))
@@ -148,13 +151,14 @@ class Deviance:
         """The likeliest noise beside a form, over the one assumed; 1 where σ is known."""
         return 1.0 if self.known else float(np.sqrt(self._terms(form)[2] / self.freedom))
 
-    def _terms(self, form: ModelForm) -> tuple[float, float, float]:
+    def _terms(self, form: ModelForm, spread: float = 0.0) -> tuple[float, float, float]:
         """ln|V| beyond the noise, ln|XᵀV⁻¹X| and rᵀPr."""
         size = np.full(self.zz.shape[1], form.constant)
         size[: self.proportional] = form.proportional
-        spread = self.zz * np.outer(size, size)
-        largest = np.trace(spread, axis1=1, axis2=2)[:, None, None]
-        inner = spread + np.eye(len(size)) * (1.0 + ROUNDING * largest)
+        size[self.zz.shape[1] - self.signatures :] = spread
+        drawn = self.zz * np.outer(size, size)
+        largest = np.trace(drawn, axis1=1, axis2=2)[:, None, None]
+        inner = drawn + np.eye(len(size)) * (1.0 + ROUNDING * largest)
         factor = np.linalg.cholesky(inner)
         half = np.linalg.solve(factor, self.zx * size[:, None])
         left = self.xx - np.einsum("gqi,gqj->ij", half, half)
@@ -174,8 +178,13 @@ class Deviance:
         return float(information + self.freedom * (1.0 + np.log(square / self.freedom)))
 
     @classmethod
-    def of(cls, fit: Fit) -> Deviance:
-        """From a fitted model; a model-form error that its noise holds already does not count."""
+    def of(cls, fit: Fit, signature: Array | None = None) -> Deviance:
+        """From a fitted model; a model-form error that its noise holds already does not count.
+
+        Args:
+            fit: The fitted model.
+            signature: (N, 3) what every pose may have a share of its own of [m].
+        """
         exact = replace(fit.problem.noise, form=EXACT)
         problem = Problem(fit.model, fit.problem.measurements, exact, fit.problem.weights)
         readings = problem.measurements
@@ -190,7 +199,8 @@ class Deviance:
         )
         noise = problem.whitener
         proportional, constant = form_columns(readings)
-        Z = noise.apply(np.concatenate([proportional, constant], axis=2))
+        more = [] if signature is None else [signature[:, :, None]]
+        Z = noise.apply(np.concatenate([proportional, constant, *more], axis=2))
         white = noise.apply(both)
         poses = rows_of_poses(readings)
         return cls(
@@ -201,6 +211,7 @@ class Deviance:
             rows=len(white),
             scale=float(exact.sigma),
             known=fit.problem.noise.known,
+            signatures=len(more),
         )
 
 

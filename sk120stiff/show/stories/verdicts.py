@@ -58,10 +58,15 @@ def _ambiguous(answer: Explanation) -> str:
     said = " ".join(settled)
     for finding in open_:
         rivals = [sentence_of(answer, name) for name in near(finding)]
-        said += f" {finding.effect.sentence()} Or: {' Or: '.join(rivals[:FEW])}"
+        said += f" {finding.effect.sentence()}"
+        if not rivals:
+            said += f" That is not sure (probability {finding.probability:.2f})."
+            continue
+        said += f" Or: {' Or: '.join(rivals[:FEW])}"
         if len(rivals) > FEW:
             said += f" Or one of {counted(len(rivals) - FEW, 'other')}."
-    tail = " These readings cannot tell which."
+    several = any(near(finding) for finding in open_)
+    tail = " These readings cannot tell which." if several else " More readings would tell."
     if answer.next_poses is not None:
         tail += f" {counted(len(answer.next_poses[0]), 'further reading')} would."
     return f"{said.strip()}{tail} {shrinks(answer)}"
