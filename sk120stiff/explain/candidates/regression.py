@@ -296,11 +296,13 @@ def regression_at(
     same: dict[str, int] = {}  # a parameter of two laws of one effect has one column
     first = [same.setdefault(p.name, k) for k, p in enumerate(full.parameters)]
 
+    owned: dict[Effect, list[int]] = {}
+    for k, p in enumerate(full.parameters):
+        if p.free:
+            owned.setdefault(p.effect, []).append(first[k])
+
     def columns_of(effect: Effect) -> Index:
-        return np.array(
-            [first[k] for k, p in enumerate(full.parameters) if p.effect == effect and p.free],
-            dtype=np.intp,
-        )
+        return np.array(owned.get(effect, []), dtype=np.intp)
 
     base = [columns_of(effect) for effect in full.effects if effect.id in base_effects]
     columns = tuple(columns_of(effect) for effect in chosen)

@@ -1,0 +1,89 @@
+"""Folds, resampling, posterior and the state of a finding, on small arrays."""
+
+import numpy as np
+import pytest
+
+from sk120stiff.effects import effect
+from sk120stiff.explain.findings import NAMED, Confirmation, Evidence, Finding
+from sk120stiff.explain.judge import confirm as confirming
+from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.posterior import posterior
+from sk120stiff.explain.select.score import score_set
+from sk120stiff.robot import load_robot
+from tests.explain.test_regression import POSES, regression
+
+SEEN = Confirmation(5, 5, 1.0, 0.1, 1.0, 0.0)
+
+
+def test_the_held_out_gain_is_that_of_plain_least_squares_fold_by_fold():
+    reg = regression()
+    model = score_set(reg, reg.sums(), (0,))
+    fold_gain, pose_gain, axes = confirming._held_out_gain(reg, model, 0, np.random.default_rng(0))
+    fold = confirming.drawn_parts(POSES, confirming.FOLDS, np.random.default_rng(0))
+    assert sorted(np.bincount(fold)) == [2, 2, 2, 3, 3]
+    assert axes == reg.rows
+    for k in range(confirming.FOLDS):
+        test = fold[reg.group] == k
+        misfit = []
+        for columns in ([0, 1], [0, 1, 2]):
+            v, *_ = np.linalg.lstsq(reg.X[~test][:, columns], reg.y[~test], rcond=None)
+            misfit.append(((reg.y - reg.X[:, columns] @ v)[test] ** 2).sum())
+        assert fold_gain[k] == pytest.approx(misfit[0] - misfit[1], rel=1e-6)
+        assert pose_gain[fold == k].sum() == pytest.approx(fold_gain[k])
+
+
+def test_poses_are_drawn_again_whole_and_with_replacement():
+    reg = regression()
+    drawn = confirming._resampled(reg, np.random.default_rng(1))
+    picked = np.random.default_rng(1).integers(0, POSES, POSES)
+    assert len(set(picked)) < POSES
+    rows = np.concatenate([np.flatnonzero(reg.group == pose) for pose in picked])
+    assert drawn.gram == pytest.approx(reg.X[rows].T @ reg.X[rows])
+    assert drawn.moment == pytest.approx(reg.X[rows].T @ reg.y[rows])
+    assert drawn.count == len(rows)
+
+
+def test_a_true_effect_wins_on_all_drawings_and_noise_on_none():
+    reg = regression()
+    model = score_set(reg, reg.sums(), (0,))
+    found = confirming.confirm(reg, model, 0, ())
+    assert found.frequency == 1.0
+    assert found.folds_improved == found.folds == confirming.FOLDS
+    assert found.holds
+    chance = score_set(reg, reg.sums(), (0, 1))
+    noise = confirming.confirm(reg, chance, 1, ())
+    assert not noise.holds
+
+
+def test_probabilities_are_shares_of_the_evidence():
+    found = posterior({"a": 4.0, "b": 4.0 + 2.0 * np.log(3.0)}, none=4.0 + 2.0 * np.log(6.0))
+    weights = np.array([1.0, 1.0 / 3.0, 1.0 / 6.0])
+    assert list(found.values()) == pytest.approx(list(weights[:2] / weights.sum()))
+
+
+@pytest.mark.parametrize(
+    ("odds", "alternatives", "exact", "settled"),
+    [
+        ({"a": 0.99}, (), (), True),
+        ({"a": 0.80}, (), (), False),  # it may be chance
+        ({"a": 0.60, "b": 0.39}, ("b",), (), False),  # other poses would tell
+        ({"a": 0.60, "b": 0.39}, ("b",), ("b",), True),  # one class, whatever is measured
+        ({"a": 0.60, "b": 0.10}, ("b",), ("b",), False),
+    ],
+)
+def test_a_name_stands_alone_from_its_probability_on(odds, alternatives, exact, settled):
+    tilt = effect(load_robot("motoman_sk120"), "joint_tilt", "joint_2_l")
+    own = {tilt.id if name == "a" else name: share for name, share in odds.items()}
+    found = Finding(tilt, alternatives, exact, Evidence(9.0, 9.0, None, np.inf, SEEN, own))
+    assert found.probability == pytest.approx(sum(odds.values()))
+    assert found.settled == settled == (settled and found.probability >= NAMED)
+    half = found.doubted(0.5)
+    assert half.probability == pytest.approx(0.5 * found.probability)
+    assert not half.settled
+
+
+def test_adequacy_is_lacking_by_its_smallest_probability_alone():
+    fine = Adequacy(0.002, 1.0, 5.0, {})
+    assert not fine.lacking
+    assert Adequacy(0.0009, 1.0, 5.0, {}).lacking
+    assert fine.chance is None

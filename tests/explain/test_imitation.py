@@ -1,0 +1,75 @@
+"""A name that imitates is told from one that stands beside a cause without a name."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff import base_model, load_robot
+from sk120stiff.effects import effect
+from sk120stiff.explain.judge.imitation import imitates, instead_of, spread_over_poses
+from sk120stiff.explain.select.stepwise import refit
+from sk120stiff.identify import Fit, fit
+from sk120stiff.measurements import Measurements, ModelForm
+from tests.explain.readings import NOISE, hidden
+from tests.hidden.generator.causes_elastic import JointTilt
+from tests.hidden.generator.causes_sensor import ForceBias, ForceCrosstalk
+
+ROUGH = replace(NOISE, form=ModelForm(0.01, 0.0))
+TILT = JointTilt("joint_2_l", {"first": 8e-7, "second": 0.0})
+
+
+@pytest.fixture(scope="module")
+def springs():
+    return base_model(load_robot("motoman_sk120"))
+
+
+def fitted(springs, readings: Measurements, name: str, where: str | None = None) -> Fit:
+    """Springs and one effect beside a hundredth of every pose's compliance."""
+    base = fit(springs, readings, noise=ROUGH)
+    return refit(base, [effect(springs.robot, name, where)])
+
+
+def named(found: Fit):
+    return found.model.effects[-1]
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.7])
+def test_the_spread_of_a_size_over_poses_comes_out(springs, spread):
+    """Every pose has a tilt of its own size about the mean; the springs are alike everywhere."""
+    with_it, without = hidden(TILT, poses=25, loads=4), hidden(poses=25, loads=4)
+    ways = np.where(np.arange(25) % 2, 1.0, -1.0)
+    share = dict(zip(with_it.poses, spread * ways, strict=True))
+    factor = np.array([share[pose] for pose in with_it.pose])[:, None]
+    signature = with_it.displacement - without.displacement  # the same noise in both
+    readings = replace(with_it, displacement=with_it.displacement + factor * signature)
+    found = fitted(springs, readings, "joint_tilt", "joint_2_l")
+    told, gain = spread_over_poses(found, named(found))
+    if spread:
+        size = max(p.internal for p in found.parameters if p.effect == named(found))
+        assert told * size == pytest.approx(spread * TILT.sizes["first"], rel=0.2)
+        assert gain > 100.0
+        assert imitates(found, named(found)) is not None
+    else:
+        assert told < 0.1
+        assert gain < 4.0
+        assert imitates(found, named(found)) is None
+
+
+def test_a_rotation_that_stands_for_crosstalk_has_a_better_place(springs):
+    """The force sensor's crosstalk is twice an antisymmetric part, a rotation, and as much more."""
+    misread = hidden(ForceCrosstalk("sensor", {"xy": 0.06, "zx": -0.04}))
+    found = fitted(springs, misread, "force_rotation")
+    other = instead_of(found, named(found))
+    assert other.does_the_work
+    assert other.better > 50.0
+    assert "better with" in imitates(found, named(found))
+    right = fitted(springs, misread, "force_crosstalk")
+    assert imitates(right, named(right)) is None
+
+
+def test_a_cause_beside_another_of_another_place_stands(springs):
+    """A bias of the force and a tilt: what is left of the tilt is no reason against the bias."""
+    both = hidden(ForceBias("sensor", {"x": 12.0, "y": -9.0, "z": 5.0}), TILT)
+    found = fitted(springs, both, "force_bias")
+    assert imitates(found, named(found)) is None
