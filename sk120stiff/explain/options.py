@@ -12,7 +12,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
-POSES_WITH_OFFSETS = 60
+POSES_WITH_OFFSETS = 60  # beyond which offsets of single poses cost more than all else
 MOST_EFFECTS = 8  # looked for unless the user says otherwise
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .answers import Answer
-from .judge import at_work
+from .judge import at_work, kin
 
 BINS = 10
 
@@ -60,10 +60,24 @@ def stated(judged: Iterable[tuple[dict[str, Any], Answer]]) -> dict[str, list[tu
     for truth, answer in judged:
         for what, entries in (
             ("named effects", answer.named),
-            ("listed candidates", answer.listed),
+            ("listed candidates", by_family(truth, answer.listed)),
         ):
             out[what] += [(p, at_work(truth, group)) for group, p in entries]
     return out
+
+
+def by_family(
+    truth: dict[str, Any], listed: Iterable[tuple[frozenset[str], float]]
+) -> list[tuple[frozenset[str], float]]:
+    """At L10 the family counts, and so does its probability: the sum over its members."""
+    if truth["level"] != "L10":
+        return list(listed)
+    found: dict[frozenset[frozenset[str]], tuple[frozenset[str], float]] = {}
+    for group, p in listed:
+        key = frozenset(kin(name) for name in group)
+        before, sofar = found.get(key, (frozenset(), 0.0))
+        found[key] = before | group, min(sofar + p, 1.0)
+    return list(found.values())
 
 
 def reliability(what: str, found: Calibration) -> str:

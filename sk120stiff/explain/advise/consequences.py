@@ -14,7 +14,7 @@ from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.plan import Region, discriminating_readings, feasible_pool, lowest_points
 
-READINGS_TO_MEASURE = 10
+READINGS_TO_MEASURE = 10  # proposed: half a day with a tracker
 SHARES_OF_LOAD = (1.0, 0.5, 0.25, 0.1)  # tried until the model holds the load at every pose
 
 

@@ -14,7 +14,7 @@ from sk120stiff.identify import Fit, LackOfFit, Yardstick, lack_of_fit, yardstic
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.checks.yardstick import CONTRADICTED, scatter
 
-LEVEL = 1e-3
+LEVEL = 1e-3  # probability below which something is missing beyond doubt
 FOUND = 8.0  # times a stated σ beyond which no statement is merely too small
 WITHOUT_SCATTER = 2.0  # the same where no scatter within poses bears it out
 OWN = {

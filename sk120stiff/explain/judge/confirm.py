@@ -15,7 +15,7 @@ from sk120stiff.explain.select.beam import largest, likeliest, promises
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.identify import drawn_parts
 
-FOLDS = 5
+FOLDS = 5  # parts in which poses are left out, as is usual
 RESAMPLES = 100  # at most
 RIVALS = 8  # for a place in the model, on every drawing
 ENOUGH = 20  # after which the drawings may be decided

@@ -12,7 +12,7 @@ CLOSE = 6.0  # evidence by which a suspect must lead, or others are named beside
 WHOLE = 0.9  # share of the excess that leaves nothing worth a search
 LITTLE = 0.3  # share of the excess below which the strongest suspect is no explanation
 HARDLY = 0.02  # share of the excess that higher orders of the strongest suspect may leave
-WORTH_SAYING = 0.1
+WORTH_SAYING = 0.1  # share of the gap below which a place is not worth a sentence
 ORIGINS = {
     "scatter": ", as found from the scatter within poses",
     "computed": ", the finest that instruments read",

@@ -10,7 +10,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression, Solved, Sums
 from sk120stiff.explain.select.score import Scored, price_of_choice, price_of_sizes, score_set
 
-BEAM = 12
+BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
 HOPELESS = 40.0  # score by which larger models lose that have no future
 WORTH = 4.0  # fall of the misfit that a gear's curve promises, to join in with all others

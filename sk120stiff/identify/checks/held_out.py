@@ -20,7 +20,7 @@ from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
-FOLDS = 10
+FOLDS = 10  # parts in which poses are left out, as is usual
 SAME = 9  # decimals to which joint values of one and the same posture agree [rad or m]
 
 #: From readings to fits: of one model, or of several that were learned together.
