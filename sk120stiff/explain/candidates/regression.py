@@ -24,6 +24,7 @@ from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
 
+FAR_SOFTER = 10.0  # times as soft as usual: less than that ranges of plausible values allow for
 DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
 
 
@@ -307,7 +308,10 @@ def regression_at(
     base = [columns_of(effect) for effect in full.effects if effect.id in base_effects]
     columns = tuple(columns_of(effect) for effect in chosen)
     lower = np.array([0.0 if spec.lower == 0.0 else -np.inf for spec in specs])
-    plausible = np.array([spec.plausible / spec.typical for spec in specs])
+    softer = softness(fit)
+    plausible = np.array(
+        [spec.plausible / spec.typical * (softer if spec.reciprocal else 1.0) for spec in specs]
+    )
     tied, sources, variants = _variants(chosen, columns, X)
     plain = {effect.id: effect for effect in candidates}
     all_laws = tuple(
@@ -337,6 +341,19 @@ def regression_at(
         alpha=alpha,
         prior=prior or {},
     )
+
+
+def softness(fit: Fit) -> float:
+    """How many times softer than others of its length an arm is, by its springs; 1 if not by far.
+
+    What is plausible of a bearing or a link goes with the whole arm: where every drive is a hundred
+    times softer than usual, a bearing may be.
+    """
+    springs = [p for p in fit.parameters if p.effect.joint_spring and p.internal > 0.0]
+    if not springs:
+        return 1.0
+    ratio = float(np.exp(np.mean([np.log(p.internal / p.spec.typical) for p in springs])))
+    return ratio if ratio > FAR_SOFTER else 1.0
 
 
 def _variants(

@@ -22,7 +22,6 @@ from sk120stiff.model import Model
 
 TRIED = 1  # models whose fit may be refused before smaller ones are tried
 ROUNDS = 4  # of linearising, searching and refitting
-CURVED = 1.5  # times what the linearised readings promise, from which on they are not linear enough
 ROUNDING = 1e-12  # of the largest column: what is smaller is no first-order effect of a parameter
 
 
@@ -157,30 +156,14 @@ def _settle(
     ids: Sequence[str],
     max_effects: int,
 ) -> tuple[Fit, Regression, tuple[int, ...]]:
-    """Linearise, search, refit exactly, until the search confirms the model it was made at.
-
-    A very soft arm is not linear enough for one search: what the linearisation gets wrong would be
-    given names. Then one effect joins at a time, and the readings are linearised anew with it.
-    """
+    """Linearise, search, refit exactly, until the search confirms the model it was made at."""
     final = base
     effects: list[Effect] = []
-    most, rounds = max_effects, ROUNDS
-    while rounds:
-        rounds -= 1
-        ranked = beam_search(regression, max_effects=most)
+    for _ in range(ROUNDS):
+        ranked = beam_search(regression, max_effects=max_effects)
         if set(laws_of(regression, ranked[0])) == set(effects):
-            if most == max_effects:
-                break
-            most = max_effects
-            continue
+            break
         effects, final = _first_that_fits(base, regression, ranked)
-        expected = max(ranked[0].solved.rss, float(regression.rows))
-        if final.chi_square > CURVED * expected and most > 1:
-            most, rounds = (1, ROUNDS + max_effects) if most == max_effects else (most, rounds)
-            ranked = [model for model in ranked if len(model.effects) <= most]
-            effects, final = _first_that_fits(base, regression, ranked)
-        elif most < max_effects:
-            most += 1
         regression = regression_at(
             final, candidates, ids, alpha=regression.alpha, prior=regression.prior
         )

@@ -1,0 +1,91 @@
+"""Are the stated probabilities frequencies? The table and picture of docs/RELIABILITY.md.
+
+    python scripts/reliability.py FOLDER ... --out docs
+
+FOLDER: sealed cases that were answered (`python -m tests.hidden.run`), of draws that were not used
+to make the procedure. Writes RELIABILITY.md and reliability.png: how often names at each stated
+probability were true, the expected calibration error and the Brier score.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy import stats
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from tests.hidden.calibration import Calibration, calibration, reliability, stated
+from tests.hidden.score import check_frozen, judge_case, level_of
+
+HEAD = """# Are the stated probabilities frequencies?
+
+{count} sealed cases of the hidden benchmark ({levels}), drawn after the procedure was settled and
+answered through the public command. Below: names that `explain` gave, and all candidates that
+`probabilities` lists, by the probability that was stated. True: the name, one of its alternatives,
+its family where laws are wrong in detail (L10), or its kind where the cause itself has no name
+(`tests/hidden/families.py`), was at work. Made by `python scripts/reliability.py`.
+
+![stated against true](reliability.png)
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folders", type=Path, nargs="+")
+    parser.add_argument("--out", type=Path, default=Path("docs"))
+    asked = parser.parse_args(arguments)
+    judged, levels = [], Counter[str]()
+    for folder in asked.folders:
+        check_frozen(folder)
+        for case in sorted((folder / "cases").iterdir()):
+            truth, answer, _ = judge_case(folder, case.name)
+            judged.append((truth, answer))
+            levels[level_of(truth)] += 1
+    found = {what: calibration(pairs) for what, pairs in stated(judged).items()}
+    told = {what: seen for what, seen in found.items() if seen is not None}
+    text = HEAD.format(
+        count=len(judged),
+        levels=", ".join(f"{n} of {level}" for level, n in sorted(levels.items())),
+    )
+    text += "".join(
+        f"\n## {w.capitalize()}\n\n{reliability(w, seen)}\n" for w, seen in told.items()
+    )
+    (asked.out / "RELIABILITY.md").write_text(text, encoding="utf-8")
+    drawn(told).savefig(asked.out / "reliability.png", dpi=110)
+    print(text)
+    return 0
+
+
+def drawn(told: Mapping[str, Calibration]) -> Figure:
+    """Stated against true, with 95 % intervals of the counts (Clopper and Pearson)."""
+    figure = Figure(figsize=(7.2, 3.4), layout="constrained")
+    panels = figure.subplots(1, len(told), squeeze=False)[0]
+    for panel, (what, seen) in zip(panels, told.items(), strict=True):
+        panel.plot([0, 1], [0, 1], color="#8A96A3", linewidth=1.0)
+        x = np.array([b.stated for b in seen.bins])
+        y = np.array([b.true for b in seen.bins])
+        n = np.array([b.count for b in seen.bins])
+        hits = np.round(y * n)
+        low = np.nan_to_num(stats.beta.ppf(0.025, hits, n - hits + 1), nan=0.0)
+        high = np.nan_to_num(stats.beta.ppf(0.975, hits + 1, n - hits), nan=1.0)
+        panel.errorbar(x, y, [y - low, high - y], fmt="o", color="#0072B2", capsize=2)
+        for each in seen.bins:
+            panel.annotate(str(each.count), (each.stated, each.true), xytext=(4, -11),
+                           textcoords="offset points", fontsize=7)  # fmt: skip
+        panel.set_title(f"{what}: error {seen.error:.3f}, Brier {seen.brier:.3f}", fontsize=9)
+        panel.set_xlabel("stated probability")
+        panel.set_ylabel("share that was true")
+        panel.set_xlim(-0.03, 1.03)
+        panel.set_ylim(-0.03, 1.03)
+    return figure
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
