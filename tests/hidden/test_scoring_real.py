@@ -78,6 +78,35 @@ def test_known_beside_foreign(tmp_path: Path, named, rest, share, wrong, note) -
     assert note in found[2]
 
 
+@pytest.mark.parametrize(
+    ("named", "rest", "share", "wrong"),
+    [
+        ((RIGHT, ROCKS), REST, 1.0, 0),  # the foreign one by its kind and place
+        ((RIGHT,), REST, 1.0, 0),
+        ((RIGHT, ROCKS), {**REST, "interval_95": [14.0, 15.0]}, 0.0, 0),  # more is left than was
+        ((RIGHT, ROCKS, OTHER), REST, 0.0, 1),
+        ((ROCKS,), REST, 0.0, 0),
+    ],
+)
+def test_a_foreign_cause_may_be_named_by_its_kind(
+    tmp_path: Path, named, rest, share, wrong
+) -> None:  # type: ignore[no-untyped-def]
+    answer = answered(tmp_path, "named", *named, remainder=rest)
+    foreign = {"remainder_um": 13.0, "foreign": "foreign_quadratic_mount:base_link"}
+    case = {**truth("L12", TILT), **foreign}
+    assert mark(case, answer)[:2] == (share, wrong)
+    assert at_work(case, frozenset({"base_rocking"}))
+    assert not at_work({**case, "foreign": "foreign_hose:base_link"}, frozenset({"base_rocking"}))
+
+
+def test_what_the_catalogue_lacks_may_be_named_by_its_kind_alone(tmp_path: Path) -> None:
+    mount = {**ROCK, "name": "foreign_quadratic_mount", "where": "base_link"}
+    assert mark(truth("L7", mount), answered(tmp_path, "named", ROCKS))[:2] == (1.0, 0)
+    assert mark(truth("L7", mount), answered(tmp_path, "named", OTHER))[:2] == (0.0, 1)
+    hose = {**mount, "name": "foreign_hose"}
+    assert mark(truth("L7", hose), answered(tmp_path, "named", ROCKS))[:2] == (0.0, 1)
+
+
 def test_probabilities_are_read_where_they_stand(tmp_path: Path) -> None:
     document = {
         "verdict": "ambiguous",
