@@ -82,6 +82,7 @@ class Column:
         stated: Where the unit is stated, in words.
         cells: N texts.
         factor: What the numbers are multiplied by: 1/2 for expanded uncertainties with k = 2.
+        file: The file that it is from, where that is another than the points'.
     """
 
     header: str
@@ -90,6 +91,7 @@ class Column:
     stated: str
     cells: tuple[str, ...]
     factor: float = 1.0
+    file: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -131,8 +133,9 @@ class Sheet:
 
     def place(self, column: Column, row: int | None = None) -> str:
         """File, line and column for a message."""
-        line = "" if row is None else f", line {self.lines[row]}"
-        return f"{self.path}{line}, column {column.header}"
+        line = "" if row is None or column.file else f", line {self.lines[row]}"
+        of = f" of the point in line {self.lines[row]}" if column.file and row is not None else ""
+        return f"{column.file or self.path}{line}, column {column.header}{of}"
 
 
 class Importer(Protocol):

@@ -14,12 +14,13 @@ from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Mode, Told
-from sk120stiff.measurements.placing import TURNED, place
+from sk120stiff.measurements.placing import place
 from sk120stiff.measurements.registration import Registration, register
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
 
 TURNED_ROUGHLY = np.radians(15.0)  # what a marker that sits elsewhere may turn a cloud by
+SLIGHT = np.radians(0.5)  # errors of geometry turn a cloud by less
 VAGUE = np.radians(1.0)  # standard error of a turn that registers nothing
 
 
@@ -132,7 +133,7 @@ def axes(
                 remedy="Add poses that spread in space.",
             )
         return turned, True, []
-    limit = TURNED if fitted.marker_fitted or told.point is not None else TURNED_ROUGHLY
+    limit = SLIGHT if fitted.marker_fitted or told.point is not None else TURNED_ROUGHLY
     if mode == "positions" or turned < limit:
         return turned, False, []
     if into_base is None and not vague:

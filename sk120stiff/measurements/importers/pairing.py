@@ -54,7 +54,7 @@ def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
     if not rows:
         raise InputError(f"no point has its {what}", where=f"{points.path} and {other.path}")
     taken = {c.meaning for c in points.columns} | {"name"}
-    more = [c for c in other.columns if c.meaning not in taken]
+    more = [replace(c, file=other.path) for c in other.columns if c.meaning not in taken]
     twice = [c for c in other.columns if c.meaning in taken - {"name"}]
     return replace(
         points,

@@ -28,6 +28,8 @@ def test_by_name_in_any_order(tmp_path: Path) -> None:
     found = paired(sheet_of(tmp_path, POINTS), joints(tmp_path, "DCBA"), "joints")
     assert values(found) == {"A": "3", "B": "2", "D": "0"}
     assert "matched by name" in " ".join(found.notes)
+    column = found.get("joint 1")
+    assert column is not None and found.place(column).endswith("joints/file, column q1")
     assert dict(found.skipped)[4].startswith("nothing stands in")
 
 
