@@ -292,7 +292,8 @@ def command(
             settings=chosen, facts=[*origin(model, believed, path), *facts, said], **speed,
         )  # fmt: skip
     if sheet is not None:
-        judged.write(sheet, str(against or model), path, [*facts, said], about)
+        told = [*origin(str(against or model), judge, path)[1:], *facts, said]
+        judged.write(sheet, str(against or model), path, told, about)
     document = {
         "robot": robot.name,
         "rows": given.count,

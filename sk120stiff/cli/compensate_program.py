@@ -14,7 +14,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.cli.opening import model_file
 from sk120stiff.errors import InputError
 from sk120stiff.files import read_bytes, write_atomically
-from sk120stiff.model import Model
+from sk120stiff.model import Model, typical_parameters
 from sk120stiff.programs import Language
 from sk120stiff.programs.bad_targets import refuse_bad_targets
 from sk120stiff.programs.building import build
@@ -51,9 +51,12 @@ def origin(named: str, model: Model, path: Path) -> list[str]:
         for key in ("data", "data_hash", "date")
         if key in model.provenance
     ]
+    assumed = typical_parameters(model)
+    typical = "Its springs are typical of an arm of this size, not measured. " if assumed else ""
     return [
         f"Written by sk120stiff {__version__}, compensated for the deflection under load.",
-        f"{of_model}. " + (f"Fitted to {', '.join(data)}." if data else "It names no data."),
+        f"{of_model}. {typical}"
+        + (f"Fitted to {', '.join(data)}." if data else "It names no data."),
         f"Path: {path.name}, SHA-256 {_digest(path)}.",
         f"Robot: {model.robot.name}.",
     ]

@@ -252,6 +252,8 @@ def test_seven_joints_and_no_spherical_wrist(run: Run, tmp_path: Path) -> None:
         language = next(each for each in LANGUAGES.values() if each.ending == ending)
         read = language.read(out.read_text())
         there = robot.placement(np.radians(read.joints))[:, :3, 3]
+        plain = " ".join(re.sub(r"[#!']", " ", out.read_text()).split())
+        assert "typical of an arm of this size, not measured" in plain
         assert np.abs(there - read.position).max() < 2e-5
     place = ("--frame", "x=450 mm; z=250 mm", "--wrench", "0,0,1 N")
     out = tmp_path / "q.script"

@@ -192,7 +192,9 @@ def test_a_sheet_is_a_page(run: Run, path: Path, tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.html"
     good = run("compensate", "motoman_sk120", str(path), *PLACE, *out, "--sheet", str(sheet))
     assert good.code == 0, good.stderr
-    assert "No uncertainty is stored in this model" in sheet.read_text(encoding="utf-8")
+    text = visible(sheet.read_text(encoding="utf-8"))
+    assert "No uncertainty is stored in this model" in text
+    assert "how far off the tool stands in truth is not known" in text
 
 
 def test_points_without_labels_go_by_number(path: Path, tmp_path: Path) -> None:

@@ -94,12 +94,17 @@ class PathSheet:
         if not np.isfinite(before).any():
             return "The springs of the model cannot hold this load at any point."
         worst = int(np.nanargmax(before))
-        std = "" if self.std is None else f" ± {um(_rms(self.std))} µm"
         said = (
             f"Uncorrected, the loaded tool stands {um(_rms(before))} µm (rms) off its path, most "
-            f"at line {self.lines[worst]}: {um(float(before[worst]))} µm. Corrected, "
-            f"{_small(_rms(after))} µm{std} are expected."
+            f"at line {self.lines[worst]}: {um(float(before[worst]))} µm. "
         )
+        if self.std is None:
+            said += (
+                f"Corrected, the model sees {_small(_rms(after))} µm; how far off the tool stands "
+                "in truth is not known."
+            )
+        else:
+            said += f"Corrected, {_small(_rms(after))} µm ± {um(_rms(self.std))} µm are expected."
         for run, away in self.read.items():
             said += f" Measured {run} correction: {um(_rms(away))} µm."
         return said
@@ -146,13 +151,14 @@ class PathSheet:
         order = order[:LISTED]
         header = ["line", "x", "y", "z", "before", "dx", "dy", "dz", "after"]
         units = ["", "mm", "mm", "mm", *["µm"] * 5]
-        columns = [1e3 * self.position, 1e6 * before, 1e6 * self.before, 1e6 * after]
+        columns = [1e6 * before, 1e6 * self.before, 1e6 * after]
         if self.std is not None:
             header, units = [*header, "±"], [*units, "µm"]
             columns.append(1e6 * self.std)
         rows = [
             (
                 str(self.lines[k]),
+                *(int(x) for x in np.round(1e3 * self.position[k])),
                 *(float(x) for part in columns for x in np.atleast_1d(np.round(part[k], 3))),
             )
             for k in order
