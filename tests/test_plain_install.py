@@ -106,6 +106,9 @@ def test_the_main_work_is_done_plainly(tmp_path: Path) -> None:
     (tmp_path / "path.csv").write_text(
         "x[m],y[m],z[m],fx[N],fy[N],fz[N]\n1.6,0.1,0.6,0,0,-300\n1.6,0.2,0.6,0,0,-300\n"
     )
+    (tmp_path / "marks.csv").write_text(
+        "x[m],y[m],z[m],q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg]\n1,2,3,0,0,0,0,0,0\n"
+    )
     pose = ["--pose", "0,20,-30,0,-60,0 deg"]
     start = ["--start", "0,20,-30,0,-60,0 deg"]
     few = ["--candidates", "40", "--directions", "3"]
@@ -122,6 +125,7 @@ def test_the_main_work_is_done_plainly(tmp_path: Path) -> None:
         "compensate": ["compensate", str(MODEL), "path.csv", *start, "--out", "new.csv"],
         "export": ["export", str(MODEL), *pose, "--out", "arm.xml"],
         "posture": ["posture", str(MODEL), "path.csv", "--out", "best.csv"],
+        "import": ["import", "marks.csv", "--robot", "motoman_sk120", "--out", "own.csv"],
     }
     for name, (code, out, err) in zip(work, plainly(tmp_path, *work.values()), strict=True):
         assert code == 0, (name, err)
@@ -149,6 +153,10 @@ def test_what_is_missing_names_its_command(tmp_path: Path) -> None:
         '<xacro:property name="l" value="1"/></robot>',
         "utf-8",
     )
+    book, bag = tmp_path / "book", tmp_path / "bag"
+    book.write_bytes(b"PK\x03\x04 xl/workbook.xml")
+    bag.write_bytes(b"\x89MCAP0\r\n")
+    reading = ["--robot", "motoman_sk120", "--out", "own.csv"]
     grid = ["--grid", "joint_2_l=0:10:5 deg; joint_3_u=0:10:5 deg", "--out", "sk.zarr"]
     asked = [
         ("view", ["view", "motoman_sk120"]),
@@ -159,13 +167,15 @@ def test_what_is_missing_names_its_command(tmp_path: Path) -> None:
         ("map", ["map", "motoman_sk120", *grid]),
         ("cluster", ["map", "motoman_sk120", *grid, "--scheduler", "tcp://127.0.0.1:9"]),
         ("xacro", ["check", str(arm)]),
+        ("import", ["import", str(book), *reading]),
+        ("import", ["import", str(bag), *reading]),
     ]
     said = plainly(tmp_path, *(arguments for _, arguments in asked))
     for (extra, arguments), (code, out, err) in zip(asked, said, strict=True):
         assert (code, out) == (2, ""), (arguments, err)
         assert re.search(r"needs the library '\w+', which is not installed", err)
         assert command_for(extra) in err, arguments
-    assert [path.name for path in tmp_path.iterdir()] == ["arm.xacro"]  # nothing half written
+    assert {path.name for path in tmp_path.iterdir()} == {"arm.xacro", "book", "bag"}  # no more
 
 
 def test_modules_import_plainly_but_for_the_live_page_and_the_compiled_kernel() -> None:
