@@ -115,6 +115,7 @@ def test_what_cannot_be_is_refused(run, tmp_path: Path, harm: str, words: str) -
     refused = run("import", *exported(tmp_path, replace(SEEN, x=x), robot))
     assert refused.code == 1
     assert words in refused.stderr
+    assert "Understood: SpatialAnalyzer's ASCII export; Collection as collection" in refused.stderr
     assert not (tmp_path / "own.csv").exists()
 
 

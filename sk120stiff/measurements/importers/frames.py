@@ -71,7 +71,7 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             f"{error.what}. These are not this robot's positions as they stand",
             where=error.where,
             remedy=f"{error.remedy or ''} Units and columns are told by --length, --angle and "
-            "--joints.".strip(),
+            f"--joints. Understood: {_understood(draft)}.".strip(),
         ) from error
     if placing is None:
         return dataclasses.replace(
@@ -96,6 +96,14 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             f"would be left, not {1e3 * fitted.rms:.3g} mm: ask where the file comes from."
         )
     return Placed(fitted, kept, wild, other.rms if other else None, tuple(doubts))
+
+
+def _understood(draft: Draft) -> str:
+    """Format and columns in one line, for whoever must find the slip."""
+    sheet = draft.sheet
+    columns = [f"{c.header} as {c.meaning}" for c in sheet.columns]
+    units = ", ".join(header for header, _ in (*draft.joints.written[:1], *draft.readings[:1]))
+    return f"{sheet.title}; {', '.join(columns)}; units as in {units}"
 
 
 def points_of(draft: Draft, told: Told) -> tuple[Array, bool]:
