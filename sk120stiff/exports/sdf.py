@@ -7,6 +7,7 @@ own. It has no word for springs between joints, nor for gravity of a model's own
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
@@ -31,7 +32,7 @@ _PLUGIN = (
 
 def make(model: Model, request: Request) -> Exported:
     """See `Format.make`."""
-    arm = moving_arm(model, request, ties=False)
+    arm = _distinct(moving_arm(model, request, ties=False))
     carried, left_out = told_of(model)
     ties = _ties(model)
     carried = tuple(told for told in carried if told.effect not in ties)
@@ -53,6 +54,22 @@ def make(model: Model, request: Request) -> Exported:
 
 
 FORMAT = Format("sdf", "SDF", (".sdf",), make, moves=True)
+
+
+def _distinct(arm: MovingArm) -> MovingArm:
+    """The same with no joint named like a link or a frame: SDF has one name for one thing."""
+    taken = {name for name, *_ in (*arm.frames, *arm.sites)} | {body.name for body in arm.bodies}
+    new = {j.name: f"{j.name}.joint" if j.name in taken else j.name for j in arm.joints}
+
+    def named(body: Body) -> Body:
+        joint = body.joint
+        if joint is None:
+            return body
+        leader = joint.leader and (new[joint.leader[0]], *joint.leader[1:])
+        return replace(body, joint=replace(joint, name=new[joint.name], leader=leader))
+
+    actuated = tuple(new[name] for name in arm.actuated)
+    return replace(arm, actuated=actuated, bodies=tuple(named(body) for body in arm.bodies))
 
 
 def _ties(model: Model) -> list[str]:
@@ -84,7 +101,7 @@ def _document(
         ]
         yield from _link(body, names, looks, heavy=arm.heavy)
     base = escape(names[0])
-    yield '    <joint name="ground" type="fixed">'
+    yield f'    <joint name={quoteattr(f"{names[0]}.ground")} type="fixed">'
     yield f"      <parent>world</parent><child>{base}</child>"
     yield "    </joint>"
     for k, body in enumerate(arm.bodies):

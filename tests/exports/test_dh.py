@@ -9,7 +9,7 @@ import pytest
 
 from sk120stiff.exports import Exported
 from sk120stiff.model import Model, Uncertainty, base_model
-from sk120stiff.robot import Robot
+from sk120stiff.robot import Robot, load_robot
 from tests.exports.arms import PUBLIC, exported, miscalibrated, public, standing, with_random
 from tests.oracles.numpy_kinematics import rotation, transform
 
@@ -36,7 +36,7 @@ def product(made: Exported, convention: str, robot: Robot, pose: np.ndarray) -> 
         theta, d = (theta + q, d) if row["moves"] == "theta" else (theta, d + q)
         first = transform([0, 0, d], rotation(Z, theta))
         second = transform([a, b, 0], rotation(X, alpha) @ rotation(Y, beta))
-        modified = convention == "modified" and row["driver"]
+        modified = convention == "modified" and row["moves"]
         T = T @ second @ first if modified else T @ first @ second
     return T
 
@@ -50,6 +50,18 @@ def test_both_tables_place_the_arm_where_the_model_does(name: str, convention: s
     for pose, T in zip(a, standing(model, a), strict=True):
         found = product(made, convention, model.robot, pose)
         np.testing.assert_allclose(found, T, rtol=0.0, atol=1e-9)
+
+
+def test_a_joint_that_is_held_stands_in_the_table_where_it_is_held() -> None:
+    robot = load_robot(
+        "motoman_sk120", lock={"joint_5_b": 0.4},
+        actuated=["joint_1_s", "joint_2_l", "joint_3_u", "joint_4_r", "joint_6_t"],
+    )  # fmt: skip
+    model = with_random(base_model(robot), "joint_offset", "joint_frame")
+    made, pose = exported(model, "dh"), np.array([0.1, -0.2, 0.3, 0.4, -0.5])
+    for convention in ("standard", "modified"):
+        found = product(made, convention, robot, pose)
+        np.testing.assert_allclose(found, standing(model, pose[None])[0], rtol=0.0, atol=1e-9)
 
 
 def test_the_nominal_panda_is_the_one_that_its_maker_prints() -> None:

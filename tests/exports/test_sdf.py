@@ -101,6 +101,18 @@ def test_read_back_it_stands_where_the_model_does(name: str) -> None:
         assert frame in names
 
 
+def test_one_name_stands_for_one_thing() -> None:
+    """URDF may call a joint like a link; SDF may not."""
+    text = six_axis_arm().replace('"j3"', '"link_3"')
+    model = joint_spring_model(load_robot(text), np.full(6, 1e5))
+    made = exported(model, "sdf", pose=POSE)
+    sdf = Sdf(made.text)
+    names = [e.get("name") for e in sdf.model if e.tag in ("link", "joint", "frame")]
+    assert len(set(names)) == len(names)
+    assert "link_3.joint" in sdf.gains and len(sdf.gains) == 6
+    assert len(sdf.chain("tool")[0]) == 12
+
+
 def test_followers_follow_motor_and_spring() -> None:
     sdf = Sdf(exported(sk120_with("link_bending:link_2_l"), "sdf", pose=POSE).text)
     mimics = {
