@@ -14,7 +14,7 @@ from sk120stiff.cli.opening import open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument, PoseOption
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
-from sk120stiff.exports import Request, Told, format_of, write_exported
+from sk120stiff.exports import Request, Told, exported, format_of, write_exported
 from sk120stiff.files import will_write
 
 
@@ -68,7 +68,7 @@ def command(
     robot = believed.robot
     target = out or Path(f"{robot.name}{chosen.endings[0]}")
     a = pose_of(robot, pose) if chosen.moves else None
-    made = chosen.make(believed, Request(target, a, at))
+    made = exported(believed, Request(target, a, at), chosen)
     if out is not None:
         write_exported(made, out)
     document = {

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.exports import dh_table, kinematics_params, mjcf, sdf, urdf
 from sk120stiff.exports.contract import Exported, Format, Request
+from sk120stiff.exports.geometry import departure
 from sk120stiff.files import together, write_atomically
 from sk120stiff.model import Model
+
+_NOTHING = 1e-9  # m
 
 FORMATS: dict[str, Format] = {
     one.name: one
@@ -49,12 +55,27 @@ def format_of(out: Path | None, to: str | None = None) -> Format:
     )
 
 
-def write_exported(exported: Exported, out: Path) -> None:
+def exported(model: Model, request: Request, to: Format) -> Exported:
+    """An export, with how far its unloaded tool stands off the model for what was left out."""
+    made, away = to.make(model, request), departure(model)
+    found = {"departure_rms_m": float(np.sqrt(np.mean(away**2))), "departure_max_m": away.max()}
+    if found["departure_rms_m"] < _NOTHING:
+        return replace(made, details={**made.details, **found})
+    note = (
+        f"What goes with the pose and was left out moves the unloaded tool by "
+        f"{1e3 * found['departure_rms_m']:.2g} mm rms, at most {1e3 * away.max():.2g} mm, at "
+        f"{len(away)} random poses: calibrate without these effects where the file is to stand "
+        "alone."
+    )
+    return replace(made, notes=(note, *made.notes), details={**made.details, **found})
+
+
+def write_exported(made: Exported, out: Path) -> None:
     """Write an export and the files beside it, all or none."""
     with together():
-        for name, data in exported.files.items():
+        for name, data in made.files.items():
             write_atomically(out.parent / name, data)
-        write_atomically(out, exported.text)
+        write_atomically(out, made.text)
 
 
 def export(
@@ -77,6 +98,6 @@ def export(
         InputError: No such format, or the model is one that the format has no word for.
     """
     path = Path(out)
-    exported = format_of(path, to).make(model, Request(path, pose, frame))
-    write_exported(exported, path)
-    return exported
+    made = exported(model, Request(path, pose, frame), format_of(path, to))
+    write_exported(made, path)
+    return made

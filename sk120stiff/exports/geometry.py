@@ -61,6 +61,20 @@ class Geometry:
         return measured(self.shift, self.of_marker)
 
 
+def departure(model: Model) -> Array:
+    """(N,) how far the unloaded tool stands off the model without what goes with the pose [m].
+
+    At random poses: waves of a gear and the like, which no fixed origin holds.
+    """
+    geometry, assembly = geometry_of(model), model.assembly
+    situation = situation_of_load(model.robot, probing_poses(model.robot), np.zeros(6))
+    fixed = np.tile(geometry.shift, (situation.count, 1))
+    fixed[:, : model.robot.n] += situation.a
+    ways = [assembly.start(situation, model.values), fixed]
+    true, held = (assembly.mechanism.screws(z).position for z in ways)
+    return np.asarray(np.linalg.norm(true - held, axis=1))
+
+
 def measured(shift: Array, of_marker: Mask) -> Array:
     """(3,) by which shifts (n_z,) move the measured point on the tool [m]."""
     return np.asarray(shift[of_marker].reshape(-1, 3).sum(axis=0))

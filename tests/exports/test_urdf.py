@@ -12,7 +12,9 @@ import yourdfpy
 from lxml import etree
 
 from sk120stiff.effects import effect
-from sk120stiff.model import base_model
+from sk120stiff.exports import FORMATS, Request
+from sk120stiff.exports import exported as exported_with_notes
+from sk120stiff.model import base_model, probing_poses
 from sk120stiff.robot import Robot, load_robot
 from tests.exports.arms import PUBLIC, exported, miscalibrated, public, standing, with_random
 from tests.oracles.sample_urdfs import six_axis_arm
@@ -144,6 +146,21 @@ def test_what_no_origin_can_be_is_told_by_name() -> None:
     assert "a side of approach" in told["approach_side:elbow_joint"]
     assert "instrument" in told["tracker_frame:tracker"] and "load" in told["force_bias:sensor"]
     assert not made.carried and not made.details["origins"]
+
+
+def test_how_far_the_file_stands_off_the_model_is_told() -> None:
+    """Waves of a gear may be worth millimetres; the reader of the file must know."""
+    model = with_random(base_model(public("ur5_robot.urdf")), "joint_frame", "tool_offset")
+    exact = exported_with_notes(model, Request(Path("arm.urdf")), FORMATS["urdf"])
+    assert exact.details["departure_max_m"] < 1e-12 and "moves the unloaded" not in exact.notes[0]
+    waves = with_random(model, "transmission_error:shoulder_pan_joint")
+    made = exported_with_notes(waves, Request(Path("arm.urdf")), FORMATS["urdf"])
+    robot, a = model.robot, probing_poses(model.robot)
+    file = load_robot(made.text, base=robot.base_frame, tool="tool0_measured")
+    off = np.linalg.norm((file.placement(a) - standing(waves, a))[:, :3, 3], axis=1)
+    assert made.details["departure_max_m"] == pytest.approx(off.max(), rel=1e-9)
+    assert made.details["departure_rms_m"] == pytest.approx(np.sqrt((off**2).mean()), rel=1e-9)
+    assert off.max() > 1e-4 and "moves the unloaded tool by" in made.notes[0]
 
 
 def test_couplings_and_meshes_of_a_folder(tmp_path: Path) -> None:
