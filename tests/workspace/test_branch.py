@@ -3,6 +3,7 @@
 import time
 import tracemalloc
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import Robot, load_robot
 from sk120stiff.workspace import branch_of, elastic_arm, joint_heights, joints_along, read_path
+from sk120stiff.workspace.path import without_turns
 from tests.corpus.robots import example
 
 UP = np.array([0.0, -1.2, 1.6, -1.97, -1.57, 0.0])  # elbow above, tool down
@@ -109,3 +111,13 @@ def test_many_points_cost_what_they_should(tmp_path: Path) -> None:
     assert seconds[20_000] < 40 * seconds[200]
     assert np.abs(np.diff(found[20_000], axis=0)).max() < 1e-3
     np.testing.assert_allclose(found[20_000][-1], found[200][-1], atol=1e-6)
+
+
+def test_no_joint_makes_a_whole_turn_that_its_limits_spare() -> None:
+    """±360° let the wrist go on from 179° to 181°; ±180° do not."""
+    arm = elastic_arm(joint_spring_model(ur10(), SPRINGS))
+    a = np.tile(UP, (3, 1))
+    a[:, 5] = np.radians([179.0, -179.0, -177.0])
+    np.testing.assert_allclose(np.degrees(without_turns(arm, a)[:, 5]), [179.0, 181.0, 183.0])
+    short = replace(arm, lower=np.full(6, -np.pi), upper=np.full(6, np.pi))
+    np.testing.assert_array_equal(without_turns(short, a), a)
