@@ -6,11 +6,10 @@ then the joints [deg, mm]; separated by tabs or blanks, or a spreadsheet; header
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import layout_of, shaped, sheet_of
+from sk120stiff.measurements.importers.layout import layout_of, shaped, sheet_by_order
 
 _POSE = ("x", "y", "z", "orientation roll", "orientation pitch", "orientation yaw")
 
@@ -36,13 +35,9 @@ class Delmia:
 
     def read(self, source: Source) -> Sheet:
         """The readings; DELMIA prescribes mm and degrees, which counts where headers show it."""
-        layout = layout_of(source)
-        assumed = {"length": "mm", "angle": "deg"} if layout is not None else {}
-        if layout is None:
-            joints = tuple(f"q{k + 1}" for k in range(len(source.actuated)))
-            pose = tuple(word.replace("orientation ", "") for word in _POSE)
-            layout = layout_of(replace(source, columns=("tag", *pose, *joints)))
-        if layout is None:
-            raise InputError("no tag table of DELMIA", where=str(source.path))
-        why = self.sniff(source).why or "as told"
-        return sheet_of(source, layout, self.title, why, assumed_units=assumed)
+        joints = (f"q{k + 1}" for k in range(len(source.actuated)))
+        pose = (word.removeprefix("orientation ") for word in _POSE)
+        units = {"length": "mm", "angle": "deg"}
+        return sheet_by_order(
+            source, ("tag", *pose, *joints), self.title, self.sniff(source).why, units
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet, Source
@@ -253,6 +253,33 @@ def sheet_of(
         frame=frame,
         notes=(f"Read as {grid.how}.", *notes) if grid.how else notes,
     )
+
+
+def sheet_by_order(
+    source: Source,
+    names: tuple[str, ...],
+    title: str,
+    why: str,
+    prescribed: Mapping[str, str] | None = None,
+) -> Sheet:
+    """The readings under their headers, or under `names` where the file has none.
+
+    Units that the format prescribes count where headers show that it is this format.
+
+    Raises:
+        InputError: As `sheet_of`, or there are no names either.
+    """
+    layout = layout_of(source)
+    units = prescribed if layout is not None else None
+    if layout is None and names:
+        layout = layout_of(replace(source, columns=names))
+    if layout is None:
+        raise InputError(
+            f"this is not {title}",
+            where=str(source.path),
+            remedy="Leave --format out, or name the columns with --columns.",
+        )
+    return sheet_of(source, layout, title, why or "as told", assumed_units=units)
 
 
 def _is_needed(meaning: str) -> bool:

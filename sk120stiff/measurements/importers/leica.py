@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import layout_of, sheet_of
+from sk120stiff.measurements.importers.layout import layout_of, sheet_by_order
 
 _SAYS = re.compile(r"leica|hexagon|emscon|axyz|\bat ?(?:40[123]|9[36]0|500)\b|u ?95", re.IGNORECASE)
 
@@ -30,7 +29,4 @@ class Leica:
 
     def read(self, source: Source) -> Sheet:
         """The points, U95 halved."""
-        layout = layout_of(source)
-        if layout is None:
-            raise InputError("no headers name x, y and z", where=str(source.path))
-        return sheet_of(source, layout, self.title, self.sniff(source).why or "as told")
+        return sheet_by_order(source, (), self.title, self.sniff(source).why)

@@ -18,7 +18,7 @@ def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
         what: What the other file holds, as its option names it: joints or loads.
 
     Raises:
-        InputError: Names do not agree, and the files are not equally long.
+        InputError: A few names agree, or none and the files are not equally long.
     """
     mine, theirs = points.get("name"), other.get("name")
     rows, others, how, lost = None, None, "order", list(points.skipped)
@@ -39,6 +39,14 @@ def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
                 for name, k in place.items()
                 if name not in mine.cells
             ]
+        elif shared:
+            raise InputError(
+                f"only {len(shared)} of {len(place)} names agree ({min(shared)} among them): the "
+                f"{what} belong to other points",
+                where=f"{points.path} and {other.path}",
+                remedy="Give both files the same names, or take the names out of one of them: "
+                "rows then belong together by order.",
+            )
     if rows is None or others is None:
         if points.total != other.total:
             raise InputError(

@@ -6,11 +6,10 @@ flange frame (TCP) [mm], as the macros that RoboDK ships read it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import layout_of, shaped, sheet_of
+from sk120stiff.measurements.importers.layout import layout_of, shaped, sheet_by_order
 
 _TAIL = ("x", "y", "z", "tcp x", "tcp y", "tcp z")
 
@@ -37,12 +36,6 @@ class RoboDK:
 
     def read(self, source: Source) -> Sheet:
         """The readings; RoboDK writes mm and degrees, which counts where headers show its table."""
-        layout = layout_of(source)
-        assumed = {"length": "mm", "angle": "deg"} if layout is not None else {}
-        if layout is None:
-            joints = tuple(f"q{k + 1}" for k in range(len(source.actuated)))
-            layout = layout_of(replace(source, columns=(*joints, *_TAIL)))
-        if layout is None:
-            raise InputError("no table of RoboDK", where=str(source.path))
-        why = self.sniff(source).why or "as told"
-        return sheet_of(source, layout, self.title, why, assumed_units=assumed)
+        joints = (f"q{k + 1}" for k in range(len(source.actuated)))
+        units = {"length": "mm", "angle": "deg"}
+        return sheet_by_order(source, (*joints, *_TAIL), self.title, self.sniff(source).why, units)

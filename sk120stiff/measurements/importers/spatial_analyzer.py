@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
 from sk120stiff.measurements.importers.grid import is_number
-from sk120stiff.measurements.importers.layout import layout_of, sheet_of
+from sk120stiff.measurements.importers.layout import layout_of, sheet_by_order
 
 _SAYS = re.compile(r"spatial ?analyzer|\bSA \d{4}|working frame", re.IGNORECASE)
 _LABELS = {3: ("Collection", "Group", "Target"), 2: ("Group", "Target"), 1: ("Target",)}
@@ -37,16 +36,9 @@ class SpatialAnalyzer:
 
     def read(self, source: Source) -> Sheet:
         """The points; unnamed numbers behind them are uncertainties where a comment says so."""
-        layout = layout_of(source)
-        if layout is None:
-            layout = layout_of(replace(source, columns=self._columns(source)))
-        if layout is None:
-            raise InputError(
-                "no names before three numbers",
-                where=str(source.path),
-                remedy="Export as 'Collection Group Target'.",
-            )
-        return sheet_of(source, layout, self.title, self.sniff(source).why or "as told")
+        return sheet_by_order(
+            source, self._columns(source) or (), self.title, self.sniff(source).why
+        )
 
     def _columns(self, source: Source) -> tuple[str, ...] | None:
         """Names of the columns of a file without headers."""

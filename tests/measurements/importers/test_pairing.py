@@ -65,3 +65,8 @@ def test_counts_that_differ_are_an_error(tmp_path: Path, names: str) -> None:
         return
     with pytest.raises(InputError, match=r"4 points, but 3 rows of joints.*same names"):
         paired(points, other, "joints")
+
+
+def test_a_few_names_that_agree_are_a_mistake(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"only 1 of 4 names agree \(D among them\)"):
+        paired(sheet_of(tmp_path, POINTS), joints(tmp_path, "DEFG"), "joints")
