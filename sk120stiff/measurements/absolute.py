@@ -17,6 +17,7 @@ from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.columns import (
     ANCHORS,
     DIRECTIONS,
+    LEVELS,
     POSITIONS,
     QUATERNION,
     ROTATION_VECTOR,
@@ -29,6 +30,7 @@ from sk120stiff.measurements.table import Table
 if TYPE_CHECKING:
     from sk120stiff.measurements.settings import SettingsFile
 
+STEEP = np.radians(85.0)  # an inclination beyond tells nothing more
 SAME_POSE = 1e-3  # rad or m: encoder values of one pose that differ by less are of one pose
 
 
@@ -204,30 +206,50 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
         found["anchor"] = quantities(table, ANCHORS, "length")
     if "d" in roles.has:
         found["shift"] = table.quantity("d", "length", allow_blank=True)
-        along = np.column_stack([table.numbers(name, allow_blank=True) for name in DIRECTIONS])
-        length = np.linalg.norm(along, axis=1)
-        bad = np.isfinite(found["shift"]) & ~(length > 0.0)
-        if bad.any():
-            row = int(np.argmax(bad))
+        found["along"] = _directions(table, DIRECTIONS, found["shift"])
+    if "inc" in roles.has:
+        found["inclination"] = table.quantity("inc", "angle", allow_blank=True)
+        found["level"] = _directions(table, LEVELS, found["inclination"])
+        steep = np.abs(found["inclination"]) > STEEP
+        if steep.any():
             raise InputError(
-                "this reading has no direction",
-                where=table.place("ux", row),
-                remedy="Write the direction it was read along as ux, uy, uz.",
+                f"an inclination of {np.degrees(found['inclination'][steep][0]):.4g} deg",
+                where=table.place("inc", int(np.argmax(steep))),
+                remedy="Near the plumb line an inclination tells nothing: give one of another "
+                "direction vx, vy, vz of the tool, between -85 and 85 deg above the horizon.",
             )
-        found["along"] = along / np.where(length > 0.0, length, 1.0)[:, None]
     sigma, noise = {}, file.settings.noise
     if noise.sigma is not None:
         size = float(units.to_si(noise.sigma, noise.unit, "length", where=file.place("noise.unit")))
         sigma = dict.fromkeys(("position", "distance", "shift"), size)
     if noise.rotation is not None:
-        sigma["rotation"] = float(
+        turn = float(
             units.to_si(
                 noise.rotation, noise.rotation_unit, "angle",
                 where=file.place("noise.rotation_unit"),
             )
         )  # fmt: skip
+        sigma |= {"rotation": turn, "inclination": turn}
     rows = quantities(table, UNCERTAINTIES, "length") if "sx" in roles.has else None
     return Channels(**found, sigma=sigma, sigma_of_rows=rows)
+
+
+def _directions(table: Table, names: tuple[str, ...], read: Array) -> Array:
+    """(N, 3) unit vectors.
+
+    Raises:
+        InputError: A row that was read has none.
+    """
+    along = np.column_stack([table.numbers(name, allow_blank=True) for name in names])
+    length = np.linalg.norm(along, axis=1)
+    bad = np.isfinite(read) & ~(length > 0.0)
+    if bad.any():
+        raise InputError(
+            "this reading has no direction",
+            where=table.place(names[0], int(np.argmax(bad))),
+            remedy=f"Write the direction it was read along as {', '.join(names)}.",
+        )
+    return np.asarray(along / np.where(length > 0.0, length, 1.0)[:, None])
 
 
 def _rotation(table: Table, roles: Roles) -> Array | None:

@@ -17,10 +17,9 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 
-Kind = Literal["position", "rotation", "distance", "shift"]
-KINDS: tuple[Kind, ...] = ("position", "rotation", "distance", "shift")
-WIDTH = {"position": 3, "rotation": 3, "distance": 1, "shift": 1}
-UNITS = {"position": "m", "rotation": "rad", "distance": "m", "shift": "m"}
+Kind = Literal["position", "rotation", "distance", "shift", "inclination"]
+KINDS: tuple[Kind, ...] = ("position", "rotation", "distance", "shift", "inclination")
+ANGLES = ("rotation", "inclination")  # the other kinds are lengths
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +33,8 @@ class Channels:
             instrument [m].
         shift, along: (N,) displacement by the load along a direction (N, 3), axes of the
             displacements [m].
+        inclination, level: (N,) angle above the horizon [rad] of a direction (N, 3) of the tool,
+            axes of the tool.
         sigma: Standard uncertainty of each kind of channel as stated [m or rad].
         sigma_of_rows: (N, 3) standard uncertainty of each position [m], or None.
     """
@@ -44,6 +45,8 @@ class Channels:
     anchor: Array | None = None
     shift: Array | None = None
     along: Array | None = None
+    inclination: Array | None = None
+    level: Array | None = None
     sigma: dict[str, float] = dataclasses.field(default_factory=dict)
     sigma_of_rows: Array | None = None
 
@@ -100,7 +103,8 @@ class Channels:
         cut: dict[str, Any] = {
             name: None if getattr(self, name) is None else getattr(self, name)[index]
             for name in (
-                "position", "rotation", "distance", "anchor", "shift", "along", "sigma_of_rows",
+                "position", "rotation", "distance", "anchor", "shift", "along", "inclination",
+                "level", "sigma_of_rows",
             )
         }  # fmt: skip
         return dataclasses.replace(self, **cut)
@@ -115,7 +119,13 @@ class Channels:
         return dataclasses.replace(self, **blank)
 
     def project(
-        self, position: Array, rotation: Array, columns: Array, moved: Array, moving: Array
+        self,
+        position: Array,
+        rotation: Array,
+        columns: Array,
+        moved: Array,
+        moving: Array,
+        tilted: tuple[Array, Array] | None = None,
     ) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction.
 
@@ -124,6 +134,7 @@ class Channels:
                 derivative, axes of the instrument.
             moved, moving: (N, 3) predicted displacement by the load and (N, 3, P) its derivative,
                 axes of the displacements; looked at only where there are shifts.
+            tilted: (N,) predicted inclination and (N, P) its derivative, where there are any.
         """
         found: dict[Kind, tuple[Array, Array]] = {}
         if self.position is not None:
@@ -139,6 +150,8 @@ class Channels:
             gap = self.shift - np.einsum("ni,ni->n", self.along, moved)
             slope = np.einsum("ni,nip->np", self.along, moving)
             found["shift"] = gap[:, None], slope[:, None]
+        if self.inclination is not None and tilted is not None:
+            found["inclination"] = (self.inclination - tilted[0])[:, None], tilted[1][:, None]
         held = [(*found[kind], self.held(kind)) for kind in self.present]
         return (
             np.concatenate([gap[known] for gap, _, known in held]),
@@ -155,6 +168,20 @@ class Channels:
     def stated(self, kind: Kind) -> bool:
         """Does the file say how uncertain the readings of a kind are?"""
         return kind in self.sigma or (kind == "position" and self.sigma_of_rows is not None)
+
+
+def inclined(level: Array, rotation: Array, turning: Array, down: Array) -> tuple[Array, Array]:
+    """Angle (N,) above the horizon of directions (N, 3) of the tool, and its derivative (N, P).
+
+    Args:
+        level: Unit vectors, axes of the tool.
+        rotation, turning: (N, 3, 3) axes of the tool and (N, 3, P) how they turn, base axes.
+        down: (3,) where gravity points to, base axes.
+    """
+    seen = np.einsum("nij,nj->ni", rotation, level)
+    sine = -seen @ down
+    slope = np.einsum("ni,nip->np", np.cross(down, seen), turning)
+    return np.arcsin(sine), slope / np.sqrt(1.0 - sine**2)[:, None]
 
 
 def _turned(measured: Array, predicted: Array, columns: Array) -> tuple[Array, Array]:

@@ -18,6 +18,7 @@ ROTATION_VECTOR = ("rx", "ry", "rz")
 QUATERNION = ("qw", "qx", "qy", "qz")
 DIRECTIONS = ("ux", "uy", "uz")
 ANCHORS = ("ax", "ay", "az")
+LEVELS = ("vx", "vy", "vz")
 UNCERTAINTIES = ("sx", "sy", "sz")
 ZEROS = ("zero_group", "zero_count", "zero_order", "zero_time")
 # Columns that are words or counts and carry no unit.
@@ -25,8 +26,10 @@ _BARE = ("pose", "order", "branch", "repeat", "use", "zero_group", "zero_count",
 # What stands beside positions, distances and single readings; a note elsewhere.
 _BESIDE = ("payload", "marker", "temperature", "series")
 _SINGLE = ("d", "l")
-_ABSOLUTE = (*_SINGLE, *_BESIDE, *ROTATION_VECTOR, *QUATERNION, *DIRECTIONS, *ANCHORS)
-_GROUPS: dict[str, tuple[str, ...]] = {"d": DIRECTIONS, "l": ANCHORS}
+_GROUPS: dict[str, tuple[str, ...]] = {"d": DIRECTIONS, "l": ANCHORS, "inc": LEVELS}
+_ABSOLUTE = (
+    *_SINGLE, "inc", *_BESIDE, *ROTATION_VECTOR, *QUATERNION, *DIRECTIONS, *ANCHORS, *LEVELS,
+)  # fmt: skip
 _WORDS = (
     *FORCES, *MOMENTS, *DISPLACEMENTS, *POSITIONS, *UNCERTAINTIES, *_BARE, "time", "zero_time",
 )  # fmt: skip
@@ -35,6 +38,7 @@ _WORDS = (
 _UNITS = {
     FORCES: "N", MOMENTS: "N*m", DISPLACEMENTS: "mm", POSITIONS: "mm", UNCERTAINTIES: "um",
     ("time", "zero_time"): "s", ROTATION_VECTOR: "rad", ANCHORS: "m", _SINGLE: "mm",
+    ("inc",): "deg",
 }  # fmt: skip
 _OTHER_DRESS = re.compile(r"(?P<name>[A-Za-z]+)\s*(?P<mark>[ (/_])(?P<unit>[^)]*)\)?")
 

@@ -29,11 +29,14 @@ class PoseReading:
         position, rotation: (N, 3) marker [m] and (N, 3, 3) tool axes, axes of the instrument.
         columns: (N, 6, P) derivative of position and orientation by the internal parameter values,
             in axes of the instrument; no parameters where nobody asked.
+        standing, turning: (N, 3, 3) tool axes and (N, 3, P) how they turn, base axes.
     """
 
     position: Array
     rotation: Array
     columns: Array
+    standing: Array
+    turning: Array
 
 
 def read_poses(
@@ -49,11 +52,8 @@ def read_poses(
         _read(model.assembly, part, given, derivative)
         for part in _blocks(situation, model.assembly.mechanism.n)
     ]
-    return PoseReading(
-        np.concatenate([part.position for part in parts]),
-        np.concatenate([part.rotation for part in parts]),
-        np.concatenate([part.columns for part in parts]),
-    )
+    names = ("position", "rotation", "columns", "standing", "turning")
+    return PoseReading(*(np.concatenate([getattr(part, n) for part in parts]) for n in names))
 
 
 def _blocks(situation: Situation, n: int) -> Iterator[Situation]:
@@ -78,12 +78,14 @@ def _read(assembly: Assembly, situation: Situation, values: Array, derivative: b
     said = misread(assembly.of(ReadingError), situation, values, turned + t)
     P = len(values) if derivative else 0
     columns = np.zeros((situation.count, 6, P))
+    turning = columns[:, :0]
     if derivative:
         body = assembly.pose_sensitivities(stood, values)
+        turning = body[:, 3:]
         columns[:, :3], columns[:, 3:] = R @ body[:, :3], R @ body[:, 3:]
         for effect, part in views:
             columns[:, :, part] += effect.columns(turned, values[part])
         columns[:, :3] = said.matrix @ columns[:, :3]
         for part, own in said.columns:
             columns[:, :3, part] += own
-    return PoseReading(said.value, R @ screws.rotation, columns)
+    return PoseReading(said.value, R @ screws.rotation, columns, screws.rotation, turning)

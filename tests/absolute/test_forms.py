@@ -185,3 +185,63 @@ def _with(marker: list[float] | None = None, payload: tuple[float, Array] | None
 
         arm.pose = pose  # type: ignore[method-assign]
     return arm
+
+
+LEVEL = np.array([[1.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0]])  # of the tool
+HEADER = ",inc[deg],vx,vy,vz"
+
+
+def levelled(axes: Array, sigma: float) -> tuple[Array, Array]:
+    """Angles above the horizon (N,) with noise, and the direction of the tool nearest to it."""
+    each = np.arcsin(axes[:, 2, :])
+    pick = np.argmin(np.abs(each), axis=1)
+    angle = each[np.arange(len(axes)), pick] + sigma * RNG.normal(size=len(axes))
+    return angle, LEVEL[pick]
+
+
+def test_an_inclinometer_alone_gives_the_springs_that_full_readings_give(tmp_path: Path) -> None:
+    """Geometry known; angles alone, base axes, no position at all."""
+    arm = Arm(compliance=errors(1).compliance)
+    x, axes = arm.stands(A)
+    angle, level = levelled(axes, 5e-6)
+    table = np.column_stack([np.degrees(angle), level])
+    path = write(
+        tmp_path, A, np.full_like(x, np.nan),
+        "point: {xyz: [50, -80, 120], unit: mm}\n"
+        "noise: {sigma: 20, unit: um, rotation: 5, rotation_unit: urad}\n",
+        more=HEADER, cells=rows(table),
+    )  # fmt: skip
+    data = sk.read(path)
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    found = calibrate(
+        sk.base_model(robot), data.with_joints(robot.actuated), geometry=False, waves=False
+    )
+    assert found.fit.misfit[2] > 1e-3
+    for k in (2, 3):
+        spring = found.fit.model.parameter(f"joint_springs:j{k}.stiffness")
+        assert spring.value == pytest.approx(1.0 / arm.compliance[k - 1], rel=0.05)
+        assert abs(spring.internal - arm.compliance[k - 1]) < 3.5 * spring.internal_std
+
+
+def test_angles_against_gravity_sharpen_springs_beside_geometry(tmp_path: Path) -> None:
+    x, axes = errors(1).stands(A)
+    x = noisy(tracked(x))
+    alone = calibrated(write(tmp_path, A, x, FIT + NOISE))
+    angle, level = levelled(axes, 5e-6)
+    cells = rows(np.column_stack([np.degrees(angle), level]))
+    settings = "noise: {sigma: 20, unit: um, rotation: 5, rotation_unit: urad}\n"
+    both = calibrated(write(tmp_path, A, x, FIT + settings, more=HEADER, cells=cells))
+    agrees(both)
+    std = [f.fit.model.parameter("joint_springs:j3.stiffness").internal_std for f in (alone, both)]
+    assert std[1] < 0.7 * std[0]
+
+
+def test_inclinations_that_tell_nothing_are_refused(tmp_path: Path) -> None:
+    x = tracked(errors(1).stands(A)[0])
+    for cells, said in (("89,0,0,1", "89 deg"), ("10,0,0,0", "no direction")):
+        path = write(tmp_path, A, x, FIT, more=HEADER, cells=[cells] * len(A))
+        with pytest.raises(InputError, match=said):
+            sk.read(path)
+    path = write(tmp_path, A, x, FIT + "gravity: 0\n", more=HEADER, cells=["10,0,0,1"] * len(A))
+    with pytest.raises(InputError, match="against gravity"):
+        calibrated(path)

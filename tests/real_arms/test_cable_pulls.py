@@ -15,7 +15,9 @@ from tests.real_arms import fanuc
 
 if fanuc.FOLDER.is_dir():
 
-    def test_the_controllers_columns_are_joints_and_springs_are_the_known_ones(tmp_path: Path) -> None:
+    def test_the_controllers_columns_give_the_known_springs(
+        tmp_path: Path,
+    ) -> None:
         data = sk.read(fanuc.SCRIPT["converted"](fanuc.FOLDER, tmp_path))
         robot = sk.load_robot(str(tmp_path / "r2000ic.urdf"), base="base_link", tool="link_6")
         readings = data.with_joints(robot.actuated)

@@ -21,7 +21,9 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.model import Model, Parameter
 
-START = {"position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4}  # m or rad
+START = {  # m or rad
+    "position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4, "inclination": 1e-4,
+}  # fmt: skip
 SAME = 0.2  # change of the logarithm of a noise that is none
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
 FAR = 8.0  # standard sizes of a row beyond which it is wild

@@ -16,6 +16,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Channels
 from sk120stiff.measurements.absolute import Absolute
+from sk120stiff.measurements.channels import ANGLES, inclined
 from sk120stiff.model import Parameter
 from sk120stiff.model.pose_reading import read_poses
 
@@ -73,7 +74,7 @@ class PoseProblem(Problem):
     def lengths(self) -> Index:
         """Channels that are lengths, not angles."""
         parts = zip(self.channels.present, self.channels.kinds, strict=True)
-        picked = [np.arange(part.start, part.stop) for kind, part in parts if kind != "rotation"]
+        picked = [np.arange(part.start, part.stop) for kind, part in parts if kind not in ANGLES]
         return np.concatenate([*picked, np.zeros(0, dtype=np.intp)]).astype(np.intp)
 
     @cached_property
@@ -125,7 +126,26 @@ class PoseProblem(Problem):
                 moved, moving = self.model.predict_with_sensitivities(self.situation, values)
             else:
                 moved = self.model.predict(self.situation, values)
-        return self.channels.project(seen.position, seen.rotation, seen.columns, moved, moving)
+        tilted = None
+        if self.channels.level is not None:
+            turning = seen.turning if derivative else moving
+            tilted = inclined(self.channels.level, seen.standing, turning, self._down)
+        return self.channels.project(
+            seen.position, seen.rotation, seen.columns, moved, moving, tilted
+        )
+
+    @cached_property
+    def _down(self) -> Array:
+        """(3,) where gravity points to, base axes."""
+        down = self.model.robot.gravity_in_base
+        size = float(np.linalg.norm(down))
+        if size == 0.0:
+            raise InputError(
+                "inclinations are told against gravity, and gravity is stated to be 0",
+                where=str(self.measurements.path or "measurements"),
+                remedy="Write gravity: [0, 0, -9.81], or where it points to, into the YAML file.",
+            )
+        return np.asarray(down / size)
 
     def gap(self, x: Array) -> Array:
         """(L,) measured minus predicted of all channels that are lengths [m]."""
