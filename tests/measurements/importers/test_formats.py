@@ -101,6 +101,13 @@ def test_delmia(tmp_path: Path) -> None:
     assert next(u for u in draft.unused if "Roll" in u).endswith("is not stated")
 
 
+def test_a_joint_that_slides_is_in_mm_there(tmp_path: Path) -> None:
+    text = "Tag\tX\tY\tZ\tRoll\tPitch\tYaw\tJ1\tJ2\nT1\t1\t2\t3\t0\t0\t0\t250.5\t90\n"
+    draft = draft_of(tmp_path, text, ("slide", "turn"), ("slide",))
+    assert [header for header, _ in draft.joints.written] == ["slide[mm]", "turn[deg]"]
+    np.testing.assert_allclose(draft.joints.values, [[0.2505, np.pi / 2]])
+
+
 def test_a_plain_list(tmp_path: Path) -> None:
     found = sheet_of(tmp_path, sample("plain_points.txt"))
     assert cells(found, "name") == ("P1", "P2", "P3")
