@@ -34,10 +34,16 @@ def refuse_unused(data: Path, given: Mapping[str, object]) -> None:
 
 
 def calibration_answer(
-    model: Model, readings: Measurements, data: Path, fix: Sequence[str], out: Path | None
+    model: Model,
+    readings: Measurements,
+    data: Path,
+    fix: Sequence[str],
+    out: Path | None,
+    *,
+    waves: bool = True,
 ) -> Answer:
     """Geometry, springs and what cannot be told, as JSON and for people."""
-    found = calibrate(model, readings, freedom=tuple(fix))
+    found = calibrate(model, readings, freedom=tuple(fix), waves=waves)
     fit = found.fit
     if out is not None:
         write_model(replace(known_calibration(found), provenance=provenance(data, readings)), out)

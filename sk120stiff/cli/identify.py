@@ -84,6 +84,14 @@ def command(
             help="Compare with this: a model file, or effects to add, 'base_rocking+joint_tilt:..'",
         ),
     ] = None,
+    waves: Annotated[
+        bool,
+        typer.Option(
+            "--waves/--no-waves",
+            help="Of positions: let transmission errors in where they show. Without them the "
+            "geometry fits best alone, as a calibrated URDF has it, and springs take the blame.",
+        ),
+    ] = True,
     out: OutOption = None,
 ) -> Answer:
     """Spring values and their uncertainty from measured deflections.
@@ -105,7 +113,13 @@ def command(
             "--method": method is not Method.trf, "--free": free, "--robust": robust,
             "--profile": profile, "--held-out": leave_out, "--compare": others,
         })  # fmt: skip
-        return calibration_answer(start, readings, data, fix or (), out)
+        return calibration_answer(start, readings, data, fix or (), out, waves=waves)
+    if not waves:
+        raise InputError(
+            "only positions show waves of a gear, and these readings are displacements",
+            where="--no-waves",
+            remedy="Leave it out.",
+        )
     start = with_freedom(start, fix or (), free)
     doubts = look(plain, readings)
     refuse_unbelievable(doubts, plain, readings)

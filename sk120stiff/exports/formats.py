@@ -64,8 +64,8 @@ def exported(model: Model, request: Request, to: Format) -> Exported:
     note = (
         f"What goes with the pose and was left out moves the unloaded tool by "
         f"{1e3 * found['departure_rms_m']:.2g} mm rms, at most {1e3 * away.max():.2g} mm, at "
-        f"{len(away)} random poses: calibrate without these effects where the file is to stand "
-        "alone."
+        f"{len(away)} random poses. A geometry that is to stand alone is fitted without waves: "
+        "identify --no-waves."
     )
     return replace(made, notes=(note, *made.notes), details={**made.details, **found})
 
