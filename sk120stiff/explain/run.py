@@ -16,7 +16,7 @@ from sk120stiff.explain.answer.explanation import Explanation, Verdict
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
 from sk120stiff.explain.judge.attribution import MISSPECIFICATION, judged
-from sk120stiff.explain.judge.beside_form import beside_model_form
+from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
 from sk120stiff.explain.judge.posterior import one_more
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
@@ -24,7 +24,7 @@ from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
-from sk120stiff.explain.priors import IMPOSTOR
+from sk120stiff.explain.priors import FURTHER_IMPOSTOR, IMPOSTOR
 from sk120stiff.explain.select.best_attempt import best_attempt, held_against
 from sk120stiff.explain.select.stepwise import Attempt, attempt
 from sk120stiff.identify import refuse_unusable
@@ -85,14 +85,17 @@ def explain(
     tell("confirming on other poses", 0.3)
     exact = not found.final.exceeds
     if exact:
-        exactly = judged(found, seed=options.seed)
+        exactly = unless_imitating(*judged(found, seed=options.seed), options.seed)
         left = _adequacy(exactly[0], noise)
         exact = not _too_much(left, MISSPECIFICATION if exactly[1].misspecified else LEFT_OVER)
     found, named = exactly if exact else beside_model_form(base, under, seed=options.seed)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     remainder = remainder_of(held_against(noise, found.final))
-    findings = tuple(each.doubted(IMPOSTOR * remainder.something_else) for each in named.findings)
+    findings = tuple(
+        each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else)
+        for k, each in enumerate(named.findings)
+    )
     effects = [finding.effect for finding in findings]
     final = with_selection_uncertainty(found, findings)
     verdict = _verdict(findings, left)

@@ -147,14 +147,13 @@ def _objection(
             f"{stronger.effect.id} leaves over; it is not named.",
             misspecification=True,
         )
-    gear = _gear_that_drifts(found, finding, before)
-    if gear is not None:
+    turns = _joint_that_turns(found, finding.effect)
+    if turns is not None:
         return Fallen(
             name,
-            f"{name} fits, but what poses have of their own lies along the turn of "
-            f"{gear.effect.where}: the gear of {gear.effect.id} does not begin every pose alike. "
-            "It is not named.",
-            misspecification=True,
+            f"{name} fits, but what poses have of their own lies along the turn of {turns}: more "
+            "likely its drive does not begin every pose alike. It is not named.",
+            misspecification=any(other.effect.where == turns for other in before),
         )
     if finding.effect.exchangeable and not _constant(found, finding.effect):
         return Fallen(
@@ -193,27 +192,26 @@ def unit(regression: Regression, model: Scored) -> float:
     return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
 
 
-def _gear_that_drifts(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
-    """The stronger law of a gear along whose turn the draws of a finding lie; None: of no gear.
+def _joint_that_turns(found: Attempt, effect: Effect) -> str | None:
+    """The joint along whose turn the draws of an effect lie; None: of no joint.
 
-    A gear that rubs begins a pose with what the pose before left in it, which its law takes for
-    nothing. Draws of the tracker know no joint: a third of their square lies along its turn.
+    A gear that rubs begins a pose with what the pose before left in it, and one whose stiffness
+    goes with its angle yields more at some poses. Draws of the tracker know no joint: a third of
+    their square lies along its turn.
     """
-    gears = [other for other in before if other.effect.of_gear]
-    if not (finding.effect.exchangeable and gears):
+    if not effect.exchangeable:
         return None
     fit = found.final
     situation = fit.problem.situation
-    own = np.array([parameter.effect == finding.effect for parameter in fit.model.parameters])
+    own = np.array([parameter.effect == effect for parameter in fit.model.parameters])
     _, full = fit.model.predict_with_sensitivities(situation)
     drawn = np.einsum("nij,nj->ni", situation.reading_axes, full[:, :, own] @ fit.model.values[own])
-    for gear in gears:
-        joint = situation.robot.actuated.index(gear.effect.where)
-        way = situation.nominal.linear_jacobian[:, :, joint]
-        length = np.maximum(np.linalg.norm(way, axis=1), 1e-300)
-        along = np.einsum("ni,ni->n", drawn, way) / length
-        if (along**2).sum() > ALONG * (drawn**2).sum():
-            return gear
+    ways = situation.nominal.linear_jacobian
+    length = np.maximum(np.linalg.norm(ways, axis=1), 1e-300)
+    along = (np.einsum("ni,nij->nj", drawn, ways) / length) ** 2
+    joint = int(np.argmax(along.sum(axis=0)))
+    if along[:, joint].sum() > ALONG * (drawn**2).sum():
+        return situation.robot.actuated[joint]
     return None
 
 

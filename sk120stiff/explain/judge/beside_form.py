@@ -40,10 +40,10 @@ def beside_model_form(base: Fit, under: Try, *, seed: int) -> tuple[Attempt, Nam
         if names == before:
             break
         at, before = found.final, names
-    return _unless_imitating(found, named, seed)
+    return unless_imitating(found, named, seed)
 
 
-def _unless_imitating(found: Attempt, named: Named, seed: int) -> tuple[Attempt, Named]:
+def unless_imitating(found: Attempt, named: Named, seed: int) -> tuple[Attempt, Named]:
     """The same without names that imitate part of a cause that the catalogue lacks.
 
     They fall one at a time, the weakest first, and the others are judged anew; those that stand do
@@ -55,7 +55,7 @@ def _unless_imitating(found: Attempt, named: Named, seed: int) -> tuple[Attempt,
             kept = [other.effect for other in named.findings if other is not finding]
             found, again = judged(with_effects(found, kept), seed=seed, least=MARGIN)
             fallen = (*named.fallen, Fallen(finding.effect.id, reason), *again.fallen)
-            return _unless_imitating(found, Named(again.findings, fallen), seed)
+            return unless_imitating(found, Named(again.findings, fallen), seed)
     return found, named
 
 
