@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
-from sk120stiff.effects import effect
+from sk120stiff.effects import effect, situation_of
+from sk120stiff.explain import Options, explain
 from sk120stiff.explain.judge.imitation import imitates, instead_of, spread_over_poses
 from sk120stiff.explain.select.stepwise import refit
 from sk120stiff.identify import Fit, fit
@@ -73,3 +74,20 @@ def test_a_cause_beside_another_of_another_place_stands(springs):
     both = hidden(ForceBias("sensor", {"x": 12.0, "y": -9.0, "z": 5.0}), TILT)
     found = fitted(springs, both, "force_bias")
     assert imitates(found, named(found)) is None
+
+
+@pytest.mark.parametrize("along", [True, False])
+def test_constants_along_the_turn_of_a_joint_are_no_zero_offsets(springs, along):
+    """A drive that does not begin every pose alike; and a tracker that moved, any way."""
+    clean = hidden(poses=20, loads=3)
+    situation = situation_of(springs.robot, clean)
+    rng = np.random.default_rng(4)
+    turn = situation.nominal.linear_jacobian[:, :, 0]  # of joint_1_s
+    twist = dict(zip(clean.poses, 6e-5 * rng.normal(size=20), strict=True))
+    moved = dict(zip(clean.poses, 5e-5 * rng.normal(size=(20, 3)), strict=True))
+    offset = np.array([twist[p] * turn[k] if along else moved[p] for k, p in enumerate(clean.pose)])
+    readings = replace(clean, displacement=clean.displacement + offset)
+    only = Options(only=("zero_offset", "joint_tilt", "base_rocking"))
+    answer = explain(springs, readings, options=only)
+    names = [finding.effect.id for finding in answer.findings]
+    assert names == ([] if along else ["zero_offset:tracker"])

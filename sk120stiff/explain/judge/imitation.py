@@ -30,7 +30,7 @@ from sk120stiff.measurements.model_form import ModelForm
 DIFFER = 0.5  # spread of its size over the poses, relative to it, from which on it is no constant
 BEYOND_CHANCE = 9.55  # gain in -2 ln L that chance brings in one of a thousand, half a χ² of one
 BETTER = 6.0  # evidence (BIC) by which something without a name has to win
-NOTHING = 0.5  # share of its length that is left to an effect of which another does the work
+NOTHING = 0.3  # share of its length that is left to an effect of which another does the work
 STARTS = (0.1, 0.3, 1.0)  # spreads from which the likeliest is looked for
 FAR = 4.0  # ln of the factor by which a size is sought away from its start
 VISIBLE = 1e-6  # share of a column that must remain beyond the model's own
@@ -52,7 +52,7 @@ class Instead:
 
     @property
     def does_the_work(self) -> bool:
-        """It wins, and less than half of the effect is left beside it."""
+        """It wins, and hardly anything is left for the effect."""
         return self.better > BETTER and self.share < NOTHING
 
 
