@@ -44,7 +44,7 @@ def _tests(folder: str, *names: str) -> tuple[str, ...]:
 
 STIFFNESS = _tests("stiffness", "complementary", "cartesian", "critical", "principal", "energy")
 FIT = _tests("identify", "fit", "uncertainty", "lack_of_fit", "noise")
-EXPLAIN = _tests("explain", "regression", "judging", "localise")
+EXPLAIN = _tests("explain", "regression", "evidence", "judging", "localise")
 
 FAULTS: tuple[Fault, ...] = (
     *_of(
@@ -210,6 +210,12 @@ FAULTS: tuple[Fault, ...] = (
         "explain/select/score.py", *EXPLAIN,
         sizes_for_nothing=("price += price_of_sizes(gain, len(own), n)", "price += 0.0"),
         looking_for_nothing=("price = len(parts) * price_of_looking(regression, n) +", "price ="),
+    ),
+    *_of(
+        "explain/judge/imitation.py", *_tests("explain", "imitation"),
+        impostors_never_compared=("takes - length - price", "takes - 2.0 * length - price"),
+        others_not_projected_out=("gap = gap - others @ (others.T @ gap)", "gap = gap - 0.0 * gap"),
+        spread_for_nothing=("return spread, least(0.0)[0] - value", "return spread, least(0.0)[0]"),
     ),
     *_of(
         "explain/judge/posterior.py", *EXPLAIN,
