@@ -214,7 +214,6 @@ FAULTS: tuple[Fault, ...] = (
     *_of(
         "explain/judge/imitation.py", *_tests("explain", "imitation"),
         impostors_never_compared=("takes - length - price", "takes - 2.0 * length - price"),
-        others_not_projected_out=("gap = gap - others @ (others.T @ gap)", "gap = gap - 0.0 * gap"),
         spread_for_nothing=("return spread, least(0.0)[0] - value", "return spread, least(0.0)[0]"),
     ),
     *_of(
