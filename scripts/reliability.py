@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from scipy import stats
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from tests.hidden.calibration import Calibration, calibration, reliability, stated
+from tests.hidden.judge import Mark
 from tests.hidden.score import check_frozen, judge_case, level_of
 
 HEAD = """# Are the stated probabilities frequencies?
@@ -41,19 +42,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("folders", type=Path, nargs="+")
     parser.add_argument("--out", type=Path, default=Path("docs"))
     asked = parser.parse_args(arguments)
-    judged, levels = [], Counter[str]()
+    judged, levels, marks = [], Counter[str](), defaultdict[str, list[Mark]](list)
     for folder in asked.folders:
         check_frozen(folder)
         for case in sorted((folder / "cases").iterdir()):
-            truth, answer, _ = judge_case(folder, case.name)
+            truth, answer, mark = judge_case(folder, case.name)
             judged.append((truth, answer))
             levels[level_of(truth)] += 1
+            marks[level_of(truth)].append(mark)
     found = {what: calibration(pairs) for what, pairs in stated(judged).items()}
     told = {what: seen for what, seen in found.items() if seen is not None}
     text = HEAD.format(
         count=len(judged),
         levels=", ".join(f"{n} of {level}" for level, n in sorted(levels.items())),
     )
+    text += "\n| level | cases | right | cases with a wrong name |\n|---|---|---|---|\n"
+    for level, own in sorted(marks.items()):
+        right = sum(mark.right for mark in own) / len(own)
+        wrong = sum(mark.wrong > 0 for mark in own)
+        text += f"| {level} | {len(own)} | {100.0 * right:.0f} % | {wrong} |\n"
     text += "".join(
         f"\n## {w.capitalize()}\n\n{reliability(w, seen)}\n" for w, seen in told.items()
     )
