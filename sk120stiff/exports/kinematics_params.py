@@ -1,7 +1,7 @@
 """`kinematics_params.yaml` as the ROS driver and description of Universal Robots take it.
 
-Six transforms lead from `base_link_inertia` (base_link turned by π about z) through the frames of
-the six joints, each with its joint's axis along z:
+Six transforms lead from `base_link_inertia`, the controller's own base (ROS's base_link turned by π
+about z), through the frames of the six joints, each with its joint's axis along z:
 
     shoulder (0, 0, d1)   upper_arm turned by π/2 about x   forearm (a2, 0, 0)
     wrist_1 (a3, 0, d4)   wrist_2 (0, -d5, 0) turned by π/2 about x
@@ -153,7 +153,8 @@ def _laid(
     if abs(up @ (elbow - shoulder)) > _NEAR or abs(up @ (wrist - shoulder)) > _NEAR:
         _refuse(robot, "its arm is not stretched level at zero")
     frames = [np.eye(4)]
-    frames[0][:3, :3] = rotation_from_rpy(np.array([0.0, 0.0, np.pi]))
+    yaw = np.arctan2(turns[0][1, 0], turns[0][0, 0])  # π from ROS's base_link, 0 from UR's base
+    frames[0][:3, :3] = rotation_from_rpy(np.array([0.0, 0.0, yaw]))
     for k, place in enumerate(places):
         off = place - origin[k]
         beside = off - z[k] * (z[k] @ off)
