@@ -86,7 +86,7 @@ def test_other_arms_are_refused_with_the_reason() -> None:
 
 
 def test_it_begins_at_the_controllers_base() -> None:
-    """The bundled UR5e stands on that base, example robots on ROS's base_link: no arm turns round."""
+    """The bundled UR5e stands on that base, other files on ROS's base_link: no arm turns round."""
     text = exported(base_model(load_robot("ur5e")), "kinematics_params").text
     shoulder = yaml.safe_load(text)["kinematics"]["shoulder"]
     assert abs(shoulder["yaw"]) < 1e-9
