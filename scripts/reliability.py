@@ -27,11 +27,13 @@ from tests.hidden.score import check_frozen, judge_case, level_of
 
 HEAD = """# Are the stated probabilities frequencies?
 
-{count} sealed cases of the hidden benchmark ({levels}), drawn after the procedure was settled and
-answered through the public command. Below: names that `explain` gave, and all candidates that
-`probabilities` lists, by the probability that was stated. True: the name, one of its alternatives,
-its family where laws are wrong in detail (L10), or its kind where the cause itself has no name
-(`tests/hidden/families.py`), was at work. Made by `python scripts/reliability.py`.
+{count} sealed cases of the hidden benchmark, drawn after the procedure was settled and answered
+through the public command ({levels}). Few cases leave wide bars.
+
+Below: names that `explain` gave, and all candidates that `probabilities` lists, by the probability
+that was stated. True: the name, one of its alternatives, its family where laws are wrong in detail
+(L10), or its kind where the cause itself has no name (`tests/hidden/families.py`), was at work.
+Made by `python scripts/reliability.py`.
 
 ![stated against true](reliability.png)
 """
