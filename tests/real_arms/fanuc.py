@@ -14,7 +14,7 @@ from sk120stiff.measurements import Measurements, NoiseStatement
 from sk120stiff.robot import Robot
 
 FOLDER = Path(__file__).parents[3] / "shared" / "data" / "fanuc_r2000ic"
-SCRIPT = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "16_cable_pulls.py"))
+SCRIPT = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "17_cable_pulls.py"))
 NAMES = tuple(f"joint_{k}" for k in range(1, 7))
 
 

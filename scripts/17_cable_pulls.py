@@ -6,7 +6,7 @@ poses, one pull each: joint_angles.csv [rad], forces.csv [N], deflections.csv [m
 base axes. Such controllers measure joint 3 against the floor and turn joints 4 to 6 the other way;
 the key `joints` says so once, and the columns stay as they are.
 
-Run:  python scripts/16_cable_pulls.py FOLDER_OF_DATA --out explained
+Run:  python scripts/17_cable_pulls.py FOLDER_OF_DATA --out explained
 """
 
 import argparse
