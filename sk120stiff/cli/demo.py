@@ -48,7 +48,7 @@ def command(
         Path, typer.Option("--out", metavar="DIR", help="Folder for the results.")
     ] = Path("sk120stiff-demo"),
 ) -> Answer:
-    """The main job on measured data, and on readings with a hidden cause.
+    """The main job on measured data, and on a hidden cause.
 
     Puts the paper's springs to its measured deflections, identifies springs, asks what is missing,
     and says what three poses can tell. Then it explains a simulated campaign in which a cause was

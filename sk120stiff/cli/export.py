@@ -47,7 +47,7 @@ def command(
         typer.Option("--to", help="The format.", show_default="by the ending of FILE"),
     ] = None,
 ) -> Answer:
-    """A calibrated URDF, DH tables, or an arm that moves in a simulator.
+    """A calibrated URDF, DH tables, or an arm for a simulator.
 
     A URDF, UR's kinematics_params and DH tables hold the rigid geometry as the model has it. Models
     for MuJoCo and SDF move: position actuators at the joints, the springs behind them, the robot's

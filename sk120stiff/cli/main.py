@@ -34,12 +34,12 @@ COMMANDS = {
     "simulate": "Synthetic measurements from a model: loads, noise, zeros.",
     "import": "Readings of trackers and calibration programs as measurements.",
     "compensate": "Joint commands that cancel the deflection along a loaded path.",
-    "export": "A calibrated URDF, DH tables, or an arm that moves in a simulator.",
+    "export": "A calibrated URDF, DH tables, or an arm for a simulator.",
     "posture": "The stiffest or least deflected posture for a tool path.",
     "map": "Stiffness over the workspace: extremes, directions, stability.",
     "paper": "The 2005 paper's tables, figures, claims: ours beside theirs.",
     "view": "The robot, its ellipsoids and its gaps, live in the browser.",
-    "demo": "The main job on measured data, and on readings with a hidden cause.",
+    "demo": "The main job on measured data, and on a hidden cause.",
 }
 
 
