@@ -196,6 +196,11 @@ def note(text: str) -> None:
     print(visible(text), file=sys.stderr)
 
 
+def ahead(parts: Sequence[object]) -> None:
+    """Tell the user, on stderr, what comes before the answer: what is about to be done."""
+    print(_text(parts), file=sys.stderr, flush=True)
+
+
 @contextmanager
 def _messages(*, debug: bool) -> Iterator[list[str]]:
     """Warnings and the package's log as single lines on stderr; yields the warnings, each once."""

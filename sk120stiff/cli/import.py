@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.frame import Answer, ahead
 from sk120stiff.cli.import_preview import document_of, doubts_of, preview_of
 from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
@@ -220,8 +220,9 @@ def command(
     if preview or out is None:
         parts.append("Nothing was written (--preview).")
     else:
+        ahead(parts)
         found.write(out)
-        parts.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
+        parts = [f"Written to {out} and {out.with_suffix('.yaml')}."]
     document = {**document_of(found, out, written=not preview), "doubts": doubts}
     return Answer(document, parts)
 

@@ -52,7 +52,7 @@ def test_positions_alone_are_written_as_positions(run, tmp_path: Path) -> None:
     out = str(tmp_path / "own.csv")
     outcome = run("import", marks(tmp_path, payload=False), *TOLD, "--out", out)
     assert outcome.code == 0, outcome.stderr
-    said = " ".join(outcome.stdout.split())
+    said = " ".join(outcome.stderr.split())
     assert "No pose of the 3 was read under two different loads." in said
     assert "position: {frame: unknown}" in said
     assert read_measurements(out).absolute is not None
@@ -131,7 +131,7 @@ def test_the_residual_of_registration_is_told(run, tmp_path: Path) -> None:
     found = run("import", source, *TOLD, "--out", out, "--json").document["registration"]
     assert found["rms_mm"] < 1e-6
     assert found["marker_m"] == pytest.approx([0.1, -0.05, 0.2], abs=1e-8)
-    said = run("import", source, *TOLD, "--out", out).stdout
+    said = run("import", source, *TOLD, "--out", out).stderr
     assert "12 poses, the tracker's frame and the marker's place fitted" in said
 
 

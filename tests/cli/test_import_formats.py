@@ -1,5 +1,6 @@
 """From a tracker's export to geometry and springs, two commands by hand, and what goes wrong."""
 
+import errno
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import load_robot, read_measurements
+from sk120stiff.measurements.importers import Imported
 from sk120stiff.units import to_si
 from tests.corpus.robots import example
 from tests.measurements.importers.tracked import (
@@ -133,12 +135,31 @@ def test_a_preview_writes_nothing(run, tmp_path: Path) -> None:
     assert nowhere.code == 2 and "--preview" in nowhere.stderr
 
 
+def test_the_preview_comes_before_the_files(
+    run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is told even where writing fails, and leaves stdout to the answer."""
+
+    def full(self: Imported, path: Path) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    arguments = exported(tmp_path)
+    with monkeypatch.context() as broken:
+        broken.setattr(Imported, "write", full)
+        failed = run("import", *arguments)
+    assert failed.code == 3 and not failed.stdout
+    assert 0 < failed.stderr.index("What can be identified") < failed.stderr.index("No space left")
+    outcome = run("import", *arguments, "--json")
+    assert outcome.document["rows"] == 40
+    assert "What can be identified" in outcome.stderr
+
+
 def test_wild_rows_are_told_and_written(run, tmp_path: Path) -> None:
     x = SEEN.x.copy()
     x[7] += [5.0, 0.0, 0.0]
     outcome = run("import", *exported(tmp_path, replace(SEEN, x=x)))
     assert outcome.code == 0
-    assert "Far off all others, and not counted here: line 11" in outcome.stdout
+    assert "Far off all others, and not counted here: line 11" in outcome.stderr
     assert len(read_measurements(tmp_path / "own.csv").pose) == 40
 
 
