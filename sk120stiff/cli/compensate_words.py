@@ -13,6 +13,7 @@ from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import Model
 from sk120stiff.model.prediction_table import blame_reason
 from sk120stiff.robot import Robot
+from sk120stiff.show.wording import um_or_less
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     Branch,
@@ -175,11 +176,12 @@ def notes(found: Compensation, doubt: dict[str, list[str]]) -> dict[str, list[st
 
 def parts(document: dict[str, object], path: LoadedPath, found: Compensation) -> list[object]:
     """The answer for people: figures, file, and points that are not fully corrected."""
+    after = found.after.distance
     told: list[object] = [
         f"{document['rows']} points. Off its place before: {document['before_um']:.1f} µm rms, "
-        f"{document['before_max_um']:.1f} at most; after: {document['after_um']:.3g} µm rms, "
-        f"{document['after_max_um']:.3g} at most (judged by {document['judged_by']}).",
-        f"Written: {document['out']}",
+        f"{document['before_max_um']:.1f} at most; after: {um_or_less(rms(found.after))} µm "
+        f"rms, {um_or_less(largest(after))} at most (judged by {document['judged_by']}).",
+        f"Written: {document['out']}" + (f" and {document['sheet']}" if document["sheet"] else ""),
     ]
     left = [k for k, reason in enumerate(found.reasons) if reason]
     if left:

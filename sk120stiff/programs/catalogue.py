@@ -32,7 +32,7 @@ def language_of(out: Path, named: str | None) -> Language | None:
     """The language of a file's ending, or the one that was named; None: a CSV file.
 
     Raises:
-        InputError: There is no such language.
+        InputError: There is no such language, or the ending names none.
     """
     choices = {TABLE: None, **LANGUAGES}
     if named is not None:
@@ -43,11 +43,13 @@ def language_of(out: Path, named: str | None) -> Language | None:
                 remedy=f"Languages are: {', '.join(choices)}.",
             )
         return choices[named]
-    endings = {".csv": None, **{each.ending: each for each in LANGUAGES.values()}}
-    ending = out.suffix.lower()
-    return endings[ending] if ending in endings else READERS_AS_LANGUAGE.get(ending)
-
-
-READERS_AS_LANGUAGE = {
-    ending: LANGUAGES["gcode"] for ending, reader in READERS.items() if reader is read_gcode
-}
+    endings = {f".{TABLE}": None, **{each.ending: each for each in LANGUAGES.values()}}
+    gcode = [ending for ending, reader in READERS.items() if reader is read_gcode]
+    endings |= dict.fromkeys(gcode, LANGUAGES["gcode"])
+    if out.suffix.lower() not in endings:
+        raise InputError(
+            f"the ending '{out.suffix}' names no language",
+            where=str(out),
+            remedy=f"Endings are {', '.join(endings)}; or give --to.",
+        )
+    return endings[out.suffix.lower()]

@@ -12,6 +12,11 @@ def um(metres: float) -> str:
     return f"{microns:.0f}" if abs(microns) >= 99.95 else f"{microns:#.3g}"
 
 
+def um_or_less(metres: float) -> str:
+    """The same; below a nanometre it is zero for every purpose."""
+    return "< 0.001" if metres < 1e-9 else um(metres)
+
+
 def percent(share: float) -> str:
     """A share in per cent; small ones with a digit more."""
     value = 100.0 * share

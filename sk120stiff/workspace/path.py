@@ -94,7 +94,7 @@ def read_path(
             else "the path has no points",
             where=str(table.path),
             remedy=f"Give the columns {', '.join(f'{j}[deg]' for j in robot.actuated)}, or x[mm], "
-            "y[mm], z[mm].",
+            "y[mm], z[mm]. The name of a machining program ends in .nc or .apt.",
         )
     count = len(table.lines)
     feed, rapid = np.full(count, np.nan), np.zeros(count, dtype=bool)

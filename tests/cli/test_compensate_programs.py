@@ -284,3 +284,23 @@ def test_bad_options_end_with_two(
     assert found.code == 2, found.stdout
     assert says in found.stderr
     assert not out.exists()
+
+
+@pytest.mark.parametrize("name", ["slot.xyz", "slot"])
+def test_an_ending_that_names_no_language_is_refused(
+    run: Run, slot: Path, tmp_path: Path, name: str
+) -> None:
+    refused = compensated(run, slot, tmp_path / "out" / name)
+    assert refused.code == 2
+    assert "names no language" in refused.error["message"]
+    assert ".jbi" in refused.error["remedy"] and ".csv" in refused.error["remedy"]
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_program_under_another_ending_is_told_what_to_be_called(
+    run: Run, slot: Path, tmp_path: Path
+) -> None:
+    renamed = slot.rename(tmp_path / "slot.txt")
+    refused = run("compensate", "motoman_sk120", str(renamed), "--wrench", WRENCH, "--out",
+                  str(tmp_path / "c.csv"), "--json")  # fmt: skip
+    assert refused.code == 2 and "ends in .nc" in refused.error["remedy"]

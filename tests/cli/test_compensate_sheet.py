@@ -64,6 +64,18 @@ def test_the_sheet_says_what_the_command_says(
     assert "x=1600 mm; y=-200 mm" in text and "elbow up" in text
 
 
+def test_the_terminal_names_the_sheet_and_rounds_as_it_does(
+    run: Run, path: Path, tmp_path: Path
+) -> None:
+    out, sheet = tmp_path / "new.csv", tmp_path / "sheet.html"
+    found = run("compensate", "motoman_sk120", str(path), *PLACE, "--out", str(out), "--sheet",
+                str(sheet))  # fmt: skip
+    assert found.code == 0, found.stderr
+    assert f"Written: {out} and {sheet}" in found.stdout
+    assert "after: < 0.001 µm rms, < 0.001 at most" in found.stdout
+    assert "&lt; 0.001" in visible(sheet.read_text(encoding="utf-8"))
+
+
 def test_points_that_come_back_stand_beside_the_prediction(
     run: Run, fitted: Path, path: Path, tmp_path: Path
 ) -> None:

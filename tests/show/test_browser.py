@@ -11,7 +11,7 @@ from selenium.webdriver.common.keys import Keys
 
 from sk120stiff import load_robot
 from sk120stiff.model import base_model
-from sk120stiff.show import Elastic, Report, Scene, SceneFrame, Section, static_scene
+from sk120stiff.show import Elastic, Items, Report, Scene, SceneFrame, Section, static_scene
 from sk120stiff.show.scene.frame import Request, compute_frame
 from sk120stiff.show.scene.payload import frame_payload
 from sk120stiff.stiffness import POSITIONS
@@ -300,6 +300,14 @@ def test_it_fits_the_window(page: Page, files, name: str, size: tuple[int, int])
     assert box[0] >= min(size[0], 640)
     assert box[1] >= 300
     assert colours(page.pane(f"{name}_{size[0]}")) > 500
+    clean(page)
+
+
+def test_a_checksum_within_a_list_does_not_widen_the_page(page: Page, tmp_path) -> None:
+    words = Items([f"Model: arm.yaml with SHA-256 {'0123456789abcdef' * 4}."])
+    path = Report("Sheet", [Section("Assumed", [words])]).write(tmp_path / "sheet.html")
+    page.open(path.as_uri(), PHONE)
+    assert page.js("return document.documentElement.scrollWidth") <= PHONE[0]
     clean(page)
 
 

@@ -182,3 +182,9 @@ def test_inputs_are_named_by_their_hash(tmp_path) -> None:
 def test_tables_that_do_not_fit_are_refused(make) -> None:
     with pytest.raises(InputError):
         make()
+
+
+def test_thousands_of_micrometres_are_written_out() -> None:
+    table = Table(["line", "before"], [["10", 1117.6], ["7", 40123.0]], "Worst.", digits=3)
+    page = Report("Sheet", [Section("Worst", [table])]).html()
+    assert "1118" in page and "4.01·10⁴" in page

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import layout_of, shaped, sheet_of
+from sk120stiff.measurements.importers.layout import POSITION, Layout, layout_of, shaped, sheet_of
 
+_BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
 _FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
@@ -23,7 +25,7 @@ class Points:
         layout = layout_of(source)
         if layout is not None:
             return Guess(0.4, "its columns are named")
-        if _joints_alone(source):
+        if _joints_alone(source) is not None:
             return Guess(0.05, "its columns are joints")
         count, named, _ = shaped(source)
         if _names(source, count) is None:
@@ -37,7 +39,8 @@ class Points:
             InputError: Positions and joints without headers, which may come in either order.
         """
         layout = layout_of(source)
-        if layout is None and _joints_alone(source):
+        if layout is None and (joints := _joints_alone(source)) is not None:
+            _refuse_some_coordinates(source, joints)
             raise InputError(
                 "this file holds joint values, and no positions",
                 where=str(source.path),
@@ -67,8 +70,36 @@ class Points:
         return sheet_of(source, layout, "a table of readings", why)
 
 
-def _joints_alone(source: Source) -> bool:
-    return source.role == "points" and layout_of(replace(source, role="joints")) is not None
+def _joints_alone(source: Source) -> Layout | None:
+    """The table of joints in a file of points that names no positions."""
+    return layout_of(replace(source, role="joints")) if source.role == "points" else None
+
+
+def _refuse_some_coordinates(source: Source, joints: Layout) -> None:
+    """Headers that name one or two coordinates, or that begin as one does.
+
+    Raises:
+        InputError: There are such.
+    """
+    there = {m[0] for m in joints.meanings if m}
+    if not there & set(POSITION):
+        begun = [h for h in joints.headers if (m := _BEGUN.match(h)) and m[1].lower() not in there]
+        if len(begun) < len(POSITION):
+            return
+        raise InputError(
+            f"the units of {', '.join(begun)} are not known",
+            where=str(source.path),
+            remedy="Known lengths are m, mm, um and in: x[mm]; or leave the unit out and give "
+            "--length.",
+        )
+    missing = [axis for axis in POSITION if axis not in there]
+    raise InputError(
+        f"of x, y, z the columns {', '.join(missing)} are not there"
+        if len(missing) > 1
+        else f"of x, y, z the column {missing[0]} is not there",
+        where=str(source.path),
+        remedy=f"There are {', '.join(joints.headers)}. Name the columns with --columns.",
+    )
 
 
 def _names(source: Source, count: int) -> tuple[str, ...] | None:

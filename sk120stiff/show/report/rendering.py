@@ -21,6 +21,7 @@ from sk120stiff.show.figures.saving import inline_svg
 from sk120stiff.show.report.attempts import failure
 from sk120stiff.show.report.blocks import Block, Picture, SceneFrame, Section, Table
 
+WHOLE = 1e4  # up to here a number without digits after the point is easier read than a power
 _COLOURS = {
     name.lower(): value
     for name, value in vars(palette).items()
@@ -108,6 +109,8 @@ def _cell(value: object, digits: int) -> str:
     if number == 0.0:
         return "0"
     text = f"{number:#.{digits}g}".removesuffix(".")  # 18.0 beside 18.2: all digits are meant
+    if 10**digits <= abs(number) < WHOLE:
+        text = f"{number:.0f}"
     if "e" in text:
         mantissa, exponent = text.split("e")
         text = f"{mantissa.removesuffix('.')}·10{_superscript(int(exponent))}"

@@ -22,7 +22,7 @@ from sk120stiff.show.report import (
     Section,
     Table,
 )
-from sk120stiff.show.wording import counted, um
+from sk120stiff.show.wording import counted, um, um_or_less
 from sk120stiff.workspace import Returned
 
 LISTED = 8  # points in the table of the worst
@@ -100,11 +100,13 @@ class PathSheet:
         )
         if self.std is None:
             said += (
-                f"Corrected, the model sees {_small(_rms(after))} µm; how far off the tool stands "
-                "in truth is not known."
+                f"Corrected, the model sees {um_or_less(_rms(after))} µm; how far off the tool "
+                "stands in truth is not known."
             )
         else:
-            said += f"Corrected, {_small(_rms(after))} µm ± {um(_rms(self.std))} µm are expected."
+            said += (
+                f"Corrected, {um_or_less(_rms(after))} µm ± {um(_rms(self.std))} µm are expected."
+            )
         for run, away in self.read.items():
             said += f" Measured {run} correction: {um(_rms(away))} µm."
         return said
@@ -113,8 +115,8 @@ class PathSheet:
         before, after = (self.off[run] for run in ("before", "after"))
         figures = [
             KeyFigure("before, predicted", um(_rms(before)), "µm", f"at most {um(_most(before))}"),
-            KeyFigure("after, predicted", _small(_rms(after)), "µm",
-                      f"at most {_small(_most(after))}"),
+            KeyFigure("after, predicted", um_or_less(_rms(after)), "µm",
+                      f"at most {um_or_less(_most(after))}"),
             KeyFigure(
                 "± of a prediction", "–" if self.std is None else um(_rms(self.std)), "µm",
                 "one standard distance" if self.std is not None else "unknown, see below",
@@ -132,7 +134,7 @@ class PathSheet:
             Picture(
                 lambda: error_along(length, self.off, self.std, self.read),
                 alt=f"Distance of the loaded tool from its target: {um(_rms(before))} µm before,"
-                f" {_small(_rms(after))} µm after compensation (rms).",
+                f" {um_or_less(_rms(after))} µm after compensation (rms).",
                 caption="How far the loaded tool stands off its target, along the path.",
             ),
             *([Note(" ".join(self.doubt), "caution" if self.std is None else "note")]
@@ -252,8 +254,3 @@ def _rms(values: Array) -> float:
 def _most(values: Array) -> float:
     finite = values[np.isfinite(values)]
     return float(finite.max()) if len(finite) else float("nan")
-
-
-def _small(metres: float) -> str:
-    """Micrometres; below a nanometre it is zero for every purpose."""
-    return "< 0.001" if metres < 1e-9 else um(metres)

@@ -81,6 +81,8 @@ def test_a_row_without_a_position_is_left_out_and_said(tmp_path: Path) -> None:
     ("text", "told", "words"),
     [
         ("shoulder,slide\n1,2\n", {}, ["no positions", "--joints-file"]),
+        ("x,y,shoulder,slide\n1,2,3,4\n", {}, ["the column z is not there", "--columns"]),
+        ("x[ell],y[ell],z[ell],shoulder,slide\n1,2,3,4,5\n", {}, ["units of x[ell]", "--length"]),
         ("a,b\n1,2\n", {}, ["no format", "--columns"]),
         ("x1,z1,q1,q2\n1,2,3,4\n", {}, ["'y1' is missing"]),
         ("x1,y1,z1,x2,y2,z2,q1,q2\n1,2,3,4,5,6,7,8\n", {}, ["markers 1, 2", "--marker"]),
