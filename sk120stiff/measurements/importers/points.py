@@ -39,8 +39,8 @@ class Points:
             InputError: Positions and joints without headers, which may come in either order.
         """
         layout = layout_of(source)
-        if layout is None and (joints := _joints_alone(source)) is not None:
-            _refuse_some_coordinates(source, joints)
+        if layout is None and (alone := _joints_alone(source)) is not None:
+            _refuse_some_coordinates(source, alone)
             raise InputError(
                 "this file holds joint values, and no positions",
                 where=str(source.path),
