@@ -102,7 +102,7 @@ def played(scenes) -> list[list[dict]]:
     """What the page answers to requests at scenes, all by one run of Node."""
     if not shutil.which("node"):
         pytest.skip("node is needed")
-    page = Path(str(files("sk120stiff.show") / "page"))
+    page = Path(str(files("sk120stiff.show.scene") / "page"))
     scripts = "\n".join((page / name).read_text("utf-8") for name in ("algebra.js", "engine.js"))
     lines = [
         json.dumps(
