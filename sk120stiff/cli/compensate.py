@@ -226,6 +226,12 @@ def command(
     chosen = settings_of(settings or [])
     if language is not None:
         language.with_defaults(chosen)
+        if by_joints and not language.joint_moves:
+            raise InputError(
+                f"{language.title} has no moves by joint values",
+                where="--by-joints",
+                remedy="Leave the option out, or name another language in --out or --to.",
+            )
     elif chosen or by_joints:
         raise InputError(
             "a CSV file needs no settings of a language",

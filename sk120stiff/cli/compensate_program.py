@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import warnings
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 from sk120stiff import __version__
 from sk120stiff.arrays import Array
 from sk120stiff.cli.opening import model_file
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import read_bytes, write_atomically
 from sk120stiff.model import Model, typical_parameters
 from sk120stiff.programs import Language
@@ -21,6 +22,8 @@ from sk120stiff.programs.building import build
 from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.robot import Robot, find_robot
 from sk120stiff.workspace import Compensation, LoadedPath
+
+PLACE = 6  # numbers of a place: more joints than these are not determined by it
 
 
 def settings_of(texts: Sequence[str]) -> dict[str, str]:
@@ -88,6 +91,13 @@ def write_program(
         InputError: The language cannot say it.
     """
     refuse_bad_targets(robot, path, found, frame, straight=not by_joints)
+    if robot.n > PLACE and not by_joints:
+        free = (
+            f"Straight moves state the tool's place alone, which this arm of {robot.n} joints can "
+            "hold in many postures: the correction is that of the joint values beside each target"
+        ) + ("; --by-joints moves by those." if language.joint_moves else ".")
+        warnings.warn(free, ToolkitWarning, stacklevel=2)
+        facts = [*facts, free]
     program = build(
         language, out, path, robot, found.a, frame=frame, part=part, feed=feed, rapid=rapid,
         by_joints=by_joints, given=settings, facts=facts,

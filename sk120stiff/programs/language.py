@@ -45,6 +45,7 @@ class Language(ABC):
         width: Longest line of a comment.
         longest_name: Letters of a program's name.
         most_axes: Axes that it can say.
+        joint_moves: Can a move go by joint values?
     """
 
     name: ClassVar[str]
@@ -59,6 +60,7 @@ class Language(ABC):
     width: ClassVar[int] = 100
     longest_name: ClassVar[int] = 32
     most_axes: ClassVar[int] = 12
+    joint_moves: ClassVar[bool] = True
 
     @abstractmethod
     def content(self, program: Program) -> dict[str, object]:

@@ -254,6 +254,8 @@ def test_seven_joints_and_no_spherical_wrist(run: Run, tmp_path: Path) -> None:
         there = robot.placement(np.radians(read.joints))[:, :3, 3]
         plain = " ".join(re.sub(r"[#!']", " ", out.read_text()).split())
         assert "typical of an arm of this size, not measured" in plain
+        loose = "this arm of 7 joints can hold in many postures"
+        assert (loose in plain) == (loose in done.stderr) == (robot.n == 7)
         assert np.abs(there - read.position).max() < 2e-5
     place = ("--frame", "x=450 mm; z=250 mm", "--wrench", "0,0,1 N")
     out = tmp_path / "q.script"
@@ -304,3 +306,11 @@ def test_a_program_under_another_ending_is_told_what_to_be_called(
     refused = run("compensate", "motoman_sk120", str(renamed), "--wrench", WRENCH, "--out",
                   str(tmp_path / "c.csv"), "--json")  # fmt: skip
     assert refused.code == 2 and "ends in .nc" in refused.error["remedy"]
+
+
+def test_joint_moves_that_a_language_does_not_have_are_refused(
+    run: Run, slot: Path, tmp_path: Path
+) -> None:
+    refused = compensated(run, slot, tmp_path / "out.nc", "--by-joints")
+    assert refused.code == 2 and "no moves by joint values" in refused.error["message"]
+    assert not (tmp_path / "out.nc").exists()

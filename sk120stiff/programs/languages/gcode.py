@@ -29,6 +29,7 @@ class GCode(Language):
     speed_digit = 1e-3 / 60e3
     longest_name = 60
     most_axes = 64
+    joint_moves = False
 
     def in_part_frame(self, settings: Mapping[str, str]) -> bool:
         """Always."""
