@@ -105,6 +105,8 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
             ToolkitWarning,
             stacklevel=2,
         )
+    for sentence in read.assumed:
+        warnings.warn(sentence.removesuffix("."), ToolkitWarning, stacklevel=2)
     said = (
         "The tool's orientation is free."
         if tool is None
@@ -118,7 +120,9 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
         return placed(read, part, about, wrench)
 
     free = options.tool_rpy is None
-    return OpenedPath(turned(0.0), part, (*facts, said, arcs), turned if free else None)
+    return OpenedPath(
+        turned(0.0), part, (*facts, *read.assumed, said, arcs), turned if free else None
+    )
 
 
 def with_joints(

@@ -137,7 +137,8 @@ def preview_of(found: Imported, robot: Robot) -> list[object]:
     parts.append(table("Columns", ["column", "is", "unit", "stated in"], shown))
     parts.append(f"{len(draft.pose)} rows at {len(set(draft.pose))} poses.")
     if sheet.skipped:
-        parts.append(f"Left out, {len(sheet.skipped)} rows:")
+        count = len(sheet.skipped)
+        parts.append(f"Left out, {count} {'row' if count == 1 else 'rows'}:")
         by_reason = groupby(sorted(sheet.skipped, key=lambda s: (s[1], s[0])), key=lambda s: s[1])
         for reason, group in by_reason:
             lines = [str(line) for line, _ in group]

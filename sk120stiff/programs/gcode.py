@@ -33,12 +33,21 @@ class _Modes:
 
     motion: int | None = None
     across: int = 2
-    scale: float = 1e-3
+    scale: float | None = None
     absolute: bool = True
     absolute_centres: bool = False
     feed: float = float("nan")
     offset: float | None = None
     given: set[str] = field(default_factory=set)
+
+    def metres(self, course: Course, line: int) -> float:
+        """Metres in the unit that holds; where none was stated that of most controls."""
+        if self.scale is None:
+            self.scale = 1e-3
+            course.assumed = (
+                f"Lengths: millimetres, since no G20 or G21 stands at or before line {line}.",
+            )
+        return self.scale
 
 
 def read_gcode(path: Path, *, chord: float, step: float = np.inf) -> ToolPath:
@@ -93,7 +102,7 @@ def _read_line(course: Course, modes: _Modes, text: str, line: int) -> None:
     if "F" in words:
         if words["F"] <= 0.0:
             raise course.wrong(f"a feed of {words['F']:g} moves nothing", line)
-        modes.feed = words["F"] * modes.scale / 60.0
+        modes.feed = words["F"] * modes.metres(course, line) / 60.0
     if not dwells and set(words) & set("XYZIJKR"):
         _move(course, modes, words, line)
 
@@ -108,6 +117,12 @@ def _words(course: Course, bare: str, line: int) -> tuple[list[float], dict[str,
             raise course.wrong(f"{bare[at:].strip()[:20]!r} is no word of G-code", line)
         letter, value = match[1].upper(), float(match[2].replace(" ", ""))
         at = match.end()
+        if letter in "NO" and set(words) - {*"NO"} | set(codes):
+            raise course.wrong(
+                f"the number {letter}{match[2]} stands behind other words",
+                line,
+                "The letter O for the digit 0?" if letter == "O" else None,
+            )
         if letter == "G":
             codes.append(value)
         elif letter == "M":
@@ -158,7 +173,7 @@ def _move(course: Course, modes: _Modes, words: dict[str, float], line: int) -> 
     end = course.here.copy()
     for k, letter in enumerate("XYZ"):
         if letter in words:
-            value = words[letter] * modes.scale
+            value = words[letter] * modes.metres(course, line)
             end[k] = value if modes.absolute else end[k] + value
             if np.isnan(end[k]):
                 raise course.wrong(
@@ -192,7 +207,7 @@ def _centre(
     normal: Array,
     line: int,
 ) -> Array:
-    across, start = modes.across, course.here
+    across, start, scale = modes.across, course.here, modes.metres(course, line)
     offsets = [letter for letter in "IJK" if letter in words]
     if "R" not in words:
         if not offsets:
@@ -202,7 +217,7 @@ def _centre(
         centre = start.copy()
         for k, letter in enumerate("IJK"):
             if k != across:
-                value = words.get(letter, 0.0) * modes.scale
+                value = words.get(letter, 0.0) * scale
                 if modes.absolute_centres:
                     if letter not in words:
                         raise course.wrong(f"G90.1 needs the centre's {letter} too", line)
@@ -212,7 +227,7 @@ def _centre(
         return centre
     if offsets:
         raise course.wrong("the arc has both a centre and a radius", line)
-    radius = words["R"] * modes.scale
+    radius = words["R"] * scale
     way = end - start
     way[across] = 0.0
     length = float(np.linalg.norm(way))
@@ -224,7 +239,7 @@ def _centre(
     if height < -1e-6 * radius**2:
         raise course.wrong(
             f"an arc of radius {abs(words['R']):g} does not span its ends, "
-            f"{length / modes.scale:.6g} apart",
+            f"{length / scale:.6g} apart",
             line,
         )
     left = np.cross(normal, way / length)  # towards the centre of an arc of less than half a turn

@@ -32,6 +32,7 @@ class ToolPath:
         rapid: (N,) is the move to the point a rapid one?
         lines: (N,) line of the file.
         left_out: Words that do not move the tool and are not carried over, with their first line.
+        assumed: What the file does not say, and is taken for it: sentences.
     """
 
     source: Path
@@ -41,6 +42,7 @@ class ToolPath:
     rapid: Mask
     lines: Index
     left_out: dict[str, int]
+    assumed: tuple[str, ...] = ()
 
     @property
     def count(self) -> int:
@@ -69,6 +71,7 @@ class Course:
     rapid: list[bool] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)
     left_out: dict[str, int] = field(default_factory=dict)
+    assumed: tuple[str, ...] = ()
 
     def leave_out(self, word: str, line: int) -> None:
         """Remember a word that is not carried over."""
@@ -176,4 +179,5 @@ class Course:
             rapid=np.array(self.rapid, dtype=bool),
             lines=np.array(self.lines, dtype=np.intp),
             left_out=self.left_out,
+            assumed=self.assumed,
         )

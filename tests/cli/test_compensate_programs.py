@@ -256,6 +256,7 @@ def test_seven_joints_and_no_spherical_wrist(run: Run, tmp_path: Path) -> None:
         assert "typical of an arm of this size, not measured" in plain
         loose = "this arm of 7 joints can hold in many postures"
         assert (loose in plain) == (loose in done.stderr) == (robot.n == 7)
+        assert "Lengths: millimetres" in plain and "Lengths: millimetres" in done.stderr
         assert np.abs(there - read.position).max() < 2e-5
     place = ("--frame", "x=450 mm; z=250 mm", "--wrench", "0,0,1 N")
     out = tmp_path / "q.script"

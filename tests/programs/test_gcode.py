@@ -161,3 +161,15 @@ def test_an_endless_arc_is_refused_before_it_is_made(tmp_path: Path) -> None:
 def test_a_step_of_nothing_is_refused_before_it_is_made(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="line 2: the path has more than 500000 points"):
         read(tmp_path, "G0 X0 Y0 Z0\nG1 X100 F9\n", step=1e-18)
+
+
+def test_a_unit_that_is_not_stated_is_told(tmp_path: Path) -> None:
+    assert read(tmp_path, "G90\nG21 G1 X1 Y0 Z0 F60\nX2\n").assumed == ()
+    (told,) = read(tmp_path, "G90\nG1 X1 Y0 Z0\nX2\nG21\n").assumed
+    assert "millimetres" in told and "line 2" in told
+
+
+@pytest.mark.parametrize("line", ["G1 X1O0", "X1 N3", "G1 O7"])
+def test_a_letter_within_a_number_does_not_shorten_a_move(tmp_path: Path, line: str) -> None:
+    with pytest.raises(InputError, match=r"line 2: .* stands behind other words"):
+        read(tmp_path, f"N1 G21 G90 G1 X0 Y0 Z0\n{line}\n")
