@@ -120,9 +120,8 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
         return placed(read, part, about, wrench)
 
     free = options.tool_rpy is None
-    return OpenedPath(
-        turned(0.0), part, (*facts, *read.assumed, said, arcs), turned if free else None
-    )
+    facts = (*facts, *read.assumed, said, arcs)
+    return OpenedPath(turned(0.0), part, facts, turned if free else None)
 
 
 def with_joints(

@@ -97,7 +97,8 @@ def warn_of_branch(branch: Branch, path: LoadedPath) -> None:
     for k in branch.jumps[:1]:
         more = f" (and {len(branch.jumps) - 1} more pairs)" if len(branch.jumps) > 1 else ""
         warnings.warn(
-            f"between lines {lines[k]} and {lines[k + 1]}{more} a joint moves by more than 30 deg (or 0.5 m): the arm changes its posture there",
+            f"between lines {lines[k]} and {lines[k + 1]}{more} a joint moves by more "
+            "than 30 deg (or 0.5 m): the arm changes its posture there",
             ToolkitWarning,
             stacklevel=2,
         )

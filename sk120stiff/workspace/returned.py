@@ -24,6 +24,7 @@ from sk120stiff.measurements.table import read_table
 from sk120stiff.workspace.path import LoadedPath
 
 RUNS = ("before", "after")
+FAR = 0.1  # m: no arm yields as much at work; another unit or other axes do
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,7 @@ def read_returned(
 
     Raises:
         InputError: The file cannot be read, names points or runs that do not exist, or names one
-            twice.
+            twice; or a point is nowhere near its target.
     """
     table = read_table(Path(file))
     has = set(table.headers)
@@ -124,5 +125,14 @@ def read_returned(
                 f"{count} rows of the run {run!r} for {path.count} points",
                 where=str(table.path),
                 remedy="Add a column point with the label, or number, of each point.",
+            )
+    for run, away in found.items():
+        distance = np.nan_to_num(np.linalg.norm(away, axis=1))
+        worst = int(distance.argmax())
+        if distance[worst] > FAR:
+            raise InputError(
+                f"in the run {run!r} the tool would stand {distance[worst]:.3g} m from its target",
+                where=f"{table.path}, point {labels[worst]}",
+                remedy="Check the unit; positions are in the axes of the path (--frame).",
             )
     return tuple(Returned(run, away) for run, away in found.items() if given[run])

@@ -116,6 +116,24 @@ def test_points_that_come_back_stand_beside_the_prediction(
     assert found["off_prediction_um"] < 2.0
 
 
+@pytest.mark.parametrize(
+    "rows",
+    [
+        "x[m],y[m],z[m]\n0,0,0\n100,0,0\n100,80,0\n",
+        "x[mm],y[mm],z[mm]\n1600,-200,-100\n1600,-100,-100\n1520,-100,-100\n",
+    ],
+)
+def test_points_in_another_unit_or_other_axes_are_refused(
+    run: Run, path: Path, tmp_path: Path, rows: str
+) -> None:
+    back = tmp_path / "back.csv"
+    back.write_text(rows)
+    refused = run("compensate", "motoman_sk120", str(path), *PLACE, "--out",
+                  str(tmp_path / "new.csv"), "--measured", str(back), "--json")  # fmt: skip
+    assert refused.code == 2 and "from its target" in refused.error["message"]
+    assert not (tmp_path / "new.csv").exists()
+
+
 def joints_of(out: Path) -> np.ndarray:
     head, *rows = [line.split(",") for line in out.read_text().splitlines()]
     columns = [k for k, name in enumerate(head) if name.startswith("joint_")]
