@@ -120,8 +120,8 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
         return placed(read, part, about, wrench)
 
     free = options.tool_rpy is None
-    facts = (*facts, *read.assumed, said, arcs)
-    return OpenedPath(turned(0.0), part, facts, turned if free else None)
+    assumed = (*facts, *read.assumed, said, arcs)
+    return OpenedPath(turned(0.0), part, assumed, turned if free else None)
 
 
 def with_joints(
