@@ -141,15 +141,12 @@ def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]
         for s in answer.steps
     ]
     columns = ["model", "fitted", "held out", "mean distance"]
-    shown.append(table("Gap [µm], rms per axis and mean distance held out", columns, rows))
+    unit = answer.final.problem.unit
+    shown.append(table(f"Gap [{unit}], rms per axis and mean distance held out", columns, rows))
     if answer.families:
         told = ", ".join(f"{name} {1e6 * share:.3g}" for name, share in answer.families.items())
-        shown.append(f"What each takes off beside the others [µm]: {told}.")
-    if answer.springs is not None:
-        shown.append(
-            f"Springs in all joints under the arm's weight would take {100 * answer.springs:.2g} % "
-            "more off the gap at poses left out: they are not named."
-        )
+        shown.append(f"What each takes off beside the others [{unit}]: {told}.")
+    shown += answer.weight()
     shown += findings(answer.final, readings)
     shown += answer.dropped
     shown += answer.left_over()

@@ -107,8 +107,8 @@ class Fit:
 
     @property
     def rms(self) -> float:
-        """Root mean square of the gap over all readings and axes [m]."""
-        return float(np.sqrt(np.mean(self.gap**2)))
+        """Root mean square of the gap over all readings and axes [m]; NaN without a length."""
+        return float(np.sqrt(np.mean(self.gap**2))) if self.gap.size else float("nan")
 
     @cached_property
     def small(self) -> tuple[Array, Array]:

@@ -37,6 +37,7 @@ class Placing:
     Attributes:
         shift, turn: (3,) [m] and (3,) rotation vector of the base frame as the instrument sees it.
         marker: (3,) how far markers are off their stated place, tool axes [m].
+        apart: (G, 3) how much farther than the first each group of `Absolute.groups` is off [m].
         rms: Distance that is left, rows that are wild set aside [m].
         wild: (N,) rows far off all others.
         distance: (N,) what is left at each row [m]; NaN where no whole position was read.
@@ -46,6 +47,7 @@ class Placing:
     shift: Array
     turn: Array
     marker: Array
+    apart: Array
     rms: float
     wild: Mask
     distance: Array
@@ -68,9 +70,17 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         return None
     free = said.fit_point
     names = np.array(said.markers)[whole]
-    cloud = _Cloud(robot, readings.joints[whole], x[whole], said.point[whole], names)
+    labels = list(dict.fromkeys(said.groups or ()))
+    one = np.zeros(len(whole), dtype=np.intp)
+    cloud = _Cloud(robot, readings.joints[whole], x[whole], said.point[whole], names, one)
     found, kept = cloud.placed(fit_marker=True)
     spread = float(np.sqrt(((x[whole] - x[whole].mean(axis=0)) ** 2).sum(axis=1).mean()))
+    if free and len(labels) > 1 and found.rms > SUSPECT * spread:
+        # No one shift of all markers will do: exchanged, or each somewhere of its own.
+        _refuse_exchange(cloud, found, readings)
+        own = np.array([labels.index(said.groups[k]) for k in whole]) if said.groups else one
+        cloud = replace(cloud, group=own)
+        found, kept = cloud.placed(fit_marker=True)
     if found.rms > SUSPECT * spread:
         _refuse_slips(cloud, found, readings)
     if found.rms > FITS * spread:
@@ -96,6 +106,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         shift=found.shift,
         turn=rotation_vector(found.turn),
         marker=found.marker if free else np.zeros(3),
+        apart=found.apart,
         rms=found.rms,
         wild=wild,
         distance=distance,
@@ -105,13 +116,16 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
 
 @dataclass(frozen=True, eq=False)
 class _Cloud:
-    """Positions (N, 3) [m], joint values (N, n), stated markers (N, 3) and their names (N,)."""
+    """Positions (N, 3) [m], joint values (N, n), stated markers (N, 3), their names (N,), and which
+    of them have a place of their own (N,).
+    """
 
     robot: Robot
     a: Array
     x: Array
     point: Array
     marker: NDArray[np.str_]
+    group: Index
 
     def placed(self, *, fit_marker: bool) -> tuple[Registration, Mask]:
         """The best placing, and the rows that it rests on (N,)."""
@@ -120,8 +134,9 @@ class _Cloud:
         kept = np.ones(len(self.x), dtype=bool)
         for _ in range(ROUNDS):
             found = register(
-                self.x[kept], flange[kept], rotation[kept], self.point[kept], fit_marker=fit_marker
-            )
+                self.x[kept], flange[kept], rotation[kept], self.point[kept],
+                fit_marker=fit_marker, group=self.group[kept],
+            )  # fmt: skip
             if found is None:
                 raise InputError("fewer than three positions", remedy="Measure more poses.")
             left = self.left(found)
@@ -136,7 +151,7 @@ class _Cloud:
         """(N,) distance of every position from where the placed robot has the marker [m]."""
         screws = self.robot.screws(self.a)
         at = screws.frame_position + np.einsum(
-            "nij,nj->ni", screws.rotation, self.point + found.marker
+            "nij,nj->ni", screws.rotation, self.point + found.marker + found.apart[self.group]
         )
         return np.asarray(np.linalg.norm(self.x - at @ found.turn.T - found.shift, axis=1))
 
@@ -144,8 +159,9 @@ class _Cloud:
         """A part of the rows, spread over all."""
         pick = np.unique(np.linspace(0, len(self.x) - 1, LOOKED_AT).astype(int))
         return replace(
-            self, a=self.a[pick], x=self.x[pick], point=self.point[pick], marker=self.marker[pick]
-        )
+            self, a=self.a[pick], x=self.x[pick], point=self.point[pick], marker=self.marker[pick],
+            group=self.group[pick],
+        )  # fmt: skip
 
 
 def _refuse_slips(cloud: _Cloud, found: Registration, readings: Measurements) -> None:
@@ -167,6 +183,17 @@ def _refuse_slips(cloud: _Cloud, found: Registration, readings: Measurements) ->
             where=where,
             remedy=f"Check the controller's convention. If it is so, write into the YAML file: "
             f"joints: {{{mapping}}}",
+        )
+
+
+def _refuse_exchange(cloud: _Cloud, found: Registration, readings: Measurements) -> None:
+    """Refuse names of markers whose exchange explains what one shift of all leaves."""
+    tried = min(_markers(cloud.some()), key=lambda item: item[0], default=None)
+    if tried is not None and tried[0] < BETTER * found.rms:
+        _, rms, what, remedy = tried
+        where = str(readings.path or "measurements")
+        raise InputError(
+            f"{_left(found)}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
         )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.robot.rotations import crossed
 
 _TOLD = 1e-6  # the least singular value, of columns of length one, that determines a frame
@@ -31,6 +31,7 @@ class Registration:
         covariance: (6, 6) of a small turn of the base about its origin, axes of the instrument
             [rad], and of `shift` [m], as far as what remains is independent noise; infinite where
             the positions do not tell the frame.
+        apart: (G, 3) how much farther than the first each marker is off its stated place [m].
     """
 
     rms: float
@@ -43,6 +44,7 @@ class Registration:
     shift: Array
     distance: Array
     covariance: Array
+    apart: Array
 
     @property
     def std(self) -> Array:
@@ -61,6 +63,7 @@ def register(
     point: Array,
     *,
     fit_marker: bool = True,
+    group: Index | None = None,
 ) -> Registration | None:
     """Fit x = R (p + Q m) + t to positions: the tracker's frame R, t and the marker m.
 
@@ -73,6 +76,8 @@ def register(
         point: (3,) where the marker is said to be in the tool frame [m]; the start of the fit. Also
             (P, 3), where it differs from pose to pose: then what is fitted is a common shift of it.
         fit_marker: False leaves the marker where it is said to be.
+        group: (P,) number of the marker that was read, from 0 on, where several have places of
+            their own; None: one.
 
     Returns:
         None with fewer than three poses: two positions fit any robot nearly.
@@ -81,27 +86,32 @@ def register(
     if count < 3:
         return None
     stated = flange + np.einsum("pij,pj->pi", rotation, np.broadcast_to(point, flange.shape))
-    marker = np.zeros(3)
-    fit_marker = fit_marker and count >= MARKER_POSES
+    group = np.zeros(count, dtype=np.intp) if group is None else group
+    marker = np.zeros((int(group.max()) + 1, 3))
+    fit_marker = fit_marker and count >= MARKER_POSES + len(marker) - 1
     turn, shift = _kabsch(stated, measured)
 
     def columns() -> Array:
-        """(3P, 9) derivative by turn, shift and marker."""
-        at = (stated + rotation @ marker) @ turn.T
+        """(3P, 6 + 3 G) derivative by turn, shift and the G markers."""
         eye = np.tile(np.eye(3), (count, 1, 1))
-        return np.concatenate([-crossed(at), eye, turn @ rotation], axis=2).reshape(-1, 9)
+        own = np.einsum("pij,pg->pigj", turn @ rotation, np.eye(len(marker))[group])
+        parts = [-crossed(reached() @ turn.T), eye, own.reshape(count, 3, -1)]
+        return np.concatenate(parts, axis=2).reshape(3 * count, -1)
+
+    def reached() -> Array:
+        return stated + np.einsum("pij,pj->pi", rotation, marker[group])
 
     for _ in range(_STEPS if fit_marker else 0):
-        left = measured - (stated + rotation @ marker) @ turn.T - shift
+        left = measured - reached() @ turn.T - shift
         step = np.linalg.lstsq(columns(), left.ravel(), rcond=1e-9)[0]
-        marker = marker + step[6:]
+        marker = marker + step[6:].reshape(-1, 3)
         # The best turn and shift for that marker: no step of theirs can then lead astray.
-        turn, shift = _kabsch(stated + rotation @ marker, measured)
+        turn, shift = _kabsch(reached(), measured)
         if np.abs(step[6:]).max() < 1e-10:
             break
-    left = measured - (stated + rotation @ marker) @ turn.T - shift
+    left = measured - reached() @ turn.T - shift
     distance = np.linalg.norm(left, axis=1)
-    spare = 3 * count - (9 if fit_marker else 6)
+    spare = 3 * count - 6 - (marker.size if fit_marker else 0)
     rms = float(np.sqrt((distance**2).sum() * 3.0 / spare))
     worst = int(np.argmax(distance))
     return Registration(
@@ -109,12 +119,13 @@ def register(
         float(distance[worst]),
         worst,
         count,
-        marker if point.ndim == 2 else point + marker,
+        marker[0] if point.ndim == 2 else point + marker[0],
         fit_marker,
         turn,
         shift,
         distance,
-        _covariance(columns()[:, : 9 if fit_marker else 6], rms**2 / 3.0),
+        _covariance(columns()[:, : None if fit_marker else 6], rms**2 / 3.0),
+        marker - marker[0],
     )
 
 

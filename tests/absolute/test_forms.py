@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from scipy.spatial.transform import Rotation
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
+from sk120stiff.identify.absolute.words import gap_sentence, known_calibration
 from tests.absolute.arm import NAMES, TURN, Arm, Array, G, errors, poses, tracked, write
 
 SIGMA = 2e-5
@@ -245,3 +247,49 @@ def test_inclinations_that_tell_nothing_are_refused(tmp_path: Path) -> None:
     path = write(tmp_path, A, x, FIT + "gravity: 0\n", more=HEADER, cells=["10,0,0,1"] * len(A))
     with pytest.raises(InputError, match="against gravity"):
         calibrated(path)
+
+
+def test_rows_that_state_their_own_uncertainty(tmp_path: Path) -> None:
+    sizes = RNG.choice([1e-5, 3e-5], A.shape[:1] + (3,))
+    x = tracked(errors(1).stands(A)[0]) + sizes * RNG.normal(size=sizes.shape)
+    path = write(tmp_path, A, x, FIT, more=",sx[mm],sy[mm],sz[mm]", cells=rows(1e3 * sizes))
+    found = calibrated(path)
+    agrees(found)
+    size = float(np.sqrt(np.mean(sizes**2)))
+    assert found.problem.noise.sigma == pytest.approx(size)
+    known = known_calibration(found).uncertainty
+    assert known is not None and known.noise == pytest.approx(size)
+
+
+def test_angles_alone_have_their_own_unit(tmp_path: Path) -> None:
+    arm, level = errors(1), np.tile([0.0, 1.0, 0.0], (len(A), 1))
+    up = (arm.stands(A)[1] @ [0.0, 1.0, 0.0])[:, 2]
+    read = np.degrees(np.arcsin(up) + SIGMA * RNG.normal(size=len(A)))
+    flat = np.abs(read) < 80.0
+    cells = rows(np.column_stack([read, level])[flat])
+    nothing = np.full((int(flat.sum()), 3), np.nan)
+    settings = "noise: {rotation: 20, rotation_unit: urad}\n"
+    more = ",inc[deg],vx,vy,vz"
+    path = write(tmp_path, A[flat], nothing, settings, more=more, cells=cells)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        said = gap_sentence(calibrated(path))
+    assert "µrad rms of angles" in said and "nan" not in said
+
+
+def test_markers_of_which_no_place_is_known(tmp_path: Path) -> None:
+    places = {"A": [0.05, -0.08, 0.12], "B": [-0.06, 0.2, 0.1], "C": [0.3, 0.03, -0.1]}
+    names = RNG.choice(list(places), len(A))
+    x = np.array([_with(marker=places[n]).stands(A[k : k + 1])[0][0] for k, n in enumerate(names)])
+    x = noisy(tracked(x))
+    found = calibrated(write(tmp_path, A, x, FIT + NOISE, more=",marker", cells=list(names)))
+    agrees(found, 0.06)
+    first = dict.fromkeys(names)
+    for name in list(first)[1:]:
+        shift = np.subtract(places[name], places[next(iter(first))])
+        for axis, true in zip("xyz", shift, strict=True):
+            p = found.fit.model.parameter(f"marker_shift:tool.{name}.{axis}")
+            assert abs(p.value - true) < 5e-4  # the last frame's own turn is counted in it
+    radians = write(tmp_path, np.radians(A), x, FIT + NOISE, more=",marker", cells=list(names))
+    with pytest.raises(InputError, match="radians, not degrees"):
+        calibrated(radians)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Mechanism, Robot, VirtualJoint, load_robot
@@ -31,8 +34,6 @@ def values_of(robot: Robot, pose: np.ndarray) -> dict[str, float]:
 
 
 def free(tree: UrdfTree) -> UrdfTree:
-    from dataclasses import replace
-
     tree.joints = {name: replace(joint, mimic=None) for name, joint in tree.joints.items()}
     tree.by_child = {joint.child: joint for joint in tree.joints.values()}
     return tree
@@ -150,6 +151,23 @@ def test_virtual_joints_move_what_lies_beyond_them():
         )
     with pytest.raises(ValueError, match="once"):
         soft.with_virtual_joints([turn])
+
+
+def test_a_link_weighs_where_it_did_behind_joints_of_a_turned_frame():
+    """Several joints at a link's origin, in the axes of the next joint, as errors of its frame."""
+    rng = np.random.default_rng(9)
+    bare = CASES[0][0].mechanism().chain
+    chain = replace(bare, masses=rng.uniform(1, 9, 6), centres=rng.normal(size=(6, 3)))
+    place = np.eye(4)
+    place[:3, :3] = Rotation.from_rotvec([1.4, -0.3, 0.5]).as_matrix()
+    q = rng.uniform(-1, 1, 6)
+    before = chain.sweep(q)
+    axes = [VirtualJoint(f"v{k}", 2, place, np.eye(3)[k]) for k in range(3)]
+    wide = chain.with_virtual_joints(axes, 6)
+    after = wide.sweep(np.concatenate([q, np.zeros(3)])[wide.coordinates])
+    assert before.centres is not None and after.centres is not None
+    moments = wide.masses @ after.centres
+    assert np.allclose(moments, chain.masses @ before.centres, atol=1e-12)
 
 
 def test_a_mechanism_needs_no_robot():

@@ -15,6 +15,7 @@ USUAL = 2.0  # logarithm of odds of what every arm has: frames a little off, joi
 RIVAL = 3.0  # loss of evidence at which another cause explains as much
 SHARE = 0.003  # of the held-out gap that a cause must take off to be named on top of others
 SURE = 2.5  # standard errors of the held-out gain over poses
+LARGE = 0.1  # of that gap: what takes off so much is judged when all others stand beside it
 MOST = 40
 
 
@@ -70,7 +71,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
             break
         seen.add(frozenset(chosen))
         gained = gain(linear, chosen, best) if best in chosen else None
-        if gained is not None and not _confirmed(gained, linear):
+        if gained is not None and gained.share < LARGE and not _confirmed(gained, linear):
             dropped[best] = (
                 f"{linear.candidates[best].id} fits, but at poses left out it takes off no more "
                 f"than {100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard errors)."

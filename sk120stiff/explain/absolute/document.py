@@ -32,6 +32,8 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
     final = answer.final
     stated = final.problem.noise.sigma if final.fit.sigma_known else None
     reasons = unseen(final)
+    lengths = bool(len(final.problem.lengths))
+    um = _um if lengths else _none
     return {
         "schema": SCHEMA,
         "verdict": answer.verdict,
@@ -42,7 +44,7 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
             if p.free
         ],
         "gap": {
-            "unit": "um",
+            "unit": "um" if lengths else "urad",
             "noise_floor": None if stated is None else stated * 1e6,
             "p": answer.chance,
             "steps": [
@@ -56,12 +58,12 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
             ],
         },
         "families": [
-            {"name": name, "share_um": share * 1e6} for name, share in answer.families.items()
+            {"name": name, "share_um": um(share)} for name, share in answer.families.items()
         ],
         "springs_share": answer.springs,
         "remainder": {
-            "rms_um": None if answer.remainder is None else _um(answer.remainder[0]),
-            "interval_95": [_um(end) for end in (answer.remainder or (None,) * 3)[1:]],
+            "rms_um": None if answer.remainder is None else um(answer.remainder[0]),
+            "interval_95": [um(end) for end in (answer.remainder or (None,) * 3)[1:]],
             "p": answer.chance,
             "significant": bool(answer.chance is not None and answer.chance < 0.01),
             "where": list(answer.where),
@@ -81,7 +83,7 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
         "noise": {
             "model": gap_sentence(final),
             "source": "stated" if stated is not None else "unknown",
-            "sigma_um": _um(stated),
+            "sigma_um": um(stated),
             "set_aside": [
                 {"pose": readings.pose[row], "line": int(readings.line[row])}
                 for row in np.flatnonzero(final.wild)
@@ -141,6 +143,10 @@ def _next_csv(following: NextPoses) -> str:
     return csv_text(columns.items())
 
 
+def _none(_radians: float | None) -> None:
+    """What is no length has no size in µm."""
+
+
 def _um(metres: float | None) -> float | None:
     return None if metres is None or not np.isfinite(metres) else metres * 1e6
 
@@ -158,7 +164,7 @@ def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[
         "alternatives": list(item.alternatives),
         "exact_aliases": [],
         "probability": min(item.probability, SURE),
-        "share_um": _um(share),
+        "share_um": _um(share) if len(problem.lengths) else None,
         "parameters": [_parameter(p, reasons, problem.reach(p)) for p in own],
         "sentence": item.effect.sentence(),
         "equation": item.effect.equation,

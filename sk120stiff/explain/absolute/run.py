@@ -102,12 +102,23 @@ class Explained:
     probabilities: dict[str, float]
     following: NextPoses | None
 
+    def weight(self) -> tuple[str, ...]:
+        """What the arm's weight would explain where no spring is named, in a sentence."""
+        if self.springs is None:
+            return ()
+        more = f"{100 * self.springs:.2g} % more" if self.springs > 0.0 else "nothing more"
+        return (
+            f"Springs in all joints under the arm's weight would take {more} off the gap at poses "
+            "left out: they are not named.",
+        )
+
     def left_over(self) -> tuple[str, ...]:
         """What is left beyond the stated noise and where it lives, in sentences."""
         if self.remainder is None:
             return self.where
         rms, low, high = (1e6 * size for size in self.remainder)
-        told = f"Left beyond the stated noise are {rms:.3g} µm rms per axis"
+        unit = self.final.problem.unit
+        told = f"Left beyond the stated noise are {rms:.3g} {unit} rms per axis"
         return (f"{told} (95 %: {low:.3g} to {high:.3g}).", *self.where)
 
 
@@ -161,7 +172,6 @@ def explain_positions(
     noise = linear.noise(found.order)
     named = tuple(_named(linear, found, e) for e in found.order)
     gap = linear.gap(found.order, noise, held_out=True)
-    sigma = seen.problem.of_channels.sigma
     remainder = chance = None
     if final.fit.sigma_known and final.fit.misfit is not None:
         chance = final.fit.misfit[2]
@@ -178,13 +188,13 @@ def explain_positions(
         final=final,
         linear=linear,
         steps=_steps(linear, found, base, seen),
-        families=_families(linear, found, sigma),
+        families=_families(linear, found, seen),
         springs=_springs(linear, found),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
         remainder=remainder,
         chance=chance,
-        where=_where(linear, gap * sigma, seen, readings),
+        where=_where(linear, gap, seen, readings),
         smallest=detectable(linear, found),
         probabilities=probabilities(linear, found),
         following=None if pair is None else next_poses(final, *pair, seed=wish.seed),
@@ -226,7 +236,7 @@ def _steps(
         fitted = linear.gap(chosen, noise, held_out=False)
         held = linear.gap(chosen, noise, held_out=True)
         distance = lengths(held, linear, sigma, whole)
-        inside = seen.problem.lengths
+        inside = seen.problem.counted
         steps.append(
             GapStep(
                 label,
@@ -238,16 +248,17 @@ def _steps(
     return tuple(steps)
 
 
-def _families(linear: Linear, found: Chosen, sigma: Array) -> dict[str, float]:
+def _families(linear: Linear, found: Chosen, seen: Calibration) -> dict[str, float]:
+    sigma, counted = seen.problem.of_channels.sigma, seen.problem.counted
     groups: dict[str, list[int]] = {}
     for e in found.order:
         groups.setdefault(family(linear.candidates[e]), []).append(e)
     noise = linear.noise(found.order)
-    left = _rms(linear.gap(found.order, noise, held_out=True) * sigma)
+    left = _rms((linear.gap(found.order, noise, held_out=True) * sigma)[counted])
     out = {}
     for name, members in groups.items():
         rest = tuple(e for e in found.order if e not in members)
-        out[name] = _rms(linear.gap(rest, noise, held_out=True) * sigma) - left
+        out[name] = _rms((linear.gap(rest, noise, held_out=True) * sigma)[counted]) - left
     return out
 
 
@@ -274,9 +285,11 @@ def _where(
 ) -> tuple[str, ...]:
     """Rows with the largest gaps left, and joints whose angle it goes with most."""
     rows = np.flatnonzero(readings.use & ~seen.wild)
-    size = np.sqrt(np.bincount(linear.row, gap**2, minlength=len(rows)))
+    counted, unit = seen.problem.counted, seen.problem.unit
+    square = (gap * seen.problem.of_channels.sigma)[counted] ** 2
+    size = np.sqrt(np.bincount(linear.row[counted], square, minlength=len(rows)))
     worst = np.argsort(-size)[:LARGEST]
-    places = ", ".join(f"{readings.pose[rows[k]]} ({1e6 * size[k]:.0f} µm)" for k in worst)
+    places = ", ".join(f"{readings.pose[rows[k]]} ({1e6 * size[k]:.0f} {unit})" for k in worst)
     said = [f"The largest gaps left at poses left out: {places}."]
     a = readings.joints[rows]
     strength = {}

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import stats
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
@@ -26,8 +27,7 @@ START = {  # m or rad
 }  # fmt: skip
 SAME = 0.2  # change of the logarithm of a noise that is none
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
-FAR = 8.0  # standard sizes of a row beyond which it is wild
-NORMAL = 1.538  # median length of three independent standard normal numbers
+FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is wild
 REGISTERED = "registered"
 
 
@@ -198,7 +198,8 @@ def started(
         marker = np.zeros(3) if placed is None else placed.marker
         model = joined(model, "tool_offset", robot.tool_frame, marker)
         if said.groups is not None:
-            model = joined(model, "marker_shift", robot.tool_frame)
+            apart = None if placed is None or len(placed.apart) == 1 else placed.apart[1:].ravel()
+            model = joined(model, "marker_shift", robot.tool_frame, apart)
     elif said.series is not None and len(set(said.series)) > 1:
         model = joined(model, "marker_shift", robot.tool_frame)
     if said.fit_payload:
@@ -272,9 +273,10 @@ def _poses(found: Fit) -> PoseProblem:
 def _problem(model: Model, used: Measurements, sigma: dict[str, float]) -> PoseProblem:
     channels = None if used.absolute is None else used.absolute.channels
     stated = channels is not None and all(channels.stated(kind) for kind in channels.present)
-    size = sigma["position"] if channels is None else channels.sigma.get("position")
-    noise = NoiseModel(size or sigma["position"], zero="separate", freedom=np.inf if stated else 0)
-    return PoseProblem(model, used, noise, sigma=sigma)
+    noise = NoiseModel(START["position"], zero="separate", freedom=np.inf if stated else 0)
+    problem = PoseProblem(model, used, noise, sigma=sigma)
+    own = problem.of_channels.sigma[problem.counted]  # rows may state their own
+    return replace(problem, noise=replace(noise, sigma=float(np.sqrt(np.mean(own**2)))))
 
 
 def _rigid_columns(problem: PoseProblem, start: Model) -> Array:
@@ -321,8 +323,10 @@ def _wild(found: Fit, readings: Measurements, wild: Mask) -> Mask:
     used = np.flatnonzero(readings.use & ~wild)
     square = np.bincount(problem.rows, found.residual**2, minlength=len(used))
     count = np.bincount(problem.rows, minlength=len(used))
-    length = np.sqrt(square * 3.0 / np.maximum(count, 1))
-    size = float(np.median(length[count > 0])) / NORMAL
+    count = np.maximum(count, 1)
+    length = np.sqrt(square / count)
+    usual = np.sqrt(stats.chi2.ppf(0.5, count) / count)  # the median of so many normal numbers
+    size = float(np.median((length / usual)[square > 0.0])) if square.any() else 0.0
     far = length > FAR * size
     out = wild.copy()
     if size > 0.0 and far.mean() < 0.1:
@@ -356,5 +360,7 @@ def refined(
         model = model + effect
     if near is not None:
         model = with_values_of(model, near.fit.model)
-    found, frozen, wild = _fitted(model, readings, base.wild)
+    # What lay far off the base model may agree with this one.
+    first = np.zeros_like(base.wild) if base.placed is None else base.placed.wild
+    found, frozen, wild = _fitted(model, readings, first)
     return replace(base, fit=found, frozen=frozen, wild=wild)

@@ -77,6 +77,16 @@ class PoseProblem(Problem):
         picked = [np.arange(part.start, part.stop) for kind, part in parts if kind not in ANGLES]
         return np.concatenate([*picked, np.zeros(0, dtype=np.intp)]).astype(np.intp)
 
+    @property
+    def counted(self) -> Index:
+        """Channels whose gap is told as one size: lengths, and angles where nothing else is."""
+        return self.lengths if len(self.lengths) else np.arange(len(self.rows))
+
+    @property
+    def unit(self) -> str:
+        """Of a millionth of that size: µm, or µrad where no reading is a length."""
+        return "µm" if len(self.lengths) else "µrad"
+
     @cached_property
     def of_channels(self) -> Independent:
         """How uncertain every channel is."""

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sk120stiff.arrays import Array
+from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.identify.uncertainty.known_model import known_estimates
@@ -29,20 +31,32 @@ def known_calibration(found: Calibration) -> Model:
 def gap_sentence(found: Calibration) -> str:
     """How far positions are off the model, and what the noise is taken to be."""
     fit, problem = found.fit, found.problem
-    distances = found.distances
-    mean = f", {1e6 * distances.mean():.3g} µm mean distance" if len(distances) else ""
+    distances, angles = found.distances, angle_gap(found)
+    sizes = [
+        *([f"{1e6 * fit.rms:.3g} µm rms per axis"] if len(problem.lengths) else []),
+        *([f"{1e6 * distances.mean():.3g} µm mean distance"] if len(distances) else []),
+        *([f"{1e6 * np.sqrt(np.mean(angles**2)):.3g} µrad rms of angles"] if len(angles) else []),
+    ]
     said = (
-        f"Gap {1e6 * fit.rms:.3g} µm rms per axis{mean}, over {len(problem.rows)} numbers of "
+        f"Gap {', '.join(sizes)}, over {len(problem.rows)} numbers of "
         f"{problem.situation.count} readings; {fit.estimated} values estimated."
     )
-    if not fit.sigma_known:
-        return f"{said} No uncertainty is stated; the gap itself is taken for it."
+    unstated = [kind for kind in problem.channels.present if not problem.channels.stated(kind)]
+    if unstated:
+        of = "" if len(unstated) == len(problem.channels.present) else f" of {listed(unstated)}"
+        return f"{said} No uncertainty{of} is stated; the gap itself is taken for it."
     if fit.exceeds:
         return (
             f"{said} That is {fit.noise_factor:.3g} times the stated uncertainty: more is at work "
             "than is in the model, and the standard errors are larger by as much."
         )
     return f"{said} That agrees with the stated uncertainty."
+
+
+def angle_gap(found: Calibration) -> Array:
+    """(K,) what is left of every channel that is an angle [rad]."""
+    fit, problem = found.fit, found.problem
+    return np.delete(fit.residual * problem.of_channels.sigma, problem.lengths)
 
 
 def unseen(found: Calibration) -> dict[str, str]:
@@ -70,7 +84,8 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     said += [f"{name} cannot be seen: {why}." for name, why in unseen(found).items()]
     said += [f"{joint} never moves: what is beyond it moves as one." for joint in found.still]
     if found.frozen:
-        said.append(f"{len(found.frozen)} small errors of geometry cannot be told apart here:")
+        some = "1 small error" if len(found.frozen) == 1 else f"{len(found.frozen)} small errors"
+        said.append(f"{some} of geometry cannot be told apart here:")
         said += _some([f"  {item.sentence()}" for item in found.frozen])
     rows = np.flatnonzero(found.wild)
     if len(rows):

@@ -121,7 +121,8 @@ class Chain:
                 # A joint at the body's own origin carries the body; one further out does not.
                 takes = bool(masses) and not joint.placement[:3, 3].any() and body >= 0
                 masses.append(masses[-1] if takes else 0.0)
-                centres.append(joint.placement[:3, :3].T @ centres[-1] if takes else np.zeros(3))
+                turn = joint.placement[:3, :3]
+                centres.append(turn.T @ self.centres[body] if takes else np.zeros(3))
                 if takes:
                     masses[-2] = 0.0
             placements.append(back @ self.placements[body + 1])

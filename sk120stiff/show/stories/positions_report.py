@@ -38,11 +38,16 @@ def positions_report(
 ) -> Report:
     """Gap step by step, named causes with their values, what cannot be told, what is left."""
     first, end = answer.steps[0], answer.steps[-1]
+    unit, away = answer.final.problem.unit, end.heldout_distance
     figures = KeyFigures(
         [
-            KeyFigure("registered", f"{1e6 * first.heldout_rms:.3g}", "µm", "rms per axis"),
-            KeyFigure("explained", f"{1e6 * end.heldout_rms:.3g}", "µm", "at poses left out"),
-            KeyFigure("mean distance", f"{1e6 * end.heldout_distance:.3g}", "µm", "left out"),
+            KeyFigure("registered", f"{1e6 * first.heldout_rms:.3g}", unit, "rms per axis"),
+            KeyFigure("explained", f"{1e6 * end.heldout_rms:.3g}", unit, "at poses left out"),
+            *(
+                [KeyFigure("mean distance", f"{1e6 * away:.3g}", "µm", "left out")]
+                if np.isfinite(away)
+                else []
+            ),
         ]
     )
     steps = Table(
@@ -52,13 +57,13 @@ def positions_report(
             for s in answer.steps
         ],
         "The gap as one cause after the other joins, rms per axis and mean distance.",
-        units=("", "µm", "µm", "µm"),
+        units=("", unit, unit, "µm"),
     )
     families = Table(
         ("family", "takes off"),
         [(name, share * 1e6) for name, share in answer.families.items()],
         "What each family of causes takes off the held-out gap beside the others.",
-        units=("", "µm"),
+        units=("", unit),
     )
     named = [
         f"**{item.effect.id}** {item.effect.sentence()} P = {item.probability:.3f}; takes off "
@@ -82,7 +87,16 @@ def positions_report(
             Section("Values", [_values(answer)]),
             Section(
                 "What else was found",
-                [Items([*findings(answer.final, readings), *answer.dropped, *answer.left_over()])],
+                [
+                    Items(
+                        [
+                            *answer.weight(),
+                            *findings(answer.final, readings),
+                            *answer.dropped,
+                            *answer.left_over(),
+                        ]
+                    )
+                ],
             ),
         ],
         lead=VERDICTS[answer.verdict],
@@ -109,8 +123,8 @@ def _bars(answer: Explained) -> Figure:
         figure = new_figure(0.32 * len(answer.steps) + 0.8)
         axes = figure.add_subplot()
         place = np.arange(len(answer.steps))
-        axes.barh(place, [1e6 * step.heldout_distance for step in answer.steps], color="#4477aa")
+        axes.barh(place, [1e6 * step.heldout_rms for step in answer.steps], color="#4477aa")
         axes.set_yticks(place, [step.label for step in answer.steps], fontsize=7)
         axes.invert_yaxis()
-        axes.set_xlabel("mean distance at poses left out [µm]")
+        axes.set_xlabel(f"rms per axis at poses left out [{answer.final.problem.unit}]")
     return figure
