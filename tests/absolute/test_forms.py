@@ -12,8 +12,11 @@ from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
+from sk120stiff.explain.absolute.document import verdict_of_positions
+from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.words import gap_sentence, known_calibration
+from sk120stiff.model import Model
 from tests.absolute.arm import NAMES, TURN, Arm, Array, G, errors, poses, tracked, write
 
 SIGMA = 2e-5
@@ -160,6 +163,11 @@ def test_a_dial_gauge_reads_one_direction(tmp_path: Path) -> None:
         "point: {xyz: [50, -80, 120], unit: mm}\nnoise: {sigma: 1, unit: um}\n"
     )
     agrees(calibrated(path), 0.005)
+    # One number a row: gaps of a rigid arm have long tails, and no row of them is wild.
+    explained = explain_positions(Model(robot), sk.read(path).with_joints(robot.actuated))
+    named = {item.effect.id for item in explained.named}
+    assert {f"joint_springs:j{k}" for k in range(1, 6)} <= named
+    assert not explained.final.wild.any()
 
 
 def test_columns_as_the_controller_has_them(tmp_path: Path) -> None:
@@ -275,6 +283,14 @@ def test_angles_alone_have_their_own_unit(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         said = gap_sentence(calibrated(path))
     assert "µrad rms of angles" in said and "nan" not in said
+    data = sk.read(path)
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    readings = data.with_joints(robot.actuated)
+    answer = explain_positions(Model(robot), readings)
+    told = verdict_of_positions(answer, readings)
+    assert told["gap"]["unit"] == "urad" and told["remainder"]["rms_um"] is None
+    assert told["gap"]["steps"][0]["heldout_rms"] > 50.0
+    assert "µm" not in " ".join(answer.left_over())
 
 
 def test_markers_of_which_no_place_is_known(tmp_path: Path) -> None:

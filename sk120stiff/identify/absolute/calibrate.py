@@ -318,19 +318,19 @@ def learned(found: Fit) -> dict[str, float]:
 
 
 def _wild(found: Fit, readings: Measurements, wild: Mask) -> Mask:
-    """Rows whose gap no normal noise of the size of the others gives."""
-    problem = _poses(found)
-    used = np.flatnonzero(readings.use & ~wild)
-    square = np.bincount(problem.rows, found.residual**2, minlength=len(used))
-    count = np.bincount(problem.rows, minlength=len(used))
-    count = np.maximum(count, 1)
-    length = np.sqrt(square / count)
-    usual = np.sqrt(stats.chi2.ppf(0.5, count) / count)  # the median of so many normal numbers
-    size = float(np.median((length / usual)[square > 0.0])) if square.any() else 0.0
-    far = length > FAR * size
+    """Rows whose gap no normal noise of the size of the others gives; others come back."""
+    whole = readings.masked()
+    problem = replace(_poses(found), measurements=whole, model=found.model)
+    gap = problem.channel_gap(found.model.values)[0] / problem.of_channels.sigma
+    count = np.bincount(problem.rows, minlength=whole.n_readings)
+    square = np.bincount(problem.rows, gap**2, minlength=whole.n_readings)
+    usual = np.sqrt(stats.chi2.ppf(0.5, np.maximum(count, 1)))  # the median of so many numbers
+    kept = ~wild[readings.use]
+    size = float(np.median((np.sqrt(square) / usual)[kept & (count > 0)]))
+    far = np.sqrt(square / np.maximum(count, 1)) > FAR * size
     out = wild.copy()
     if size > 0.0 and far.mean() < 0.1:
-        out[used[far]] = True
+        out[np.flatnonzero(readings.use)] = far
     return out
 
 
@@ -360,7 +360,5 @@ def refined(
         model = model + effect
     if near is not None:
         model = with_values_of(model, near.fit.model)
-    # What lay far off the base model may agree with this one.
-    first = np.zeros_like(base.wild) if base.placed is None else base.placed.wild
-    found, frozen, wild = _fitted(model, readings, first)
+    found, frozen, wild = _fitted(model, readings, base.wild)
     return replace(base, fit=found, frozen=frozen, wild=wild)
