@@ -74,6 +74,7 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     second = explained(tmp_path, a, arm.stands(a)[0])
     told = [(item.effect.id, item.alternatives) for item in second.named]
     assert told == [("joint_springs:j2", ())]
+    assert not second.final.wild.any(), "rows far off a rigid arm are not wild beside the spring"
 
 
 def test_a_payload_that_nobody_stated_is_named_from_a_rigid_start(tmp_path: Path) -> None:
