@@ -99,7 +99,7 @@ def register(
         return np.concatenate(parts, axis=2).reshape(3 * count, -1)
 
     def reached() -> Array:
-        return stated + np.einsum("pij,pj->pi", rotation, marker[group])
+        return np.asarray(stated + np.einsum("pij,pj->pi", rotation, marker[group]))
 
     for _ in range(_STEPS if fit_marker else 0):
         left = measured - reached() @ turn.T - shift
