@@ -149,7 +149,7 @@ def preview_of(found: Imported, robot: Robot) -> list[object]:
         parts += [f"- {item}" for item in draft.unused]
     parts.append(f"Axes of the positions, as the file calls them: {sheet.frame or 'not stated'}.")
     if not any(header.startswith("sx") for header, _ in found.columns):
-        parts.append("Uncertainties: none stated; the fit estimates them.")
+        parts.append("Uncertainties: none stated along x, y, z; the fit estimates them.")
     parts += ["Assumed:", *(f"- {sentence}" for sentence in found.said)]
     parts += _placing(found, robot)
     parts += ["What can be identified:", identifiable(found)]

@@ -250,3 +250,18 @@ def test_files_in_each_other_s_place(run, tmp_path: Path) -> None:
     alone = run("import", points, *rest)
     assert alone.code == 2
     assert "no joint values" in alone.stderr and "--joints-file" in alone.stderr
+
+
+def test_what_was_read_is_not_called_left_out_and_what_is_left_out_has_a_reason(
+    run, tmp_path: Path
+) -> None:
+    points, *rest = exported(tmp_path)
+    unused = run("import", points, *rest[:-2], "--preview", "--json").document["unused"]
+    assert not [item for item in unused if "Units" in item or "Frame" in item], unused
+    rows = ["Leica AT960", "Point ID;X [mm];Y [mm];Z [mm];U95 [mm]"]
+    for name, x in zip(SEEN.names, SEEN.x, strict=True):
+        rows.append(";".join([name, *(f"{v:.4f}" for v in x), "0.03"]))
+    Path(points).write_text("\n".join(rows) + "\n", encoding="utf-8")
+    shown = run("import", points, *rest[:-2], "--preview", "--json").document
+    (reason,) = [item for item in shown["unused"] if "U95" in item]
+    assert "of the whole point" in reason

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+import re
 from dataclasses import dataclass, replace
 from decimal import Decimal
 
@@ -119,11 +120,16 @@ def drafted(
     )
 
 
+_WHOLE = re.compile(r"\bu ?95\b|sigma|uncertainty", re.IGNORECASE)
+
+
 def _why_unused(column: Column) -> str:
     if column.meaning.startswith("orientation"):
         return ": in which order and about which axes it turns is not stated"
     if column.meaning in ("qw", "qx", "qy", "qz"):
         return ": the axes of a marker are not those of the tool"
+    if _WHOLE.search(column.header):
+        return ": of the whole point, and how much of it is along x, y and z is not stated"
     if column.meaning.startswith(("nominal", "deviation")):
         return ": the measured position stands beside it"
     return ""

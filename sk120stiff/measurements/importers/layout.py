@@ -32,6 +32,7 @@ NEEDED = {
 SEARCHED = 80  # rows that may stand above the headers
 LISTED = 12  # comments and lines above the table that are shown one by one
 BLANK = {"", "nan", "n/a", "na", "-", "--", "---", "none", "null", "#n/a"}
+ABOVE = "the lines above the table"
 _FRAME = re.compile(r"(?:working )?frame\W+(.+)", re.IGNORECASE)
 
 Meaning = Callable[[str, tuple[str, ...]], tuple[str, float] | None]
@@ -124,7 +125,7 @@ def _laid_out(
     for k, known in enumerate(meanings):
         kind = kind_of(known[0]) if known else None
         if kind in said and units[k] is None:
-            units[k], places[k] = said[kind], "the lines above the table"
+            units[k], places[k] = said[kind], ABOVE
     return Layout(headers, meanings, tuple(units), tuple(places), first, tuple(above))
 
 
@@ -233,6 +234,8 @@ def sheet_of(
         layout, list(zip(*rows, strict=True)), dict(assumed_units or {})
     )
     above = [*grid.comments, *layout.above]
+    by_above = ABOVE in layout.stated
+    above = [(k, t) for k, t in above if not (_FRAME.search(t) or (by_above and file_units([t])))]
     remarks = [f"line {number}: {text}" for number, text in above[:LISTED] if text]
     if len(above) > LISTED:
         remarks.append(f"{len(above) - LISTED} more comments and lines above the table")
