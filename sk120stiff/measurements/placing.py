@@ -243,10 +243,11 @@ def _slips(cloud: _Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float
             yield rms, rms, said, f"Write [{unit}] in its header."
     for factor, unit in ((1e-3, "mm"), (1e3, "m"), (0.0254, "in"), (25.4, "in"), (1e-6, "um")):
         rms = left(x=cloud.x * factor)
+        size = f"{factor:g} times too small" if factor > 1 else f"{1 / factor:g} times too large"
         yield (
             rms / factor,
             rms,
-            f"The positions look {1 / factor:g} times too large, as if in another unit",
+            f"The positions look {size}, as if in another unit",
             f"Check the unit of x, y, z: {unit}?",
         )
     rms = left(x=cloud.x * np.array([-1.0, 1.0, 1.0]))

@@ -96,7 +96,7 @@ def test_waves_are_not_taken_for_springs(tmp_path: Path) -> None:
     ("spoil", "said"),
     [
         (lambda a, x: (np.radians(a), x), "radians, not degrees"),
-        (lambda a, x: (a, x / 1e3), "another unit"),
+        (lambda a, x: (a, x / 1e3), "1000 times too small, as if in another unit"),
         (lambda a, x: (a, x * [1, -1, 1]), "mirrored"),
         (lambda a, x: (a, x[:, [1, 0, 2]]), "mirrored"),
         (lambda a, x: (a[:, [0, 2, 1, 3, 4, 5]], x), "j2 and j3 look exchanged"),
