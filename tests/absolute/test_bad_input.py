@@ -86,7 +86,7 @@ def _exchanged(a: Array, i: int, j: int) -> Array:
 
 SLIPS: dict[str, tuple[Spoil, str]] = {
     "radians": (lambda a, x, n: (np.radians(a), x), "angles look like radians, not degrees"),
-    "metres": (lambda a, x, n: (a, x / 1e3), "look 0.001 times too large.*: m?"),
+    "metres": (lambda a, x, n: (a, x / 1e3), "look 1000 times too small.*: m?"),
     "inches": (lambda a, x, n: (a, x / 25.4), "in another unit.*: in?"),
     "one joint": (
         lambda a, x, n: (np.where(np.arange(n) == 1, np.radians(a), a), x),
