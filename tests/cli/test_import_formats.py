@@ -96,7 +96,7 @@ def test_standard_errors_of_the_frame_are_those_of_many_draws(run, tmp_path: Pat
 @pytest.mark.parametrize(
     ("harm", "words"),
     [
-        ("metres", "times too large"),
+        ("metres", "1000 times too small"),
         ("mirrored", "mirrored"),
         ("swapped", "mirrored: one axis has the other sign, or two axes are swapped"),
         ("another robot", "These are not this robot's positions"),
