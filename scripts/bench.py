@@ -151,6 +151,13 @@ def tasks(seconds: float) -> Iterator[Row]:
     for count in (100, 1_000, 10_000):
         found = attempt(lambda count=count: jobs.prediction(count, seconds / 2))
         yield Row(group, f"{count:,} readings predicted", found[0], "s", found[1])
+    for count in (100, 2_000):
+        found = attempt(lambda count=count: jobs.slip_search(count))
+        yield Row(
+            group, f"{count:,} readings searched for slips of the pen", found[0], "s", found[1]
+        )
+    found = attempt(lambda: jobs.sensitivities(seconds / 2))
+    yield Row(group, "100 readings, sensitivities of two effects", found[0], "s", found[1])
     group = "explain"
     for count, candidates in ((50, 3), (100, 3), (200, 3), (100, 6), (100, 0)):
         which = f"{candidates} kinds of effect" if candidates else "the whole catalogue"

@@ -82,6 +82,28 @@ def prediction(count: int, budget: float) -> float:
     return seconds(lambda: model.predict(situation), budget)
 
 
+def sensitivities(budget: float) -> float:
+    """Exact derivatives of 100 readings by the parameters of springs, base and link [s]."""
+    from sk120stiff.effects import effect, situation_of
+
+    model = sk120_model()
+    situation = situation_of(model.robot, readings(100, model))
+    for name, where in (("base_rocking", None), ("link_bending", "link_3_u")):
+        model = model + effect(model.robot, name, where)
+    return seconds(lambda: model.predict_with_sensitivities(situation), budget)
+
+
+def slip_search(count: int) -> float:
+    """Slips of the pen sought in `count` sound readings [s]."""
+    from sk120stiff.slips import find_slip
+
+    model = sk120_model()
+    data = readings(count, model)
+    begin = time.perf_counter()
+    find_slip(model.robot, data)
+    return time.perf_counter() - begin
+
+
 def explanation(count: int, candidates: int) -> float:
     """What is missing, from `count` readings with a rocking base, and some candidates [s]."""
     from sk120stiff.effects import effect

@@ -15,7 +15,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Annotated, NoReturn, TextIO
 
@@ -69,9 +69,13 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
                 if xacro_args:
                     with_xacro_arguments(options, robots, xacro_args)
                 answer = body(**options)
-                emit(answer, as_json=as_json, warned=told)
+                if answer.afterwards is None:
+                    emit(answer, as_json=as_json, warned=told)
             if answer.afterwards is not None:
-                with guarded(debug=debug):  # a document has been printed: there is no second one
+                # Once its address is printed, Ctrl-C is how a server ends: from the first letter
+                # on. A document has been printed then: there is no second one for what goes wrong.
+                with guarded(debug=debug), suppress(KeyboardInterrupt):
+                    emit(answer, as_json=as_json, warned=told)
                     answer.afterwards()
         if answer.exit_code:
             raise typer.Exit(answer.exit_code)

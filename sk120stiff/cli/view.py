@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, Annotated
@@ -185,8 +184,7 @@ def _in_meshcat(scene: Scene, *, no_open: bool) -> Answer:
     def stay() -> None:
         if not no_open:
             viewer.open()
-        with suppress(KeyboardInterrupt):
-            Event().wait()
+        Event().wait()
 
     parts = [f"Open {address['url']}", f"Draw into it at {address['zmq_url']}", "Ctrl-C ends it."]
     return Answer(address, parts, afterwards=stay)
