@@ -110,6 +110,8 @@ def test_a_hidden_cause_is_named_added_and_the_gap_shrinks(demo) -> None:
         assert abs(p["value"] - p["truth"]) < 2.5 * p["std"] < 0.1 * p["value"]
     for key in ("model", "report", "scene"):
         assert (out.parent / cause[key]).is_file()
+    readme = Path("README.md").resolve().read_text(encoding="utf-8")
+    assert f"| {gap['before']:.1f} |" in readme and f"| {gap['after']:.1f} |" in readme
     text = unescape((out / "report.html").read_text(encoding="utf-8"))
     assert "that is what was named" in text and "hidden_cause/report.html" in text
 
