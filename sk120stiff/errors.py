@@ -71,6 +71,7 @@ EXTRA_OF: Final = {
     "trimesh": "view",
     "xacro": "xacro",
     "xarray": "map",
+    "yourdfpy": "view",
     "zarr": "map",
 }
 

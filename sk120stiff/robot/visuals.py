@@ -93,8 +93,7 @@ def visuals(robot: Robot | UrdfDocument) -> Appearance:
             meshes[address] = _read(address, document)
         mesh = meshes[address]
         if isinstance(mesh, str):
-            where = f"line {spec.line}, link {spec.link!r}"
-            findings.append(Finding("mesh_missing", where, f"mesh {address!r}: {mesh}"))
+            findings.append(Finding("mesh_missing", spec.place, f"mesh {address!r}: {mesh}"))
         else:
             shapes.append(_visual(spec, mesh))
     return Appearance(tuple(shapes), tuple(findings))

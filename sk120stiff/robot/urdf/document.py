@@ -137,6 +137,11 @@ class VisualSpec:
     rgba: tuple[float, float, float, float] | None
     line: int
 
+    @property
+    def place(self) -> str:
+        """Where it stands in the file, as findings say it."""
+        return f"line {self.line}, link {self.link!r}"
+
 
 @dataclass(frozen=True, eq=False)
 class UrdfDocument:
