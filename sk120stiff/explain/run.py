@@ -83,12 +83,17 @@ def explain(
     found, noise = best_attempt(used, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
-    exact = not found.final.exceeds
+    exact, at, standing = not found.final.exceeds, base, set[str]()
     if exact:
         exactly = unless_imitating(*judged(found, seed=options.seed), options.seed)
         left = _adequacy(exactly[0], noise)
         exact = not _too_much(left, MISSPECIFICATION if exactly[1].misspecified else LEFT_OVER)
-    found, named = exactly if exact else beside_model_form(base, under, seed=options.seed)
+        at = held_against(noise, exactly[0].final)
+        standing = {effect.id for effect in exactly[0].effects}
+    if exact:
+        found, named = exactly
+    else:
+        found, named = beside_model_form(at, under, names=standing, seed=options.seed)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     remainder = remainder_of(held_against(noise, found.final))

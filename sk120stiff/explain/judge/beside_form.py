@@ -9,11 +9,11 @@ that the size is estimated from anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged
-from sk120stiff.explain.judge.imitation import imitates
+from sk120stiff.explain.judge.imitation import imitated
 from sk120stiff.explain.select.stepwise import Attempt, with_effects
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
@@ -25,21 +25,27 @@ WORTH = 2.0  # gain in -2 ln L by which structure has to beat noise that is mere
 Try = Callable[[NoiseModel], Attempt]
 
 
-def beside_model_form(base: Fit, under: Try, *, seed: int) -> tuple[Attempt, Named]:
+def beside_model_form(
+    at: Fit, under: Try, *, names: Collection[str] = (), seed: int
+) -> tuple[Attempt, Named]:
     """The attempt beside model-form error, with the effects alone that may be named.
 
+    What confirmed names explain is no model-form error: the search begins beside what they leave.
+
     Args:
-        base: Fit of the base model under the noise of the readings.
+        at: Fit under the noise of the readings, of the base model with the effects that stand
+            against the noise alone.
         under: Makes an attempt under one noise model.
+        names: Ids of these effects.
         seed: Of folds and resampling.
     """
-    at, before = base, None
+    before = set(names)
     for _ in range(ROUNDS):
         found, named = judged(under(with_model_form(at)), seed=seed, least=MARGIN)
-        names = {finding.effect.id for finding in named.findings}
-        if names == before:
+        now = {finding.effect.id for finding in named.findings}
+        if now == before:
             break
-        at, before = found.final, names
+        at, before = found.final, now
     return unless_imitating(found, named, seed)
 
 
@@ -49,14 +55,14 @@ def unless_imitating(found: Attempt, named: Named, seed: int) -> tuple[Attempt, 
     They fall one at a time, the weakest first, and the others are judged anew; those that stand do
     so beside whatever is left.
     """
-    for finding in reversed(named.findings):
-        reason = imitates(found.final, finding.effect)
-        if reason is not None:
-            kept = [other.effect for other in named.findings if other is not finding]
-            found, again = judged(with_effects(found, kept), seed=seed, least=MARGIN)
-            fallen = (*named.fallen, Fallen(finding.effect.id, reason), *again.fallen)
-            return unless_imitating(found, Named(again.findings, fallen), seed)
-    return found, named
+    effects = [finding.effect for finding in named.findings]
+    reason = imitated(found.final, effects)
+    if reason is None:
+        return found, named
+    kept = [effect for effect in effects if effect.id != reason[0]]
+    found, again = judged(with_effects(found, kept), seed=seed, least=MARGIN)
+    fallen = (*named.fallen, Fallen(*reason), *again.fallen)
+    return unless_imitating(found, Named(again.findings, fallen), seed)
 
 
 def with_model_form(fit: Fit) -> NoiseModel:

@@ -9,19 +9,23 @@ likelihood says how far they differ (a random coefficient: Searle, Casella & McC
 Components*). Half of a real cause's size at every pose is no constant.
 
 Does something without a name do better in its place? Of all that `localise` suspects, from base to
-tool, one may explain the gap better and leave nothing to the effect.
+tool, one may explain the gap better and leave nothing to the effect, or to several effects that
+imitate it together.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import minimize
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
-from sk120stiff.explain.localise.places import line_up, look_at
+from sk120stiff.explain.localise.places import INDISTINCT, line_up, look_at
+from sk120stiff.explain.localise.suspects import Suspect
 from sk120stiff.identify import Fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.uncertainty.variance_components import Deviance
@@ -34,31 +38,35 @@ NOTHING = 0.3  # share of its length that is left to an effect of which another 
 STARTS = (0.1, 0.3, 1.0)  # spreads from which the likeliest is looked for
 FAR = 4.0  # ln of the factor by which a size is sought away from its start
 VISIBLE = 1e-6  # share of a column that must remain beyond the model's own
+ALIKE = 1e-9  # square of a direction's length beyond others below which they are the same
 
 
 @dataclass(frozen=True)
 class Instead:
-    """What would do in the place of an effect.
+    """What would do in the place of names.
 
     Attributes:
         name: Completes the sentence "The gap goes with ...".
         better: Evidence (BIC) by which it wins.
-        share: Share of the effect's length √λ that remains beside it.
+        effects: Ids of the effects to which it leaves hardly anything.
     """
 
     name: str
     better: float
-    share: float
-
-    @property
-    def does_the_work(self) -> bool:
-        """It wins, and hardly anything is left for the effect."""
-        return self.better > BETTER and self.share < NOTHING
+    effects: tuple[str, ...]
 
 
 def own_columns(fit: Fit, effect: Effect) -> Mask:
     """(P_free,) which of a fit's parameters are the effect's."""
     return np.array([parameter.effect.id == effect.id for parameter in fit.parameters], dtype=bool)
+
+
+def _displacement(fit: Fit, effects: Sequence[Effect]) -> Array:
+    """(N, 3) what some effects bring, reading axes [m]."""
+    full = fit.model.predict_with_sensitivities(fit.problem.situation)[1]
+    ids = {effect.id for effect in effects}
+    own = np.array([parameter.effect.id in ids for parameter in fit.model.parameters], dtype=bool)
+    return np.asarray(full[:, :, own] @ fit.model.values[own])
 
 
 def spread_over_poses(fit: Fit, effect: Effect) -> tuple[float, float]:
@@ -93,51 +101,130 @@ def spread_over_poses(fit: Fit, effect: Effect) -> tuple[float, float]:
     return spread, least(0.0)[0] - value
 
 
-def instead_of(fit: Fit, effect: Effect) -> Instead | None:
-    """The best of all suspects in the place of one effect; None where nothing can be compared."""
-    look = look_at(fit, yardstick(fit))
-    lineup = line_up(look)
-    own = own_columns(fit, effect)
-    moving = ~fit.at_bound
-    others = orthonormal(fit.jacobian[:, moving & ~own])
-    gap = fit.jacobian[:, own] @ fit.x[own] - fit.residual
-    gap = gap - others @ (others.T @ gap)
-    columns = fit.jacobian[:, own & moving]
-    basis = orthonormal(columns - others @ (others.T @ columns))
-    scale, price = look.noise.scale, float(np.log(max(len(gap), 2)))
-    length = float(((basis.T @ gap) ** 2).sum()) / scale
-    if not basis.shape[1] or length <= 0.0:
-        return None
+def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
+    """The best of all suspects in the place of some of the names; None where none does better.
+
+    With every suspect in the model those names leave it, one at a time, to which it leaves no
+    evidence, or hardly any of their length. A suspect that is the free form of a name's own law
+    says what the name says, and is no reason against it. The strongest name has to be beaten
+    clearly. Beside model-form error a cause without a name is at work for certain and needs no
+    evidence of its own: a further name has to do better than it.
+
+    Args:
+        fit: The fitted model.
+        names: Effects that were added to it, the strongest first.
+    """
+    line = _line_up(fit, names)
+    everything = range(len(names))
+    whole = line.score(everything)
+    alone = [line.takes(everything) - line.takes(set(everything) - {e}) for e in everything]
     found = []
-    for suspect, part in zip(lineup.suspects, lineup.parts, strict=True):
-        white = lineup.white[:, part]
-        beyond = white - others @ (others.T @ white)
-        whole, left = np.linalg.norm(white, axis=0), np.linalg.norm(beyond, axis=0)
-        other = orthonormal(beyond[:, left > VISIBLE * np.maximum(whole, 1e-300)])
-        if not other.shape[1]:
-            continue
-        takes = float(((other.T @ gap) ** 2).sum()) / scale
-        better = takes - length - price * (other.shape[1] - basis.shape[1])
-        rest = orthonormal(basis - other @ (other.T @ basis))
-        remains = gap - other @ (other.T @ gap)
-        share = float(((rest.T @ remains) ** 2).sum()) / scale / length
-        found.append(Instead(suspect.name, better, float(np.sqrt(share))))
-    working = [each for each in found if each.does_the_work]
-    return max(working or found, key=lambda each: each.better, default=None)
+    for k, suspect in enumerate(line.suspects):
+        kept = list(everything)
+        while True:
+            losses = {e: line.takes(kept, k) - line.takes(set(kept) - {e}, k) for e in kept}
+            idle = [
+                e
+                for e, loss in losses.items()
+                if not {names[e].id, names[e].name} & set(suspect.frees)
+                and loss < max(line.price(e), NOTHING**2 * alone[e])
+            ]
+            if not idle:
+                break
+            kept.remove(min(idle, key=lambda e: losses[e]))
+        better = whole - line.score(kept, k)
+        beside = bool(fit.problem.noise.form) and 0 in kept
+        if len(kept) < len(names) and better > (0.0 if beside else BETTER):
+            fallen = tuple(names[e].id for e in everything if e not in kept)
+            found.append(Instead(suspect.name, better, fallen))
+    return max(found, key=lambda each: each.better, default=None)
 
 
-def imitates(fit: Fit, effect: Effect) -> str | None:
-    """Why an effect may be no cause of its own, in a sentence; None where nothing says so."""
-    other = instead_of(fit, effect)
-    if other is not None and other.does_the_work:
-        return (
-            f"{effect.id} fits, but the gap goes better with {other.name}, beside which nothing "
-            "is left for it; it may imitate part of another cause and is not named."
+@dataclass(frozen=True, eq=False)
+class _Lineup:
+    """Names and suspects beyond the other parameters of a model, each column of length one."""
+
+    suspects: tuple[Suspect, ...]
+    gram: Array  # (K, K)
+    moment: Array  # (K,) with the gap that is left without names, in units of the noise
+    names: list[Index]
+    parts: list[Index]
+    unit: float  # ln of the number of readings, what a parameter costs
+
+    def price(self, name: int) -> float:
+        """What the parameters of a name cost."""
+        return self.unit * len(self.names[name])
+
+    def _at(self, names: Iterable[int], suspect: int | None) -> Index:
+        own = [self.names[e] for e in sorted(names)]
+        own += [] if suspect is None else [self.parts[suspect]]
+        return np.concatenate(own or [np.zeros(0, dtype=np.intp)])
+
+    def takes(self, names: Iterable[int], suspect: int | None = None) -> float:
+        """Fall of the misfit that names and a suspect bring together, in noise variances."""
+        at = self._at(names, suspect)
+        values, vectors = np.linalg.eigh(self.gram[np.ix_(at, at)])
+        seen = values > ALIKE
+        along = vectors[:, seen].T @ self.moment[at]
+        return float((along**2 / values[seen]).sum())
+
+    def score(self, names: Iterable[int], suspect: int | None = None) -> float:
+        """Bayesian information criterion, up to a constant."""
+        chosen = tuple(names)
+        return self.unit * len(self._at(chosen, suspect)) - self.takes(chosen, suspect)
+
+
+def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
+    look = look_at(fit, yardstick(fit))
+    # Without the names nothing of theirs is read, or misread.
+    explained = np.einsum(
+        "nij,nj->ni", fit.problem.situation.reading_axes, _displacement(fit, names)
+    )
+    lineup = line_up(replace(look, predicted=look.predicted - explained))
+    own = [own_columns(fit, effect) for effect in names]
+    free = np.any(own, axis=0)
+    moving = ~fit.at_bound
+    others = orthonormal(fit.jacobian[:, moving & ~free])
+    counts = [int((mask & moving).sum()) for mask in own]
+    both = np.hstack([*(fit.jacobian[:, mask & moving] for mask in own), lineup.white])
+    gap = fit.jacobian[:, free] @ fit.x[free] - fit.residual
+    beyond = both - others @ (others.T @ both)
+    length, left = np.linalg.norm(both, axis=0), np.linalg.norm(beyond, axis=0)
+    visible = left > np.where(np.arange(len(left)) < sum(counts), VISIBLE, INDISTINCT) * length
+    beyond = np.where(visible, beyond / np.where(visible, left, 1.0), 0.0)
+    ends = np.cumsum([0, *counts])
+    spans = [slice(int(a), int(b)) for a, b in pairwise(ends)]
+    spans += [slice(int(ends[-1]) + part.start, int(ends[-1]) + part.stop) for part in lineup.parts]
+    at = [np.arange(span.start, span.stop)[visible[span]] for span in spans]
+    return _Lineup(
+        suspects=lineup.suspects,
+        gram=beyond.T @ beyond,
+        moment=beyond.T @ gap / np.sqrt(look.noise.scale),
+        names=at[: len(names)],
+        parts=at[len(names) :],
+        unit=float(np.log(max(len(gap), 2))),
+    )
+
+
+def imitated(fit: Fit, names: Sequence[Effect]) -> tuple[str, str] | None:
+    """The weakest name that may be no cause of its own, and why, in a sentence; None: no name.
+
+    Args:
+        fit: The fitted model.
+        names: Effects that were added to it, the strongest first.
+    """
+    other = instead_of(fit, names) if names else None
+    if other is not None:
+        return other.effects[-1], (
+            f"{other.effects[-1]} fits, but the gap goes better with {other.name}, beside which "
+            "nothing is left for it; it may imitate part of another cause and is not named."
         )
-    spread, gain = spread_over_poses(fit, effect)
-    if spread > DIFFER and gain > BEYOND_CHANCE:
-        return (
-            f"{effect.id} fits, but poses differ in its size by {100.0 * min(spread, 9.99):.0f} %; "
-            "what is no constant of the arm may imitate part of another cause, and is not named."
-        )
+    for effect in reversed(names):
+        spread, gain = spread_over_poses(fit, effect)
+        if spread > DIFFER and gain > BEYOND_CHANCE:
+            return effect.id, (
+                f"{effect.id} fits, but poses differ in its size by "
+                f"{100.0 * min(spread, 9.99):.0f} %; what is no constant of the arm may imitate "
+                "part of another cause, and is not named."
+            )
     return None

@@ -34,6 +34,7 @@ class Suspect:
         direction: (N, 3) direction in which it moves the point, base axes; None where the fit
             decides it.
         carried: (N, k) load behind each column, where a place yields [N or N·m].
+        frees: Effects (``name`` or ``name:where``) of whose law it is the free form.
     """
 
     family: str
@@ -43,6 +44,7 @@ class Suspect:
     label: str
     direction: Array | None = None
     carried: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    frees: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,29 +114,36 @@ def _places(situation: Situation) -> Iterator[Suspect]:
     robot, count = situation.robot, situation.count
     base = np.broadcast_to(robot.foundation, (count, 3))
     world = np.broadcast_to(np.eye(3), (count, 3, 3))
-    yield _turning("place", "the moment that tips the base", situation, base, world[..., :2])
+    tips = _turning("place", "the moment that tips the base", situation, base, world[..., :2])
+    yield replace(tips, frees=("base_rocking",))
     name = "the moment that turns the base about z"
     yield _turning("place", name, situation, base, world[..., 2:])
-    yield _pushing("place", "the force that pushes the base", situation, world)
+    pushes = _pushing("place", "the force that pushes the base", situation, world)
+    yield replace(pushes, frees=("base_sliding",))
     screws = situation.nominal
     yield from _drives(situation)
     for joint in arm_joints(robot):
         at = screws.origins[:, joint.index]
         frames = _frames(situation, joint)
-        tilts = np.stack(joint.tilt_axes(), axis=-1)
-        across = _rotation(situation, joint) @ tilts
+        across = _rotation(situation, joint) @ np.stack(joint.tilt_axes(), axis=-1)
         name = f"the moment that {joint.name} carries across its axis"
-        yield _turning("place", name, situation, at, across)
+        tilts = _turning("place", name, situation, at, across)
+        yield replace(tilts, frees=(f"joint_tilt:{joint.name}",))
         if joint.length > 0.1 * max(j.length for j in arm_joints(robot)):
             middle = at + 0.5 * joint.length * frames[..., 0]
             name = f"the moment that bends {joint.link} halfway"
-            yield _turning("place", name, situation, middle, frames[..., 1:])
+            bends = _turning("place", name, situation, middle, frames[..., 1:])
+            yield replace(bends, frees=(f"link_bending:{joint.link}",))
             name = f"the moment that twists {joint.link}"
-            yield _turning("place", name, situation, at, frames[..., :1])
+            twists = _turning("place", name, situation, at, frames[..., :1])
+            yield replace(twists, frees=(f"link_torsion:{joint.link}",))
         yield _pushing("place", f"the force that {joint.link} carries", situation, frames)
     tip = screws.frame_position
-    yield _turning("place", "the moment that the tool carries", situation, tip, situation.rotation)
-    yield _pushing("place", "the force that the tool carries", situation, situation.rotation)
+    at_tool = (
+        _turning("place", "the moment that the tool carries", situation, tip, situation.rotation),
+        _pushing("place", "the force that the tool carries", situation, situation.rotation),
+    )
+    yield from (replace(each, frees=("tool_compliance",)) for each in at_tool)
 
 
 def _bent_places(situation: Situation) -> Iterator[Suspect]:
@@ -142,18 +151,23 @@ def _bent_places(situation: Situation) -> Iterator[Suspect]:
     base = np.broadcast_to(situation.robot.foundation, (situation.count, 3))
     world = np.broadcast_to(np.eye(3), (situation.count, 3, 3))
     rotation, tip = situation.rotation, situation.nominal.frame_position
-    for straight in (
-        _turning("law", "the moment that tips the base", situation, base, world[..., :2]),
-        _pushing("law", "the force that pushes the base", situation, world),
-        _turning("law", "the moment that the tool carries", situation, tip, rotation),
-        _pushing("law", "the force that the tool carries", situation, rotation),
+    tips = _turning("law", "the moment that tips the base", situation, base, world[..., :2])
+    pushes = _pushing("law", "the force that pushes the base", situation, world)
+    turns = _turning("law", "the moment that the tool carries", situation, tip, rotation)
+    shifts = _pushing("law", "the force that the tool carries", situation, rotation)
+    for straight, frees in (
+        (tips, "base_rocking"),
+        (pushes, "base_sliding"),
+        (turns, "tool_compliance"),
+        (shifts, "tool_compliance"),
     ):
         load = straight.carried
         largest = np.maximum(np.abs(load).max(axis=0), 1e-300)
         sign = np.sign(load)[:, None, :]
         curved = straight.columns * (np.abs(load) / largest)[:, None, :]
         columns = np.concatenate([straight.columns * sign, curved], axis=2)
-        yield replace(straight, name=f"{straight.name}, not in proportion to it", columns=columns)
+        name = f"{straight.name}, not in proportion to it"
+        yield replace(straight, name=name, columns=columns, frees=(frees,))
 
 
 def _drives(situation: Situation) -> Iterator[Suspect]:
@@ -188,14 +202,19 @@ def _laws(situation: Situation) -> Iterator[Suspect]:
         along = push / np.where(size > 0.0, size, 1.0)
         sign = np.sign(tau) - np.sign(situation.gravity_torque[:, i])
         jump = f"the sign of the {what} of {joint}"
-        yield Suspect("law", jump, (push * sign[:, None])[..., None], tau, label, along)
+        bent = (f"gear_hardening:{joint}", f"lost_motion:{joint}")
+        columns = (push * sign[:, None])[..., None]
+        yield Suspect("law", jump, columns, tau, label, along, frees=bent)
         curved = tau[:, None] * np.stack([np.abs(tau) / largest, (tau / largest) ** 2], axis=-1)
         name = f"the {what} of {joint}, not in proportion to it"
-        yield Suspect("law", name, push[:, :, None] * curved[:, None, :], tau, label, along)
+        columns = push[:, :, None] * curved[:, None, :]
+        yield Suspect("law", name, columns, tau, label, along, frees=bent)
         if both:
             turn = -situation.branch * np.sign(load[:, i])
             name = f"loading or unloading of {joint}"
-            yield Suspect("law", name, (push * turn[:, None])[..., None], load[:, i], label, along)
+            columns = (push * turn[:, None])[..., None]
+            rubs = (f"friction_hysteresis:{joint}",)
+            yield Suspect("law", name, columns, load[:, i], label, along, frees=rubs)
     for i, k in combinations(range(len(names)), 2):
         column = J[:, :, i] * load[:, k, None] + J[:, :, k] * load[:, i, None]
         name = f"the torques of {names[i]} and {names[k]}, each moving the other joint"
