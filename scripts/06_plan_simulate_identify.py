@@ -9,7 +9,7 @@ from sk120stiff.effects import effect
 from sk120stiff.identify import fit, fit_report
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import base_model
-from sk120stiff.plan import Region, Schedule, d_optimal, random_pool, simulate
+from sk120stiff.plan import Cell, Schedule, d_optimal, random_pool, simulate
 from sk120stiff.robot import load_robot
 
 robot = load_robot("motoman_sk120")
@@ -18,9 +18,7 @@ assert springs is not None
 model = springs + effect(robot, "base_rocking")  # what is to be known: springs and foundation
 
 point = np.array([-0.06, 0.04, 0.15])  # m, in the tool frame
-pool = random_pool(
-    robot, poses=300, directions=12, force=400.0, point=point, region=Region(lowest=-1.0)
-)
+pool = random_pool(robot, poses=300, directions=12, force=400.0, point=point, cell=Cell(floor=-1.0))
 design = d_optimal(model, pool, count=15, sigma=10e-6)
 chosen = pool.situation.rows(np.array(design.rows))
 plan = Measurements(

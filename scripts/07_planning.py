@@ -10,9 +10,10 @@ import numpy as np
 from sk120stiff.effects import effect, situation_of_load
 from sk120stiff.model import Model, base_model
 from sk120stiff.plan import (
+    Cell,
     Pool,
-    Region,
     d_optimal,
+    feasible,
     random_choice,
     random_pool,
     random_poses,
@@ -29,8 +30,8 @@ DRAWS = 50
 robot = load_robot("motoman_sk120")
 springs = base_model(robot)
 assert springs is not None
-region = Region(lowest=-1.0)
-pool = random_pool(robot, poses=400, directions=12, force=FORCE, point=POINT, region=region, seed=0)
+cell = Cell(floor=-1.0)
+pool = random_pool(robot, poses=400, directions=12, force=FORCE, point=POINT, cell=cell, seed=0)
 
 
 def upright_pool() -> Pool:
@@ -39,7 +40,7 @@ def upright_pool() -> Pool:
     a = random_poses(robot, 4000, rng)
     a[:, 3] = 0.0
     a[:, 4] = -0.5 * np.pi - a[:, 2]  # theta_3 + theta_5 = -90 deg: straight down
-    good = region.holds(robot, a, POINT)
+    good = feasible(robot, cell, a, point=POINT).ok
     good &= (a[:, 4] >= robot.lower[4]) & (a[:, 4] <= robot.upper[4])
     loads = np.zeros((3, 6))
     loads[:, :3] = FORCE * np.eye(3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -10,18 +11,21 @@ import numpy as np
 import typer
 
 from sk120stiff.arrays import Array
+from sk120stiff.cli.cell import CellOption, as_measured, opened_cell
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
+from sk120stiff.cli.plan_check import checked
 from sk120stiff.cli.plan_wishes import named_parameters, two_effects
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import situation_of
+from sk120stiff.errors import InputError
 from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
 from sk120stiff.plan import (
+    Cell,
     Pool,
-    Region,
     d_optimal,
     feasible_pool,
     lowest_points,
@@ -30,7 +34,6 @@ from sk120stiff.plan import (
     to_be_taken,
     well_spread,
 )
-from sk120stiff.robot import Robot
 from sk120stiff.units import parse_size, parse_values
 
 DRAWS = 50  # random and well-spread choices that a plan is held against
@@ -38,8 +41,19 @@ MOST_CANDIDATES = 1_000_000
 
 
 def command(
-    model: Annotated[Path, typer.Option("--model", metavar="MODEL", help="Model file (YAML).")],
-    count: Annotated[int, typer.Option(min=1, help="Number of readings (pose and load each).")],
+    model: Annotated[
+        Path | None, typer.Option("--model", metavar="MODEL", help="Model file (YAML).")
+    ] = None,
+    count: Annotated[
+        int | None, typer.Option(min=1, help="Number of readings (pose and load each).")
+    ] = None,
+    check: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CSV",
+            help="Plan nothing: say row by row what is wrong with this plan, or these readings.",
+        ),
+    ] = None,
     between: Annotated[
         str | None,
         typer.Option(
@@ -102,6 +116,7 @@ def command(
             help="Box in the base frame for the measured point: '0.8,-1,0, 2.2,1,1.5 m'.",
         ),
     ] = None,
+    cell: CellOption = None,
     candidates: Annotated[
         int, typer.Option(min=10, max=MOST_CANDIDATES, help="Poses to choose from.")
     ] = 400,
@@ -116,16 +131,25 @@ def command(
 ) -> Answer:
     """The poses and loads to measure next.
 
-    D-optimal for the parameters that count, or T-optimal between two effects; within joint limits,
-    the efforts of the URDF and the region that is given, and clear of the base column. `gain` is
-    the precision (or evidence) over that of random poses.
+    D-optimal for the parameters that count, or T-optimal between two effects; feasible as far as
+    the URDF and cell.yaml tell: limits, efforts, collisions, floor, rig, tracker. `gain` is the
+    precision (or evidence) over that of random poses.
 
     Example: sk120stiff plan --model model.yaml --count 15 --floor '-0.8 m' --out plan.csv
+    Example: sk120stiff plan --check plan.csv --cell cell.yaml
     """
+    if check is not None:
+        return checked(check, cell, lambda found: _stated(found, lowest, box))
+    if model is None or count is None:
+        raise InputError(
+            "a plan needs --model and --count",
+            remedy="Write --model model.yaml --count 12; --check plan.csv checks one there is.",
+        )
     declare_readings(out)
     known, start = _opened(model, data)
     at, force_at = _points(known, point)
-    region = _region(lowest, box, start.robot, known, at)
+    within = _stated(opened_cell(start.robot, cell, data, model), lowest, box)
+    within = as_measured(start.robot, within, known)
     pool = feasible_pool(
         start.robot,
         poses=candidates,
@@ -134,7 +158,7 @@ def command(
         point=at,
         force_point=force_at,
         seed=seed,
-        region=region,
+        cell=within,
     )
     sigma = _sigma(known, noise)
     before = None if known is None else Pool(situation_of(start.robot, known.masked()))
@@ -145,18 +169,19 @@ def command(
             chosen = _telling(start, pool, before, between, count, sigma, seed)
     rows, document, said = chosen
     poses, plan = _plan(start, pool, rows, known)
-    heights = lowest_points(start.robot, plan.joints, at)
+    heights = lowest_points(start.robot, plan.joints, at, within)
     document = {
         "poses": poses,
         **document,
         "sigma_um": sigma * 1e6,
         "seed": seed,
-        "floor_m": region.lowest if np.isfinite(region.lowest) else None,
+        "cell": within.source or None,
+        "floor_m": within.floor if np.isfinite(within.floor) else None,
         "lowest_m": float(heights.min()),
         "remarks": pool.remarks,
         "out": out,
     }
-    said += [*pool.remarks, _height(plan, heights, region.lowest, lowest)]
+    said += [*pool.remarks, _height(plan, heights, within.floor)]
     if out is not None:
         write_measurements(plan, out)
         said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
@@ -294,30 +319,25 @@ def _sigma(known: Measurements | None, text: str | None) -> float:
     return 1e-5
 
 
-def _region(
-    lowest: str | None, box: str | None, robot: Robot, known: Measurements | None, point: Array
-) -> Region:
-    """Where the arm may stand; without a floor that is told, as low as it stood already."""
-    least, low, high = -np.inf, None, None
+def _stated(cell: Cell, lowest: str | None, box: str | None) -> Cell:
+    """The cell with what the command line says of floor and box."""
     if lowest is not None:
-        least = float(parse_values(lowest, "length", where="--floor", like="-0.3 m")[0])
-    elif known is not None:
-        least = float(lowest_points(robot, known.joints, point).min())
+        cell = replace(
+            cell, floor=float(parse_values(lowest, "length", where="--floor", like="-0.3 m")[0])
+        )
     if box is not None:
         corners = parse_values(box, "length", where="--box", like="0.8,-1,0, 2.2,1,1.5 m")
-        low, high = corners[:3], corners[3:]
-    return Region(least, low, high)
+        cell = replace(cell, low=corners[:3], high=corners[3:])
+    return cell
 
 
-def _height(plan: Measurements, heights: Array, floor: float, told: str | None) -> str:
+def _height(plan: Measurements, heights: Array, floor: float) -> str:
     row = int(np.argmin(heights))
     text = (
         f"The arm's lowest point is {1e3 * heights[row]:.0f} mm high (base frame, {plan.pose[row]})"
     )
     if not np.isfinite(floor):
         return f"{text}: give --floor if that is too low."
-    if told is None:
-        return f"{text}, no lower than the readings there are: {1e3 * floor:.0f} mm."
     return f"{text}, the floor {1e3 * floor:.0f} mm."
 
 

@@ -1,5 +1,6 @@
 """Which poses and loads to measure next, and what such a measurement would read."""
 
+from sk120stiff.plan.cell import Cell, Tracker, read_cell
 from sk120stiff.plan.design import Design, d_optimal
 from sk120stiff.plan.discriminate import (
     Choice,
@@ -8,32 +9,39 @@ from sk120stiff.plan.discriminate import (
     rivalry,
     signature_columns,
 )
-from sk120stiff.plan.feasible import Column, base_column, lowest_points
+from sk120stiff.plan.feasible import Verdict, feasible
 from sk120stiff.plan.planned import plan, to_be_taken
-from sk120stiff.plan.pool import Pool, Region, feasible_pool, random_pool, random_poses
+from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
+from sk120stiff.plan.rig import Rig
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
 from sk120stiff.plan.spread import random_choice, well_spread
+from sk120stiff.plan.surroundings import assumptions, cell_from_data, lowest_points
 
 __all__ = [
+    "Cell",
     "Choice",
-    "Column",
     "Design",
     "Pool",
-    "Region",
+    "Rig",
     "Rivalry",
     "Schedule",
     "Simulated",
+    "Tracker",
+    "Verdict",
     "as_positions",
-    "base_column",
+    "assumptions",
+    "cell_from_data",
     "d_optimal",
     "discriminating_readings",
+    "feasible",
     "feasible_pool",
     "lowest_points",
     "plan",
     "random_choice",
     "random_pool",
     "random_poses",
+    "read_cell",
     "rivalry",
     "scheduled",
     "signature_columns",

@@ -1,200 +1,230 @@
-"""Poses at which an arm can stand and loads that its motors can hold, as far as the URDF tells.
+"""Can an arm stand there, hold that load, and be seen? One question, one function.
 
-No collision check: the floor is a height, the base column a cylinder, the arm a line through the
-origins of its joints. What nobody stated (efforts, masses, a floor) is not guessed but told.
+`feasible` asks everything that the URDF and a `Cell` say: joint limits, closed loops, the arm
+against itself, its pedestal, its tool and what stands around it, the motors, the rig, the tracker.
+What nobody stated is not guessed in silence: `surroundings.assumptions` says what was taken for
+granted.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.errors import InputError, Refusal
+from sk120stiff.plan.cell import Cell
+from sk120stiff.plan.efforts import effort_limits, weight_torques
+from sk120stiff.plan.rig import unit
+from sk120stiff.plan.surroundings import scene_of
 from sk120stiff.robot import Robot
-from sk120stiff.robot.anatomy import arm_joints, arm_length
+from sk120stiff.robot.collision import Scene
 
-# Of the stretched arm: the base, and half a link's thickness, which the line through the joints
-# lacks. A UR10 has 0.10 m and 0.06 m on 1.75 m (0.09), a Panda 0.10 m and 0.06 m on 1.3 m (0.12).
-COLUMN_RADIUS = 0.12
-NEAR_THE_SHOULDER = 2.0  # radii along the arm within which it belongs to the shoulder
-ALONG_A_LINK = 4  # points at which a link is looked at
-SHARE_OF_EFFORT = 0.9  # of a motor's effort that a push to be held may ask for
-PLACEHOLDER = 0.5  # share of poses whose weight alone is too much: then no such motors are built in
+FOLDED = 0.2  # sine of the crank-rod angle; below it a rod's share grows beyond all loads
+HIDDEN_END = 0.05  # m before the reflector in which the line of sight is not asked: its own holder
+ROUNDING = 1e-9
+
+Words = Callable[[int], str]
 
 
 @dataclass(frozen=True, eq=False)
-class Column:
-    """What the arm stands on: a cylinder about the first joint's axis, from the shoulder down.
-
-    It has a round top and no lower end, so it holds a pedestal of any height too.
+class Verdict:
+    """Which of N poses with their loads can be driven, held, brought and seen.
 
     Attributes:
-        shoulder: (3,) the second joint's place on the axis, base frame [m].
-        down: (3,) unit vector along the axis, away from the arm.
-        radius: [m]
+        ok: (N,) nothing stands against it.
     """
 
-    shoulder: Array
-    down: Array
-    radius: float
+    ok: Mask
+    _checks: tuple[tuple[Mask, Words], ...]
 
-    def holds(self, points: Array) -> Mask:
-        """(...,) which of the points (..., 3) [m] lie inside."""
-        from_top = points - self.shoulder
-        below = np.maximum(from_top @ self.down, 0.0)
-        return np.asarray(
-            np.linalg.norm(from_top - below[..., None] * self.down, axis=-1) < self.radius
+    @cached_property
+    def faults(self) -> tuple[tuple[str, ...], ...]:
+        """For each row what is wrong with it, in sentences."""
+        return tuple(
+            tuple(words(k) for bad, words in self._checks if bad[k]) for k in range(len(self.ok))
         )
 
 
-def base_column(robot: Robot) -> Column | None:
-    """The column of an arm whose first joint turns; None for others and for very short chains."""
-    joints = arm_joints(robot)
-    if len(joints) < 3 or not joints[0].revolute:
-        return None
-    screws = robot.screws(robot.rest)
-    axis, foot, second = screws.axes[0], screws.origins[0], screws.origins[1]
-    shoulder = foot + ((second - foot) @ axis) * axis
-    towards_base = -(shoulder @ axis)  # the base frame's origin lies this far along the axis
-    radius = COLUMN_RADIUS * arm_length(robot)
-    if abs(towards_base) < 0.1 * radius:  # the base frame sits at the shoulder: its -z is down
-        towards_base = -axis[2] or -1.0
-    return Column(shoulder, np.sign(towards_base) * axis, radius)
-
-
-def clear_of(column: Column, robot: Robot, a: Array, point: Array) -> Mask:
-    """(N,) poses at which nothing beyond the shoulder lies in the column: elbow, wrist, tool."""
-    line = _centre_line(robot, a, point)  # (N, k, 3), shoulder to point
-    from_shoulder = np.cumsum(np.linalg.norm(np.diff(line[0], axis=0), axis=1))
-    free = np.ones(len(a), dtype=bool)
-    for k, reach in enumerate(from_shoulder):
-        start, end = line[:, k], line[:, k + 1]
-        length = float(np.linalg.norm(end[0] - start[0]))
-        for share in np.arange(1, ALONG_A_LINK + 1) / ALONG_A_LINK:
-            if reach - (1.0 - share) * length < NEAR_THE_SHOULDER * column.radius:
-                continue
-            free &= ~column.holds(start + share * (end - start))
-    return free
-
-
-def lowest_points(robot: Robot, a: Array, point: Array) -> Array:
-    """(N,) height of the lowest of all moving links' origins and of the point, base frame [m]."""
-    heights = [robot.screws(a, point=point).position[:, 2]]
-    heights += [robot.placement(a, frame)[:, 2, 3] for frame in _moving_frames(robot)]
-    return np.asarray(np.min(heights, axis=0))
-
-
-def effort_limits(robot: Robot) -> Array:
-    """(n,) largest efforts of the actuated joints [N·m or N]; infinite where none is stated."""
-    stated = {joint.name: joint.effort for joint in robot.document.joints}
-    return np.array([stated.get(name) or np.inf for name in robot.actuated])
-
-
-def holdable_share(robot: Robot, a: Array, wrench: Array, point: Array, efforts: Array) -> Array:
-    """(N,) largest factor on the loads, at most one, that the motors hold beside the arm's weight.
+def feasible(
+    robot: Robot,
+    cell: Cell,
+    a: ArrayLike,
+    wrench: ArrayLike | None = None,
+    *,
+    point: ArrayLike | None = None,
+    force_point: ArrayLike | None = None,
+) -> Verdict:
+    """Ask of poses, and of the loads at them, whether they can be.
 
     Args:
         robot: The robot.
-        a, wrench: (N, n) poses and (N, 6) loads at `point` of the tool frame, base axes [N, N·m].
-        point: (3,) [m].
-        efforts: (n,) what the motors may be asked for [N·m or N].
-
-    Returns:
-        (N,) zero where the weight alone is too much.
+        cell: What stands around it, and how it is loaded and looked at.
+        a: (N, n) poses [rad or m].
+        wrench: (N, 6) loads at `force_point`, base axes [N, N·m]; None: poses alone are asked.
+        point, force_point: (3,) measured point, and point of the force (the same by default), in
+            the tool frame [m].
     """
-    load = robot.screws(a, point=point).torques(wrench)
-    weight = np.zeros_like(a)
-    if robot.total_mass > 0.0:
-        unique, inverse = np.unique(a, axis=0, return_inverse=True)
-        weight = robot.gravity_torque(unique)[inverse.reshape(-1)]
-    room = np.where(load > 0.0, efforts - weight, efforts + weight)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(np.abs(load) > 0.0, room / np.abs(load), np.inf)
-    share = np.where(np.abs(weight) > efforts, 0.0, share)
-    return np.asarray(np.clip(share.min(axis=1), 0.0, 1.0))
+    poses = np.atleast_2d(robot.coordinates(a))
+    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    unique, back = np.unique(poses, axis=0, return_inverse=True)
+    back = back.reshape(-1)
+    checks = [(bad[back], _at(words, back)) for bad, words in _of_poses(robot, cell, unique, at)]
+    if wrench is not None:
+        load = np.broadcast_to(np.atleast_2d(np.asarray(wrench, dtype=float)), (len(poses), 6))
+        pushed = at if force_point is None else np.asarray(force_point, dtype=float)
+        checks += _of_loads(robot, cell, poses, load, pushed)
+    bad = np.any([mask for mask, _ in checks], axis=0)
+    return Verdict(~bad, tuple(checks))
 
 
-@dataclass(frozen=True, eq=False)
-class Held:
-    """Loads that the motors can hold.
-
-    Attributes:
-        rows: Those of the candidates that remain.
-        wrench: (K, 6) their loads, scaled down where need be [N, N·m].
-        remarks: What was done and what nobody stated, in sentences.
-    """
-
-    rows: Index
-    wrench: Array
-    remarks: tuple[str, ...]
-
-
-def held_loads_of(robot: Robot, a: Array, wrench: Array, point: Array) -> Held:
-    """Scale loads (N, 6) at poses (N, n) to what the efforts of the URDF allow.
-
-    Raises:
-        Refusal: The motors cannot hold the arm's weight at any of the poses.
-    """
-    every = np.arange(len(a))
-    efforts = effort_limits(robot)
-    known = np.isfinite(efforts)
-    if not known.any():
-        said = "The URDF states no efforts: that the motors can hold these loads was not checked."
-        return Held(every, wrench, (said,))
-    share = holdable_share(robot, a, wrench, point, SHARE_OF_EFFORT * efforts)
-    fallen = share == 0.0
-    if fallen.mean() > PLACEHOLDER:
-        raise Refusal(
-            f"at {100 * fallen.mean():.0f} % of the poses the efforts of the URDF cannot even hold "
-            "the arm's own weight",
-            where=robot.name,
-            remedy='Correct effort or masses in the URDF; effort="0" says that it is not known.',
-        )
-    remarks = []
-    if not known.all():
-        names = ", ".join(np.array(robot.actuated)[~known])
-        remarks.append(f"The URDF states no effort of {names}: not checked there.")
-    if robot.total_mass == 0.0:
-        remarks.append("The URDF states no masses: the arm's own weight is not counted.")
-    rows = every[~fallen]
-    size = np.linalg.norm(wrench[rows, :3], axis=1)
-    # Rounded down to three digits: a scale that is set by hand, and never above what is allowed.
-    digit = 10.0 ** (np.floor(np.log10(np.maximum(share[rows] * size, 1e-300))) - 2)
-    kept = np.where(share[rows] < 1.0, np.floor(share[rows] * size / digit) * digit / size, 1.0)
-    scaled = wrench[rows] * kept[:, None]
-    if (share[rows] < 1.0).any():
-        sizes = size * kept
-        remarks.append(
-            f"Of {size.max():.3g} N the motors hold {sizes.min():.3g} to {sizes.max():.3g} N, "
-            f"as the pose allows: no joint gives more than {100 * SHARE_OF_EFFORT:.0f} % of its "
-            "effort in the URDF, the arm's weight included."
-        )
-    return Held(rows, scaled, tuple(remarks))
-
-
-def _centre_line(robot: Robot, a: Array, point: Array) -> Array:
-    """(N, k, 3) origins of the joints from the second one on, then the point [m]."""
-    screws = robot.screws(a, point=point)
-    tool = robot.screws(a).position
-    ends = np.stack([tool, screws.position], axis=1)
-    return np.concatenate([screws.origins[:, 1:], ends], axis=1)
-
-
-def _moving_frames(robot: Robot) -> tuple[str, ...]:
-    """Links that some joint moves against the base frame."""
-    body, _ = robot.tree.body(robot.base_frame)
-    return tuple(
-        frame
-        for frame in robot.frames
-        if _is_carried(robot, frame) and robot.tree.body(frame)[0] != body
+def _of_poses(robot: Robot, cell: Cell, a: Array, point: Array) -> list[tuple[Mask, Words]]:
+    out = [*_of_limits(robot, cell, a), *_of_followers(robot, a)]
+    closed = robot.closes(a)
+    out.append((~closed, lambda _: "the closed loops cannot be closed here"))
+    out.append(
+        (~unfolded(robot, a), lambda _: "a linkage is folded: its rod holds next to nothing")
     )
+    position = robot.screws(a, point=point).position
+    outside = np.zeros(len(a), dtype=bool)
+    if cell.low is not None:
+        outside |= (position < cell.low - ROUNDING).any(axis=1)
+    if cell.high is not None:
+        outside |= (position > cell.high + ROUNDING).any(axis=1)
+    out.append((outside, lambda k: f"the point leaves its box: {_mm(position[k])}"))
+    scene = scene_of(robot, cell, point)
+    asked = closed & ~outside  # the dear question comes last, and of those alone that may pass
+    touching = np.zeros(len(a), dtype=bool)
+    touching[asked] = ~scene.free(a[asked])
+
+    def contacts(k: int) -> str:
+        pairs = scene.contacts(a[k : k + 1])[0]
+        return f"nearer than {1e3 * cell.clearance:g} mm: " + ", ".join(
+            f"{first} to {second}" for first, second in pairs
+        )
+
+    out.append((touching, contacts))
+    return out + _of_sight(robot, cell, a, position, scene)
 
 
-def _is_carried(robot: Robot, frame: str) -> bool:
-    try:
-        robot.tree.path(robot.base_frame, frame)
-    except InputError:
-        return False
-    return True
+def _of_limits(robot: Robot, cell: Cell, a: Array) -> list[tuple[Mask, Words]]:
+    margin = np.where(robot.prismatic, cell.slide_margin, cell.angle_margin)
+    # A range that is narrower than two margins has its middle left.
+    half = 0.5 * (robot.upper - robot.lower)
+    margin = np.minimum(margin, np.where(np.isfinite(half), half, np.inf))
+    beyond = (a < robot.lower + margin - ROUNDING) | (a > robot.upper - margin + ROUNDING)
+
+    def words(k: int) -> str:
+        said = []
+        for j in np.flatnonzero(beyond[k]):
+            scale, unit_ = (1e3, "mm") if robot.prismatic[j] else (180.0 / np.pi, "deg")
+            said.append(
+                f"{robot.actuated[j]} at {scale * a[k, j]:.1f} {unit_}, allowed are "
+                f"{scale * (robot.lower[j] + margin[j]):.1f} to "
+                f"{scale * (robot.upper[j] - margin[j]):.1f} {unit_}"
+            )
+        return "; ".join(said)
+
+    return [(np.asarray(beyond.any(axis=1)), words)]
+
+
+def _of_followers(robot: Robot, a: Array) -> list[tuple[Mask, Words]]:
+    """Coupled joints within their own limits."""
+    if not robot.followers:
+        return []
+    values = robot.joint_values(a)
+    out: list[tuple[Mask, Words]] = []
+    for joint in robot.document.joints:
+        low, high = joint.lower, joint.upper
+        if joint.name not in robot.followers or joint.name not in values:
+            continue
+        if joint.type != "continuous" and low is not None and high is not None and low < high:
+            value = values[joint.name]
+            bad = (value < low - ROUNDING) | (value > high + ROUNDING)
+            out.append((bad, _constant(f"the coupled joint {joint.name} passes its limit")))
+    return out
+
+
+def unfolded(robot: Robot, a: Array) -> Mask:
+    """(M,) crank and rod of every linkage stand at an angle whose sine exceeds `FOLDED`."""
+    good = np.ones(len(a), dtype=bool)
+    for linkage in robot.linkages:
+        pivot, elbow, end = (robot.screws(a, frame).position for frame in linkage.corners)
+        crank, rod = elbow - pivot, end - elbow
+        sine = np.linalg.norm(np.cross(crank, rod), axis=1)
+        good &= sine > FOLDED * np.linalg.norm(crank, axis=1) * np.linalg.norm(rod, axis=1)
+    return good
+
+
+def _of_sight(
+    robot: Robot, cell: Cell, a: Array, position: Array, scene: Scene
+) -> list[tuple[Mask, Words]]:
+    tracker = cell.tracker
+    if tracker is None:
+        return []
+    ray = position - tracker.place
+    away = np.linalg.norm(ray, axis=1)
+    far = (away < tracker.nearest) | (away > tracker.farthest)
+    out: list[tuple[Mask, Words]] = [
+        (far, lambda k: f"the tracker is {away[k]:.2f} m away from the point")
+    ]
+    if tracker.axis is not None:
+        looks = robot.screws(a).rotation @ tracker.axis
+        off = np.arccos(np.clip(-np.einsum("ni,ni->n", looks, unit(ray)), -1.0, 1.0))
+        out.append((
+            off > tracker.cone + ROUNDING,
+            lambda k: f"the reflector looks {np.rad2deg(off[k]):.0f} deg past the tracker, it "
+            f"takes in {np.rad2deg(tracker.cone):.0f}",
+        ))  # fmt: skip
+    short = position - unit(ray) * np.minimum(HIDDEN_END, 0.5 * away)[:, None]
+    seen = scene.sees(a, tracker.place, short)
+    hidden = np.array([bool(name) for name in seen], dtype=bool)
+    out.append((hidden, lambda k: f"{seen[k]} stands between tracker and point"))
+    return out
+
+
+def _of_loads(
+    robot: Robot, cell: Cell, a: Array, wrench: Array, point: Array
+) -> list[tuple[Mask, Words]]:
+    screws = robot.screws(a, point=point)
+    limit = effort_limits(robot)
+    asked = np.abs(screws.torques(wrench) + weight_torques(robot, a))
+    over = asked > cell.effort_share * limit * (1.0 + 1e-6) + ROUNDING
+
+    def effort(k: int) -> str:
+        return "; ".join(
+            f"{robot.actuated[j]} must give {asked[k, j]:.0f} of "
+            f"{cell.effort_share * limit[j]:.0f} {'N' if robot.prismatic[j] else 'N*m'}"
+            for j in np.flatnonzero(over[k])
+        )
+
+    force = wrench[:, :3]
+    rig = cell.rig
+    away = ~rig.allows(screws.position, force)
+    twisted = np.asarray(wrench[:, 3:].any(axis=1) & (rig.words != "any direction"))
+    size = np.linalg.norm(force, axis=1)
+    return [
+        (np.asarray(over.any(axis=1)), effort),
+        (away, lambda k: f"{rig.words} cannot pull along {_n(force[k])}"),
+        (twisted, lambda _: f"{rig.words} brings no moment"),
+        (~rig.has(size), lambda k: f"{size[k]:.0f} N is none of the steps of the rig"),
+    ]  # fmt: skip
+
+
+def _at(words: Words, back: Index) -> Words:
+    return lambda k: words(int(back[k]))
+
+
+def _constant(text: str) -> Words:
+    return lambda _: text
+
+
+def _mm(x: Array) -> str:
+    return "(" + ", ".join(f"{1e3 * v:.0f}" for v in x) + ") mm"
+
+
+def _n(force: Array) -> str:
+    return "(" + ", ".join(f"{v:.0f}" for v in force) + ") N"

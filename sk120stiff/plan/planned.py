@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from sk120stiff.effects import Effect
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
+from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.design import d_optimal
 from sk120stiff.plan.discriminate import rivalry
-from sk120stiff.plan.pool import Pool, Region, feasible_pool
+from sk120stiff.plan.pool import Pool, feasible_pool
 from sk120stiff.robot import Robot
 
 POSES = 400  # to choose from
@@ -29,10 +30,10 @@ def plan(
     force: float = 400.0,
     point: ArrayLike | None = None,
     sigma: float = 1e-5,
-    region: Region | None = None,
+    cell: Cell | None = None,
     seed: int = 0,
 ) -> Measurements:
-    """The poses and loads to measure next, within limits, efforts and the region that is given.
+    """The poses and loads to measure next, such as can be driven.
 
     D-optimal for the parameters that count, or T-optimal between two effects.
 
@@ -44,7 +45,7 @@ def plan(
         force: Size of the loads [N], less where the motors cannot hold it.
         point: (3,) measured and loaded point in the tool frame [m]; its origin by default.
         sigma: Standard uncertainty of one reading per axis [m].
-        region: Where the arm may stand; anywhere by default.
+        cell: What poses and loads must keep to; what is guessed without one is in `Pool.remarks`.
         seed: Of the poses that are chosen from.
 
     Raises:
@@ -66,7 +67,7 @@ def plan(
         point=at,
         force_point=at,
         seed=seed,
-        region=region or Region(),
+        cell=cell,
     )
     rows: Sequence[int]
     if between is None:

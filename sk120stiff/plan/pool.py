@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Situation, situation_of_load
-from sk120stiff.errors import InputError, Refusal
-from sk120stiff.plan.feasible import Column, base_column, clear_of, held_loads_of, lowest_points
+from sk120stiff.errors import Refusal
+from sk120stiff.plan.cell import Cell
+from sk120stiff.plan.efforts import held_loads_of
+from sk120stiff.plan.feasible import feasible, unfolded
+from sk120stiff.plan.surroundings import assumptions
 from sk120stiff.robot import Robot
 
 REACH_OF_UNLIMITED = np.pi  # rad; a joint without limits is used over one turn
 REACH_OF_UNLIMITED_SLIDE = 0.5  # m
 SHARE_OF_RANGE = 0.9  # the ends of the range are left out
-FOLDED = 0.2  # sine of the crank-rod angle; below it a rod's share grows beyond all loads
-DRAWS = 200  # batches drawn before a region is given up
+BATCHES = 200  # drawn before closed loops are given up
+DRAWS = 10_000  # poses drawn before a cell is given up
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,46 +43,6 @@ class Pool:
         return self.situation.count
 
 
-@dataclass(frozen=True, eq=False)
-class Region:
-    """Where the arm may stand, beside its joint limits; in the base frame [m].
-
-    Attributes:
-        lowest: Height above which every joint and the measured point must stay.
-        low, high: (3,) corners of a box that the measured point must not leave.
-        column: What the arm stands on and must not run into.
-    """
-
-    lowest: float = -np.inf
-    low: Array | None = None
-    high: Array | None = None
-    column: Column | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("low", "high"):
-            corner = getattr(self, name)
-            if corner is not None and np.shape(corner) != (3,):
-                raise InputError(f"a corner of the box has the shape {np.shape(corner)}, not (3,)")
-        if self.low is not None and self.high is not None and np.any(self.low >= self.high):
-            raise InputError(
-                "the box has no inside", remedy="Give the smaller corner first: x, y, z each."
-            )
-
-    def holds(self, robot: Robot, a: Array, point: Array) -> Mask:
-        """(N,) poses a (N, n) that lie in the region, coupled joints within their limits too."""
-        at = robot.screws(a, point=point).position
-        good = np.ones(len(a), dtype=bool)
-        if self.low is not None:
-            good &= (at >= self.low).all(axis=1)
-        if self.high is not None:
-            good &= (at <= self.high).all(axis=1)
-        if np.isfinite(self.lowest):
-            good &= lowest_points(robot, a, point) >= self.lowest - 1e-9
-        if self.column is not None:
-            good &= clear_of(self.column, robot, a, point)
-        return good & _coupled_within_limits(robot, a)
-
-
 def random_pool(
     robot: Robot,
     *,
@@ -86,7 +51,7 @@ def random_pool(
     force: float,
     point: Array,
     seed: int = 0,
-    region: Region | None = None,
+    cell: Cell | None = None,
     force_point: Array | None = None,
 ) -> Pool:
     """Random poses within the joint limits, each under loads in random directions.
@@ -98,19 +63,21 @@ def random_pool(
         point, force_point: (3,) measured point and point of the force in the tool frame [m]; the
             force acts at the measured point unless said otherwise.
         seed: Of the draw.
-        region: Restricts the poses further.
+        cell: What poses and directions must keep to; without one joint limits alone.
 
     Raises:
-        Refusal: Next to no pose lies in the region.
+        Refusal: Next to no pose can be had.
     """
     rng = np.random.default_rng(seed)
-    a = random_poses(robot, poses, rng)
-    if region is not None:
-        a = poses_in(robot, poses, rng, region, point)
-    loads = np.zeros((poses * directions, 6))
-    loads[:, :3] = rng.normal(size=(poses * directions, 3))
-    loads[:, :3] *= force / np.linalg.norm(loads[:, :3], axis=1, keepdims=True)
-    repeated = np.repeat(a, directions, axis=0)
+    if cell is None:
+        a = random_poses(robot, poses, rng)
+    else:
+        a = poses_in(robot, poses, rng, cell, point)
+    pushed = robot.screws(a, point=point if force_point is None else force_point).position
+    drawn = (cell or Cell()).rig.draw(pushed, directions, rng)
+    loads = np.zeros((drawn.shape[0] * drawn.shape[1], 6))
+    loads[:, :3] = force * drawn.reshape(-1, 3)
+    repeated = np.repeat(a, drawn.shape[1], axis=0)
     return Pool(situation_of_load(robot, repeated, loads, point=point, force_point=force_point))
 
 
@@ -122,31 +89,32 @@ def feasible_pool(
     force: float,
     point: Array,
     seed: int = 0,
-    region: Region | None = None,
+    cell: Cell | None = None,
     force_point: Array | None = None,
 ) -> Pool:
-    """`random_pool` of what can be driven: clear of the base column, within the motors' efforts.
+    """`random_pool` of what can be driven, held and seen; see `feasible`.
 
-    Loads are scaled down to what the efforts of the URDF hold beside the arm's weight; poses whose
-    weight alone is too much are left out. `Pool.remarks` says so, and what was not checked.
+    Loads are scaled down to what the efforts of the URDF hold beside the arm's weight, and to the
+    steps of the rig; poses whose weight alone is too much are left out. `Pool.remarks` says so, and
+    what was taken for granted.
 
     Raises:
-        Refusal: Next to no pose lies in the region, or the motors cannot hold the arm itself.
+        Refusal: Next to no pose is feasible, or the motors cannot hold the arm itself.
     """
-    within = replace(region or Region(), column=base_column(robot))
+    within = cell or Cell()
     drawn = random_pool(
         robot, poses=poses, directions=directions, force=force, point=point, seed=seed,
-        region=within, force_point=force_point,
-    )  # fmt: skip
-    situation = drawn.situation
-    loaded = situation.force_point
-    held = held_loads_of(robot, situation.a, situation.wrench, loaded)
-    remarks = list(held.remarks)
-    if within.column is None:
-        remarks.append("The first joint does not turn: what the arm stands on is not kept clear.")
-    if not np.isfinite(within.lowest):
-        remarks.append("No floor was given: poses may go below the ground.")
-    return Pool(replace(situation.rows(held.rows), wrench=held.wrench), tuple(remarks))
+        cell=within, force_point=force_point,
+    ).situation  # fmt: skip
+    held = held_loads_of(robot, within, drawn.a, drawn.wrench, drawn.force_point)
+    if not len(held.rows):
+        raise Refusal(
+            f"at no pose do the motors hold a step of the rig up to {force:g} N",
+            where=within.source or robot.name,
+            remedy="Give smaller steps, or a larger force.",
+        )
+    remarks = (*held.remarks, *assumptions(robot, within, point))
+    return Pool(replace(drawn.rows(held.rows), wrench=held.wrench), remarks)
 
 
 def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
@@ -161,9 +129,9 @@ def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     lower, upper = usable_range(robot)
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
     kept = np.zeros((0, robot.n))
-    for _ in range(DRAWS):
+    for _ in range(BATCHES):
         drawn = middle + half * rng.uniform(-1.0, 1.0, (count, robot.n))
-        kept = np.concatenate([kept, drawn[robot.closes(drawn) & _open(robot, drawn)]])
+        kept = np.concatenate([kept, drawn[robot.closes(drawn) & unfolded(robot, drawn)]])
         if len(kept) >= count:
             return kept[:count]
     raise Refusal(
@@ -183,52 +151,37 @@ def usable_range(robot: Robot) -> tuple[Array, Array]:
 
 
 def poses_in(
-    robot: Robot, count: int, rng: np.random.Generator, region: Region, point: ArrayLike
+    robot: Robot, count: int, rng: np.random.Generator, cell: Cell, point: ArrayLike
 ) -> Array:
-    """(count, n) random coordinates in a region.
+    """(count, n) random feasible coordinates.
 
     Raises:
-        Refusal: Next to no pose lies in it.
+        Refusal: Next to no pose is; the commonest reason is named.
     """
-    at = np.asarray(point, dtype=float)
     found: list[Array] = []
     missing = count
-    for _ in range(DRAWS):
+    why: Counter[str] = Counter()
+    drawn_in_all = 0
+    while drawn_in_all < DRAWS:
         drawn = random_poses(robot, max(count, 64), rng)
-        kept = drawn[region.holds(robot, drawn, at)][:missing]
-        found.append(kept)
-        missing -= len(kept)
+        verdict = feasible(robot, cell, drawn, point=point)
+        drawn_in_all += len(drawn)
+        found.append(drawn[verdict.ok][:missing])
+        missing -= len(found[-1])
         if not missing:
             return np.concatenate(found)
+        if len(found) == 1:
+            said = (faults[0] for faults in verdict.faults if faults)
+            why.update(_kind(text) for text in said)
     raise Refusal(
-        f"only {count - missing} of {DRAWS * max(count, 64)} poses drawn within the joint limits "
-        "lie where the arm may stand",
-        where=robot.name,
-        remedy="Lower the floor or widen the box.",
+        f"only {count - missing} of {drawn_in_all} poses drawn within the joint limits can be "
+        f"had; the commonest reason: {why.most_common(1)[0][0]}",
+        where=cell.source or robot.name,
+        remedy="Lower the floor, widen the box, or correct the cell; --check says what is wrong "
+        "with single poses.",
     )
 
 
-def _open(robot: Robot, a: Array) -> Mask:
-    """(M,) crank and rod of every linkage stand at an angle whose sine exceeds `FOLDED`."""
-    good = np.ones(len(a), dtype=bool)
-    for linkage in robot.linkages:
-        pivot, elbow, end = (robot.screws(a, frame).position for frame in linkage.corners)
-        crank, rod = elbow - pivot, end - elbow
-        sine = np.linalg.norm(np.cross(crank, rod), axis=1)
-        good &= sine > FOLDED * np.linalg.norm(crank, axis=1) * np.linalg.norm(rod, axis=1)
-    return good
-
-
-def _coupled_within_limits(robot: Robot, a: Array) -> Mask:
-    good = np.ones(len(a), dtype=bool)
-    if not robot.followers:
-        return good
-    values = robot.joint_values(a)
-    for joint in robot.document.joints:
-        low, high = joint.lower, joint.upper
-        if joint.name not in robot.followers or joint.name not in values:
-            continue
-        if joint.type != "continuous" and low is not None and high is not None and low < high:
-            value = values[joint.name]
-            good &= (value >= low - 1e-9) & (value <= high + 1e-9)
-    return good
+def _kind(fault: str) -> str:
+    """A fault without its numbers, so that like ones count together."""
+    return re.sub(r"\([^()]*\) mm|-?\d[\d.]*", "...", fault).removesuffix(": ...")

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -81,10 +82,15 @@ def visuals(robot: Robot | UrdfDocument) -> Appearance:
         robot: A loaded robot, or its document.
     """
     document = robot.document if isinstance(robot, Robot) else robot
+    return shapes_of(document, document.visuals)
+
+
+def shapes_of(document: UrdfDocument, specs: Iterable[VisualSpec]) -> Appearance:
+    """The same of some of its shapes, such as those for collision checks."""
     shapes: list[Visual] = []
     findings: list[Finding] = []
     meshes: dict[str, _Mesh | str] = {}
-    for spec in document.visuals:
+    for spec in specs:
         address = spec.geometry.filename
         if address is None:
             shapes.append(_visual(spec, None))
@@ -112,11 +118,19 @@ def _visual(spec: VisualSpec, mesh: _Mesh | None) -> Visual:
     )
 
 
+def read_mesh(path: Path) -> Array | str:
+    """(V, 3) corners of a mesh file, or why there are none."""
+    mesh = _read_file(path)
+    return mesh if isinstance(mesh, str) else mesh.vertices
+
+
 def _read(address: str, document: UrdfDocument) -> _Mesh | str:
     """The mesh behind an address, or why there is none."""
     path, why = resolve(address, document.path, document.package_folders)
-    if path is None:
-        return why
+    return why if path is None else _read_file(path)
+
+
+def _read_file(path: Path) -> _Mesh | str:
     note_read(path)
     kind = _READABLE.get(path.suffix.lower().lstrip("."))
     if kind is None:

@@ -8,8 +8,8 @@ import pytest
 from sk120stiff.effects import effect, situation_of_load
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.plan import (
+    Cell,
     Pool,
-    Region,
     d_optimal,
     discriminating_readings,
     random_choice,
@@ -157,22 +157,20 @@ def test_spread_poses_lie_far_apart(robot, pool) -> None:
 
 
 def test_regions_are_kept(robot) -> None:
-    region = Region(lowest=-0.5, low=np.array([0.5, -1.0, 0.0]), high=np.array([2.5, 1.0, 1.5]))
-    found = random_pool(
-        robot, poses=50, directions=1, force=1.0, point=POINT, region=region, seed=4
-    )
+    cell = Cell(floor=-0.5, low=np.array([0.5, -1.0, 0.0]), high=np.array([2.5, 1.0, 1.5]))
+    found = random_pool(robot, poses=50, directions=1, force=1.0, point=POINT, cell=cell, seed=4)
     a = found.situation.a
     T = robot.placement(a)
     at = T[:, :3, :3] @ POINT + T[:, :3, 3]
-    assert np.all((at >= region.low) & (at <= region.high))
+    assert np.all((at >= cell.low) & (at <= cell.high))
     for frame in robot.frames:
         assert robot.placement(a, frame)[:, 2, 3].min() >= -0.5 - 1e-9
     assert np.all((a >= robot.lower) & (a <= robot.upper))
-    nowhere = Region(low=np.full(3, 50.0), high=np.full(3, 51.0))
+    nowhere = Cell(low=np.full(3, 50.0), high=np.full(3, 51.0))
     with pytest.raises(Refusal, match="only 0 of"):
-        random_pool(robot, poses=5, directions=1, force=1.0, point=POINT, region=nowhere)
+        random_pool(robot, poses=5, directions=1, force=1.0, point=POINT, cell=nowhere)
     with pytest.raises(InputError, match="no inside"):
-        Region(low=np.ones(3), high=np.zeros(3))
+        Cell(low=np.ones(3), high=np.zeros(3))
 
 
 def test_coupled_joints_keep_their_limits(tmp_path) -> None:
@@ -188,9 +186,7 @@ def test_coupled_joints_keep_their_limits(tmp_path) -> None:
         encoding="utf-8",
     )
     robot = load_robot(str(tmp_path / "arm.urdf"))
-    found = random_pool(
-        robot, poses=40, directions=1, force=1.0, point=np.zeros(3), region=Region()
-    )
+    found = random_pool(robot, poses=40, directions=1, force=1.0, point=np.zeros(3), cell=Cell())
     assert np.abs(found.situation.a).max() <= 0.5 + 1e-9
 
 

@@ -18,7 +18,7 @@ from sk120stiff.explain.findings import Detectable
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
-from sk120stiff.plan import Region, Rivalry, base_column, lowest_points, random_pool
+from sk120stiff.plan import Cell, Rivalry, cell_from_data, random_pool
 
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
 CONFIRMED = 2.0 * (SURE + 0.84)
@@ -101,12 +101,11 @@ def next_poses(
     problem = final.problem
     robot, readings = problem.model.robot, problem.measurements
     situation = problem.situation
-    floor = float(lowest_points(robot, situation.a, situation.point[0]).min())
-    region = Region(lowest=floor, column=base_column(robot))
+    at = situation.point[0]
+    cell = cell_from_data(robot, Cell(), situation.a, np.zeros((1, 6)), at)
     try:
         pool = random_pool(
-            robot, poses=POOL, directions=1, force=1.0, point=situation.point[0], seed=seed,
-            region=region,
+            robot, poses=POOL, directions=1, force=1.0, point=at, seed=seed, cell=cell
         )  # fmt: skip
     except Refusal:
         return None  # no other pose can be driven as far as is known

@@ -12,7 +12,7 @@ from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
-from sk120stiff.plan import Region, discriminating_readings, feasible_pool, lowest_points
+from sk120stiff.plan import Cell, cell_from_data, discriminating_readings, feasible_pool
 
 READINGS_TO_MEASURE = 10  # proposed: half a day with a tracker
 SHARES_OF_LOAD = (1.0, 0.5, 0.25, 0.1)  # tried until the model holds the load at every pose
@@ -50,7 +50,7 @@ def next_poses(
         situation = answer.final.problem.situation
         model = answer.final.model
         force = float(np.linalg.norm(situation.wrench[:, :3], axis=1).max())
-        floor = float(lowest_points(model.robot, situation.a, situation.point).min())
+        cell = cell_from_data(model.robot, Cell(), situation.a, situation.wrench, situation.point)
         pool = feasible_pool(
             model.robot,
             poses=400,
@@ -59,7 +59,7 @@ def next_poses(
             point=situation.point,
             force_point=situation.force_point,
             seed=seed,
-            region=Region(lowest=floor),
+            cell=cell,
         )
         rival = answer.effect(rivals[0])
         sigma = answer.noise.sigma * answer.final.noise_factor

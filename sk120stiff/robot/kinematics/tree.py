@@ -1,4 +1,4 @@
-"""The one file that talks to Pinocchio: a kinematic tree read from clean URDF text.
+"""A kinematic tree read from clean URDF text: all that Pinocchio does but collisions.
 
 Pinocchio parses, places and weighs; we keep the coupling of mimic joints ourselves, because its own
 mimic support refuses or falsifies several derivatives. Every name is checked before Pinocchio sees
@@ -44,6 +44,15 @@ class Tree:
         self.frame_names: tuple[str, ...] = tuple(
             frame.name for frame in self._model.frames if frame.type == pin.FrameType.BODY
         )
+
+    @property
+    def model(self) -> pin.Model:
+        """Pinocchio's own model, for `robot.collision`."""
+        return self._model
+
+    def carrier(self, body: int) -> int:
+        """The moving joint that carries another one; -1: none."""
+        return int(self._model.parents[body + 1]) - 1
 
     @property
     def m(self) -> int:
@@ -141,7 +150,7 @@ class Tree:
 
     def _carried(self, joints: tuple[int, ...]) -> Iterator[tuple[int, pin.SE3, pin.Inertia]]:
         """Every body with mass: position of the joint that carries it, place on it, inertia."""
-        pin.forwardKinematics(self._model, self._data, self._configuration(np.zeros(self.m)))
+        pin.forwardKinematics(self._model, self._data, self.configuration(np.zeros(self.m)))
         position = {joint + 1: k for k, joint in enumerate(joints)}
         for body in range(1, self.m + 1):
             carrier = body
@@ -178,7 +187,7 @@ class Tree:
         joint, T_body_frame = self.body(frame)
         if joint < 0:
             return np.zeros((6, self.m))
-        pin.computeJointJacobians(self._model, self._data, self._configuration(q))
+        pin.computeJointJacobians(self._model, self._data, self.configuration(q))
         columns = np.array(
             pin.getJointJacobian(self._model, self._data, joint + 1, pin.LOCAL_WORLD_ALIGNED)
         ).reshape(6, self.m)
@@ -194,10 +203,10 @@ class Tree:
             gravity: (3,) acceleration in root axes [m/s²].
         """
         self._model.gravity.linear = np.asarray(gravity, dtype=float)
-        held = pin.computeGeneralizedGravity(self._model, self._data, self._configuration(q))
+        held = pin.computeGeneralizedGravity(self._model, self._data, self.configuration(q))
         return -np.asarray(held)
 
-    def _configuration(self, q: Array) -> Array:
+    def configuration(self, q: Array) -> Array:
         """Pinocchio's configuration (nq,) for tangent coordinates q (m,)."""
         values = np.zeros(self._model.nv)
         for k in range(self.m):

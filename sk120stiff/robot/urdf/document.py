@@ -128,7 +128,10 @@ class GeometrySpec:
 
 @dataclass(frozen=True, eq=False)
 class VisualSpec:
-    """One `<visual>` of a link: (4, 4) T_link_visual [m], shape, colour (r, g, b, a) or None."""
+    """One `<visual>` or `<collision>` of a link.
+
+    (4, 4) T_link_visual [m], shape, colour (r, g, b, a) or None.
+    """
 
     link: str
     name: str
@@ -155,6 +158,7 @@ class UrdfDocument:
         path: The file that was read, None for text.
         package_folders: Folders in which ``package://`` addresses are looked up, first match wins.
         joints, links, visuals: In the order of the file; undeclared links last.
+        collisions: Shapes for collision checks, in the order of the file.
         root: The only link without a parent.
         locked: Why each joint was locked that the file describes as moving.
         orphans: Mimic rules that name a joint which does not exist, by the joint that has the rule.
@@ -171,6 +175,7 @@ class UrdfDocument:
     links: tuple[LinkSpec, ...]
     visuals: tuple[VisualSpec, ...]
     root: str
+    collisions: tuple[VisualSpec, ...] = ()
     locked: Mapping[str, str] = field(default_factory=dict)
     orphans: Mapping[str, Mimic] = field(default_factory=dict)
     warnings: tuple[Finding, ...] = ()

@@ -115,12 +115,15 @@ def _rgba(colour: Element, fields: Fields) -> Colour | None:
     return (r, g, b, rest[0] if rest else 1.0)
 
 
-def read_visuals(
-    link: Element, name: str, colours: dict[str, Colour], notes: Notebook
+def read_shapes(
+    link: Element, name: str, colours: dict[str, Colour], notes: Notebook, tag: str = "visual"
 ) -> list[VisualSpec]:
-    """Shapes of one link; a shape that cannot be understood is noted and left out."""
+    """Shapes of one link, to be seen or (`tag` ``collision``) not to be run into.
+
+    A shape that cannot be understood is noted and left out.
+    """
     found = []
-    for element in link.iterchildren("visual"):
+    for element in link.iterchildren(tag):
         fields = Fields(notes, "link", name)
         try:
             shape = _visual(element, fields, colours)
@@ -135,7 +138,7 @@ def read_visuals(
 def _visual(element: Element, fields: Fields, colours: dict[str, Colour]) -> VisualSpec | None:
     geometry_element = element.find("geometry")
     if geometry_element is None:
-        fields.warn("unknown_geometry", element, "<visual> without <geometry> was left out")
+        fields.warn("unknown_geometry", element, f"<{element.tag}> without <geometry> was left out")
         return None
     geometry = _geometry(geometry_element, fields)
     if geometry is None:

@@ -13,7 +13,7 @@ from sk120stiff.robot.urdf.clean import clean_xml
 from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument, VisualSpec
 from sk120stiff.robot.urdf.findings import Notebook, at
 from sk120stiff.robot.urdf.joints import read_joint, same_names
-from sk120stiff.robot.urdf.links import read_link, read_materials, read_visuals
+from sk120stiff.robot.urdf.links import read_link, read_materials, read_shapes
 from sk120stiff.robot.urdf.mimics import checked_mimics, without_orphans
 from sk120stiff.robot.urdf.packages import package_folders as folders_around
 from sk120stiff.robot.urdf.source import RawSource, read_source
@@ -142,8 +142,10 @@ def _document(
     checked = checked_mimics(coupled, locked, notes)
     colours = read_materials(root, notes)
     visuals: list[VisualSpec] = []
+    collisions: list[VisualSpec] = []
     for element, link in zip(link_elements, declared, strict=True):
-        visuals.extend(read_visuals(element, link.name, colours, notes))
+        visuals.extend(read_shapes(element, link.name, colours, notes))
+        collisions.extend(read_shapes(element, link.name, colours, notes, "collision"))
     return UrdfDocument(
         name=name,
         xml=clean_xml(name, links, checked),
@@ -153,6 +155,7 @@ def _document(
         joints=checked,
         links=links,
         visuals=tuple(visuals),
+        collisions=tuple(collisions),
         root=tree_root,
         locked=locked,
         orphans=orphans,

@@ -1,0 +1,57 @@
+"""The option `--cell`, and the file that is taken without it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import Measurements
+from sk120stiff.plan import Cell, cell_from_data, read_cell
+from sk120stiff.robot import Robot
+
+CellOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--cell",
+        metavar="YAML",
+        help="What stands around the arm, its rig and its tracker (docs/FILES.md).",
+        show_default="cell.yaml beside the file or the robot, else guesses that are printed",
+    ),
+]
+NAME = "cell.yaml"
+
+
+def opened_cell(robot: Robot, given: Path | None, *beside: Path | None) -> Cell:
+    """The cell of `--cell`, else the `cell.yaml` beside one of some files or the robot, else none.
+
+    Raises:
+        InputError: The file is not there or holds what it may not.
+    """
+    if given is not None:
+        if not given.is_file():
+            raise InputError("there is no such file", where=f"--cell {given}")
+        return read_cell(given, robot)
+    folders = [path if path.is_dir() else path.parent for path in beside if path is not None]
+    if robot.document.path is not None:
+        folders.append(robot.document.path.parent)
+    for folder in folders:
+        if (folder / NAME).is_file():
+            return read_cell(folder / NAME, robot)
+    return Cell()
+
+
+def as_measured(robot: Robot, cell: Cell, known: Measurements | None) -> Cell:
+    """The cell with floor and directions as readings had them, where it says nothing of them."""
+    if known is None:
+        return cell
+    wrench = known.wrench
+    if known.force_frame == "tool":
+        turn = robot.screws(known.joints).rotation
+        wrench = np.concatenate(
+            [np.einsum("nij,nj->ni", turn, part) for part in (wrench[:, :3], wrench[:, 3:])], axis=1
+        )
+    return cell_from_data(robot, cell, known.joints, wrench, known.point)
