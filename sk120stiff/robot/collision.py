@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.robot.anatomy import arm_joints, sample_poses
+from sk120stiff.robot.anatomy import arm_joint, arm_joints, sample_poses
 from sk120stiff.robot.robot import Robot
 from sk120stiff.robot.solids import Solid, body_of, capsule_between
 
@@ -26,6 +26,7 @@ except ImportError:  # Pinocchio 2 and 3.0
 SAMPLES = 100  # poses that tell which pairs touch wherever the arm stands
 WHEREVER = 0.95  # share of them
 SIGHT_RADIUS = 2e-3  # m; of a laser beam
+UPRIGHT = 0.999  # cosine of an axis that is vertical
 FAR = 1e3  # m; below everything
 
 Pair = tuple[str, str]
@@ -94,9 +95,13 @@ class Scene:
         return found
 
     def lowest(self, a: Array, up: Array) -> Array:
-        """(N,) how high the lowest solid that moves stands, along `up` (3,) from the base [m]."""
+        """(N,) how high the lowest solid that moves stands, along `up` (3,) from the base [m].
+
+        A turret that turns about `up` is left out: it stands as high as it was put.
+        """
         ground = coal.Halfspace(np.asarray(up, dtype=float), -FAR)
-        moving = np.flatnonzero(self._bodies[: self._own] != self._base)
+        least = turret(self.robot, up)
+        moving = [k for k in range(self._own) if self._rank(int(self._bodies[k])) > least]
         out = np.full(len(a), np.inf)
         request = coal.DistanceRequest()
         for row, q in enumerate(self._values(a)):
@@ -165,43 +170,34 @@ class Scene:
         )
 
     def _asked(self) -> tuple[list[tuple[int, int]], list[Pair]]:
-        """Pairs of solids that may not touch, and pairs of bodies that do wherever the arm is."""
+        """Pairs of solids that may not touch, and pairs that do wherever the arm is."""
         held = [
             (i, j)
             for i in range(self._own)
             for j in range(i + 1, len(self.solids))
             if self._may_meet(i, j)
         ]
-        data = self.robot.tree.model.createData()
-        geometry = self._geometry.copy()  # of them, how near they were drawn counts too
+        geometry = self._geometry.copy()
         for i, j in held:
             geometry.addCollisionPair(pin.CollisionPair(i, j))
-        found = geometry.createData()
-        for request in found.collisionRequests:
+        model, found = self.robot.tree.model, geometry.createData()
+        data = model.createData()
+        for request in found.collisionRequests:  # how near they were drawn counts too
             request.security_margin = self.clearance
         poses = sample_poses(self.robot, SAMPLES)
-        bodies = [(int(self._group(i)), int(self._group(j))) for i, j in held]
-        times = dict.fromkeys(bodies, 0)
+        times = np.zeros(len(held))
         for q in self._values(poses):
-            pin.computeCollisions(self.robot.tree.model, data, geometry, found, q, False)
-            hit = {
-                pair
-                for pair, result in zip(bodies, found.collisionResults, strict=True)
-                if result.isCollision()
-            }
-            for pair in hit:
-                times[pair] += 1
-        always = {pair for pair, count in times.items() if count >= WHEREVER * len(poses)}
-        names: dict[tuple[int, int], Pair] = {}
-        for (i, j), pair in zip(held, bodies, strict=True):
-            if pair in always:
-                names.setdefault(pair, (self.solids[i].name, self.solids[j].name))
-        asked = [pair for pair, body in zip(held, bodies, strict=True) if body not in always]
-        return asked, list(names.values())
-
-    def _group(self, k: int) -> int:
-        """The body of a solid that the robot carries; each solid around it by itself."""
-        return int(self._bodies[k]) if k < self._own else -10 - k
+            pin.computeCollisions(model, data, geometry, found, q, False)
+            times += [result.isCollision() for result in found.collisionResults]
+        own = np.array([j < self._own for _, j in held], dtype=bool)  # a wall is never drawn so
+        always = own & (times >= WHEREVER * len(poses))
+        names = [
+            (self.solids[i].name, self.solids[j].name)
+            for (i, j), touch in zip(held, always, strict=True)
+            if touch
+        ]
+        asked = [pair for pair, touch in zip(held, always, strict=True) if not touch]
+        return asked, list(dict.fromkeys(names))
 
     def _may_meet(self, i: int, j: int) -> bool:
         first, second = int(self._bodies[i]), int(self._bodies[j])
@@ -209,7 +205,21 @@ class Scene:
             return False
         if j >= self._own:
             return first != self._base and self._rank(first) > self.solids[j].spares
-        return self._next(first) != second and self._next(second) != first
+        return (
+            self._next(first) != second
+            and self._next(second) != first
+            and frozenset((first, second)) not in self._pinned
+        )
+
+    @cached_property
+    def _pinned(self) -> set[frozenset[int]]:
+        """Bodies that a closed loop joins, which the tree of the URDF holds apart."""
+        robot = self.robot
+        joined = [closure.frames for closure in robot.closures]
+        for linkage in robot.linkages:
+            ends = [arm_joint(robot, driver).link for driver in linkage.drivers]
+            joined += [(linkage.rod, end) for end in (*ends, *linkage.corners)]
+        return {frozenset(robot.tree.body(frame)[0] for frame in pair) for pair in joined}
 
     def _next(self, body: int) -> int:
         """The nearest body towards the root that has a shape."""
@@ -225,7 +235,14 @@ class Scene:
         chain = {int(k): rank for rank, k in enumerate(self.robot.mechanism().chain.coordinates, 1)}
         while body >= 0 and body not in chain:
             body = self.robot.tree.carrier(body)
-        return chain.get(body, len(arm_joints(self.robot)))
+        return chain.get(body, 0)
+
+
+def turret(robot: Robot, up: Array) -> int:
+    """1 where the arm's first joint turns about a direction (3,) of the base, else 0."""
+    if not arm_joints(robot) or not arm_joints(robot)[0].revolute:
+        return 0
+    return int(abs(robot.screws(robot.rest).axes[0] @ np.asarray(up)) > UPRIGHT)
 
 
 def _transform(T: pin.SE3) -> coal.Transform3s:

@@ -123,3 +123,22 @@ def test_bad_options(run, tmp_path: Path, options, code: int, hint: str) -> None
     assert (outcome.code, outcome.answered) == (code, False)
     assert hint in outcome.stderr
     assert not out.exists()
+
+
+def test_rows_are_checked_one_by_one(run, tmp_path: Path) -> None:
+    """What was planned passes; what was measured outside the cell is told line by line."""
+    cell = tmp_path / "cell.yaml"
+    cell.write_text("floor: -1 m\nrig: {kind: weight, steps: '100, 300 N'}\n", encoding="utf-8")
+    out = str(tmp_path / "plan.csv")
+    options = ("--cell", str(cell), "--point", "0,40,150 mm")
+    made = run("plan", "--model", MODEL, "--count", "4", *FEW, *options, "--out", out, "--json")
+    assert made.code == 0 and made.document["cell"] == str(cell)
+    found = run("plan", "--check", out, "--json")  # the cell beside the plan
+    assert found.code == 0 and found.document["feasible"] == 4
+    assert found.document["cell"] == str(cell)
+    bad = run("plan", "--check", DATA, "--cell", str(cell), "--json")
+    assert bad.code == 1 and bad.document["feasible"] == 0
+    first = bad.document["rows"][0]
+    assert first["line"] == 2 and any("weight" in fault for fault in first["faults"])
+    assert run("plan", "--check", DATA).code == 0
+    assert run("plan", "--count", "3").code == 2

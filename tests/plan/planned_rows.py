@@ -1,0 +1,84 @@
+"""Plans for public arms, and MuJoCo's word on each of their rows."""
+
+import tempfile
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff.errors import ToolkitWarning
+from sk120stiff.plan import Cell, feasible_pool, lowest_points, random_poses
+from sk120stiff.robot import Robot, load_robot
+from tests.corpus.robots import example
+from tests.oracles.mujoco_cell import MujocoCell
+
+POINT = np.array([0.0, 0.05, 0.1])
+ARMS = {
+    "ur10_robot.urdf": "tool0",
+    "panda.urdf": "panda_link8",
+    "ur3_robot.urdf": "tool0",
+    "ur5_robot.urdf": "tool0",
+    "kinova.urdf": None,
+    "xarm7.urdf": None,
+    "talos_left_arm.urdf": None,
+    "z1.urdf": None,
+    "ur5e": None,
+    "motoman_sk120": None,
+}
+PINS = {"motoman_sk120": [("crank", "rod"), ("rod", "link_3_u")]}  # its parallelogram
+
+
+def rows_of(name: str, poses: int, seed: int = 7) -> tuple[int, list[str], float]:
+    """Number of planned rows, what MuJoCo finds wrong with them, and with random poses."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ToolkitWarning)
+        robot = load_robot(example(name) if name.endswith("urdf") else name, tool=ARMS[name])
+    drawn = random_poses(robot, 200, np.random.default_rng(seed))
+    floor = float(np.quantile(lowest_points(robot, drawn, POINT), 0.3)) - 0.02
+    cell = Cell(floor=floor)
+    pool = feasible_pool(
+        robot, poses=poses, directions=2, force=200.0, point=POINT, seed=seed, cell=cell
+    ).situation
+    standing = [_values(robot, a) for a in drawn]
+    path = robot.document.path
+    assert path is not None
+    with tempfile.TemporaryDirectory() as folder:
+        judge = MujocoCell(
+            path, Path(folder), standing, floor + _base_height(robot), PINS.get(name, ())
+        )
+        wrong = [
+            fault
+            for row, (a, wrench) in enumerate(zip(pool.a, pool.wrench, strict=True))
+            for fault in _faults(judge, robot, row, a, wrench)
+        ]
+        spoilt = np.mean([bool(judge.contacts(values)) for values in standing])
+    return pool.count, wrong, float(spoilt)
+
+
+def _faults(judge: MujocoCell, robot: Robot, row: int, a: np.ndarray, wrench: np.ndarray):
+    values = _values(robot, a)
+    for pair in judge.contacts(values):
+        yield f"row {row}: {pair[0]} touches {pair[1]}"
+    asked = judge.holding(values, robot.tool_frame, POINT, _in_root(robot) @ wrench[:3])
+    for joint in robot.actuated:
+        limit = judge.efforts.get(joint, np.inf)
+        if abs(asked[joint]) > limit:
+            yield f"row {row}: {joint} must give {asked[joint]:.1f} of {limit:.1f}"
+
+
+def _values(robot: Robot, a: np.ndarray) -> dict[str, float]:
+    return {name: float(value) for name, value in robot.joint_values(a).items()}
+
+
+def _in_root(robot: Robot) -> np.ndarray:
+    """Rotation of the base frame in the root, for bases that do not move."""
+    body, T = robot.tree.body(robot.base_frame)
+    assert body < 0
+    return T[:3, :3]
+
+
+def _base_height(robot: Robot) -> float:
+    return float(robot.tree.body(robot.base_frame)[1][2, 3])
+
+
+__all__ = ["ARMS", "rows_of"]
