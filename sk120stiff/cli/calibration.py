@@ -48,7 +48,7 @@ def calibration_answer(
     if out is not None:
         write_model(replace(known_calibration(found), provenance=provenance(data, readings)), out)
     reasons = unseen(found)
-    stated = fit.problem.noise.sigma if fit.sigma_known and len(found.problem.lengths) else None
+    stated = found.problem.stated_sigma if len(found.problem.lengths) else None
     document = {
         "robot": model.robot.name,
         "parameters": parameter_rows(fit, unseen=reasons),

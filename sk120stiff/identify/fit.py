@@ -134,12 +134,28 @@ class Fit:
         """Readings of single axes minus combinations of parameters that were estimated."""
         return len(self.residual) - self.estimated
 
+    @cached_property
+    def judged(self) -> tuple[float, int]:
+        """Sum of squares and degrees of freedom of what is held against the noise.
+
+        That is everything, or the readings of known noise among others whose size is fitted: their
+        number less the share of the parameters that they determine (trace of the hat matrix).
+        """
+        own = self.problem.judged
+        if own is None:
+            return self.chi_square, self.degrees_of_freedom
+        U = np.linalg.svd(self.jacobian[:, ~self.at_bound], full_matrices=False)[0]
+        spent = float((U[own, : self.estimated] ** 2).sum())
+        part = self.residual[own]
+        return float(part @ part), max(round(len(part) - spent), 0)
+
     @property
     def noise_factor(self) -> float:
         """What the residual shows over the noise assumed; 1 if all is well."""
         if self.spread is not None:
             return self.spread
-        return float(np.sqrt(self.chi_square / max(self.degrees_of_freedom, 1)))
+        square, freedom = self.judged
+        return float(np.sqrt(square / max(freedom, 1)))
 
     @cached_property
     def misfit(self) -> tuple[float, tuple[int, int | None], float] | None:
@@ -150,16 +166,15 @@ class Fit:
         probability of a larger one if the model were true. Readings that were trusted less than
         their σ says leave no sum of squares to test.
         """
-        freedom, noise = self.degrees_of_freedom, self.problem.noise
+        (square, freedom), noise = self.judged, self.problem.noise
         if not self.sigma_known or self.problem.weights is not None or freedom < 1:
             return None
         if noise.stated:
-            chance = float(stats.chi2.sf(self.chi_square, freedom))
-            return self.chi_square, (freedom, None), chance
+            return square, (freedom, None), float(stats.chi2.sf(square, freedom))
         repeats = int(noise.freedom)
         if freedom <= repeats:
             return None
-        ratio = max(self.chi_square - repeats, 0.0) / (freedom - repeats)
+        ratio = max(square - repeats, 0.0) / (freedom - repeats)
         chance = float(stats.f.sf(ratio, freedom - repeats, repeats))
         return ratio, (freedom - repeats, repeats), chance
 

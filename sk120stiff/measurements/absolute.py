@@ -270,6 +270,13 @@ def _rotation(table: Table, roles: Roles) -> Array | None:
         vector = np.column_stack(
             [table.quantity(name, "angle", allow_blank=True) for name in ROTATION_VECTOR]
         )
+        far = np.linalg.norm(vector, axis=1) > 2.0 * np.pi * (1.0 + 1e-6)
+        if far.any():
+            raise InputError(
+                f"a rotation vector of {np.linalg.norm(vector[far][0]):.4g} rad, more than a turn",
+                where=table.place("rx", int(np.argmax(far))),
+                remedy="If these are degrees, write rx[deg], ry[deg], rz[deg].",
+            )
         q = vector
     else:
         return None

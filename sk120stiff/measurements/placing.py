@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.placing_distances import place_distances
 from sk120stiff.measurements.registration import Registration, register
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
@@ -55,19 +56,22 @@ class Placing:
 
 
 def place(robot: Robot, readings: Measurements) -> Placing | None:
-    """Register the positions; None where fewer than three whole ones were read.
+    """Register the positions, or distances where fewer than three whole ones were read.
+
+    None where neither tells where the tracker stands.
 
     Raises:
         InputError: They are not of this robot, or of joints or lengths in other units, of mirrored
             axes, of columns in another order; the message says which slip would explain it.
     """
     said = readings.absolute
-    if said is None or said.channels.position is None:
+    if said is None:
         return None
     x = said.channels.position
+    x = np.full((readings.n_readings, 3), np.nan) if x is None else x
     whole = np.flatnonzero(np.isfinite(x).all(axis=1) & readings.use)
     if len(whole) < FEWEST:
-        return None
+        return _by_distances(robot, readings)
     free = said.fit_point
     names = np.array(said.markers)[whole]
     labels = list(dict.fromkeys(said.groups or ()))
@@ -111,6 +115,39 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         wild=wild,
         distance=distance,
         notes=tuple(notes),
+    )
+
+
+def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:
+    found, said = place_distances(robot, readings), readings.absolute
+    if found is None or said is None or said.channels.distance is None:
+        return None
+    if said.frame == "base" and found.off > max(SHIFTED * found.spread, 10.0 * found.rms):
+        raise InputError(
+            f"the fixed points are not where ax, ay, az state them in axes of the base frame: "
+            f"{1e3 * found.off:.4g} mm rms are left with them there, {1e3 * found.rms:.3g} mm with "
+            "them elsewhere",
+            where=str(readings.path or "measurements"),
+            remedy="Write 'position: {frame: unknown}' into the YAML file: the places are then "
+            "known against each other alone. Or state them in base axes.",
+        )
+    rows = np.flatnonzero(np.isfinite(said.channels.distance) & readings.use)
+    distance, wild = np.full(readings.n_readings, np.nan), np.zeros(readings.n_readings, dtype=bool)
+    distance[rows], wild[rows] = np.abs(found.left), ~found.kept
+    notes = (
+        f"{len(found.fixed)} fixed point{'s' * (len(found.fixed) > 1)}: about "
+        f"{'it' if len(found.fixed) == 1 else 'the line through them'} distances do not tell how "
+        "the axes of ax, ay, az are turned, and nothing else depends on it.",
+    )
+    return Placing(
+        shift=found.shift,
+        turn=rotation_vector(found.turn),
+        marker=found.marker,
+        apart=np.zeros((1, 3)),
+        rms=found.rms,
+        wild=wild,
+        distance=distance,
+        notes=() if found.told or said.frame == "base" else notes,
     )
 
 

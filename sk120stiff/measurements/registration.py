@@ -89,7 +89,7 @@ def register(
     group = np.zeros(count, dtype=np.intp) if group is None else group
     marker = np.zeros((int(group.max()) + 1, 3))
     fit_marker = fit_marker and count >= MARKER_POSES + len(marker) - 1
-    turn, shift = _kabsch(stated, measured)
+    turn, shift = kabsch(stated, measured)
 
     def columns() -> Array:
         """(3P, 6 + 3 G) derivative by turn, shift and the G markers."""
@@ -106,7 +106,7 @@ def register(
         step = np.linalg.lstsq(columns(), left.ravel(), rcond=1e-9)[0]
         marker = marker + step[6:].reshape(-1, 3)
         # The best turn and shift for that marker: no step of theirs can then lead astray.
-        turn, shift = _kabsch(reached(), measured)
+        turn, shift = kabsch(reached(), measured)
         if np.abs(step[6:]).max() < 1e-10:
             break
     left = measured - reached() @ turn.T - shift
@@ -139,7 +139,7 @@ def _covariance(columns: Array, variance: float) -> Array:
     return np.asarray(variance * root @ root.T)
 
 
-def _kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
+def kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
     """Turn (3, 3) and shift (3,) that bring one cloud (P, 3) nearest to the other."""
     middle, goal = reached.mean(axis=0), measured.mean(axis=0)
     u, _, vt = np.linalg.svd((measured - goal).T @ (reached - middle))

@@ -30,7 +30,7 @@ SURE = 1.0 - 1e-9
 def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str, Any]:
     """The content of `verdict.json`."""
     final = answer.final
-    stated = final.problem.noise.sigma if final.fit.sigma_known else None
+    stated = final.problem.stated_sigma
     reasons = unseen(final)
     lengths = bool(len(final.problem.lengths))
     um = _um if lengths else _none

@@ -158,7 +158,7 @@ def explain_positions(
     linear, hidden = linear_at(base, wish, catalogue)
     found = choose(linear)
     tell("fitting exactly", 0.5)
-    final = refined(base, _picked(linear, found), readings)
+    final = refined(base, _picked(linear, found), readings, catalogue=catalogue)
     seen = base
     for _ in range(ROUNDS):
         before, seen = _picked(linear, found), final
@@ -167,7 +167,7 @@ def explain_positions(
         again = _picked(linear, found)
         if set(again) == set(before):
             break
-        final = refined(base, again, readings, final)
+        final = refined(base, again, readings, final, catalogue)
     tell("what is left", 0.85)
     noise = linear.noise(found.order)
     named = tuple(_named(linear, found, e) for e in found.order)
@@ -175,7 +175,8 @@ def explain_positions(
     remainder = chance = None
     if final.fit.sigma_known and final.fit.misfit is not None:
         chance = final.fit.misfit[2]
-        remainder = _beyond(final)
+        sigma = final.problem.stated_sigma
+        remainder = None if sigma is None else _beyond(final, sigma)
     lacking = chance is not None and chance < LEVEL
     verdict = "outside" if lacking else "none"
     pair = open_pair([(item.effect, item.alternatives) for item in named], linear)
@@ -262,12 +263,12 @@ def _families(linear: Linear, found: Chosen, seen: Calibration) -> dict[str, flo
     return out
 
 
-def _beyond(final: Calibration) -> tuple[float, float, float]:
+def _beyond(final: Calibration, sigma: float) -> tuple[float, float, float]:
     """Rms per axis beyond the stated noise and its 95 % interval [m]."""
-    fit, sigma = final.fit, final.problem.noise.sigma
-    freedom = max(fit.degrees_of_freedom, 1)
+    square, freedom = final.fit.judged
+    freedom = max(freedom, 1)
     shares = [freedom, *(float(stats.chi2.ppf(level, freedom)) for level in (0.975, 0.025))]
-    best, low, high = (sigma * max(fit.chi_square / s - 1.0, 0.0) ** 0.5 for s in shares)
+    best, low, high = (sigma * max(square / s - 1.0, 0.0) ** 0.5 for s in shares)
     return best, low, high
 
 

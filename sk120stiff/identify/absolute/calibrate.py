@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
+from scipy.spatial.transform import Rotation
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
 from sk120stiff.effects.base import Options
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.gauge import Frozen, least_set
+from sk120stiff.identify.absolute.left_out import doubted
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.selection import waves_that_show
 from sk120stiff.identify.absolute.settle import settle
@@ -20,6 +22,9 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.placing import Placing, place
+from sk120stiff.measurements.placing_distances import EACH
+from sk120stiff.measurements.stated_sizes import doubtful_sizes
+from sk120stiff.measurements.turned import refuse_other_turns
 from sk120stiff.model import Model, Parameter
 
 START = {  # m or rad
@@ -107,13 +112,13 @@ def calibrate(
     if said is None:
         raise InputError("there are no positions", where=str(readings.path or "measurements"))
     model = in_gravity(model, said.gravity)
+    sizes = doubtful_sizes(model.robot, readings)
     placed = place(model.robot, readings)
-    if placed is None and said.frame == "unknown":
-        raise InputError(
-            "fewer than three whole positions: nothing tells where the tracker stands",
-            where=str(readings.path or "measurements"),
-            remedy="Measure more poses, or state positions in base axes.",
-        )
+    if placed is not None or said.frame == "base":
+        turn = np.zeros(3) if placed is None or said.frame == "base" else placed.turn
+        refuse_other_turns(model.robot, readings, Rotation.from_rotvec(turn).as_matrix())
+    if placed is None and said.frame == "unknown" and set(said.channels.present) != {"inclination"}:
+        raise _nowhere(readings)
     wild = np.zeros(readings.n_readings, dtype=bool) if placed is None else placed.wild
     start = started(model, readings, placed, geometry=geometry, catalogue=catalogue)
     start, unloaded = _loaded(start, readings)
@@ -136,8 +141,30 @@ def calibrate(
         name for name, reach in zip(readings.joint_names, np.ptp(a, axis=0), strict=True)
         if reach < 1e-6
     )  # fmt: skip
-    notes = [*(placed.notes if placed is not None else ()), *unloaded]
+    notes = [*sizes, *(placed.notes if placed is not None else ()), *unloaded]
+    found = doubted(found, catalogue)
     return Calibration(found, placed, frozen, still, wild, chosen, tuple(notes))
+
+
+def _nowhere(readings: Measurements) -> InputError:
+    """Nothing tells where the instrument stands: why, and what to do."""
+    present = () if readings.absolute is None else readings.absolute.channels.present
+    if "distance" in present:
+        why = f"fewer than {EACH} distances to each fixed point (ax, ay, az)"
+        remedy = f"Measure {EACH} poses or more against each, or state the points in base axes."
+    elif "position" in present:
+        why, remedy = "fewer than three whole positions", "Measure more poses."
+    else:
+        why = "there is no position and no distance"
+        remedy = (
+            "Leave 'position: {frame: unknown}' out and state directions and rotations in axes of "
+            "the base frame; or read positions beside them."
+        )
+    return InputError(
+        f"{why}: nothing tells where the instrument stands",
+        where=str(readings.path or "measurements"),
+        remedy=remedy,
+    )
 
 
 def in_gravity(model: Model, gravity: Array | None) -> Model:
@@ -272,7 +299,7 @@ def _poses(found: Fit) -> PoseProblem:
 
 def _problem(model: Model, used: Measurements, sigma: dict[str, float]) -> PoseProblem:
     channels = None if used.absolute is None else used.absolute.channels
-    stated = channels is not None and all(channels.stated(kind) for kind in channels.present)
+    stated = channels is not None and any(channels.stated(kind) for kind in channels.present)
     noise = NoiseModel(START["position"], zero="separate", freedom=np.inf if stated else 0)
     problem = PoseProblem(model, used, noise, sigma=sigma)
     own = problem.of_channels.sigma[problem.counted]  # rows may state their own
@@ -350,6 +377,7 @@ def refined(
     effects: Sequence[Effect],
     readings: Measurements,
     near: Calibration | None = None,
+    catalogue: Catalogue = CATALOGUE,
 ) -> Calibration:
     """A calibration with further effects, fitted exactly; what cannot be told of them is frozen.
 
@@ -361,4 +389,4 @@ def refined(
     if near is not None:
         model = with_values_of(model, near.fit.model)
     found, frozen, wild = _fitted(model, readings, base.wild)
-    return replace(base, fit=found, frozen=frozen, wild=wild)
+    return replace(base, fit=doubted(found, catalogue), frozen=frozen, wild=wild)

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.effects.transmission_error import TransmissionError
@@ -95,6 +95,25 @@ class PoseProblem(Problem):
             scale = self.channels.scale(kind)
             scales.append(scale if self.channels.stated(kind) else scale * self.sigma[kind])
         return Independent(np.concatenate(scales))
+
+    @cached_property
+    def known(self) -> Mask:
+        """(M,) channels of kinds whose uncertainty is stated; that of the others is fitted."""
+        out = np.zeros(len(self.rows), dtype=np.bool_)
+        for kind, part in zip(self.channels.present, self.channels.kinds, strict=True):
+            out[part] = self.channels.stated(kind)
+        return out
+
+    @property
+    def judged(self) -> Mask | None:
+        """See `Problem.judged`."""
+        return None if self.known.all() or not self.known.any() else self.known
+
+    @property
+    def stated_sigma(self) -> float | None:
+        """Stated uncertainty of what `counted` tells [m or rad], rms; None where none is."""
+        own = self.of_channels.sigma[self.counted][self.known[self.counted]]
+        return float(np.sqrt(np.mean(own**2))) if len(own) else None
 
     @property
     def whitener(self) -> Independent:  # type: ignore[override]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.effects import Viewpoint
 from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.solve.polish import FAINTEST
@@ -17,13 +18,14 @@ from sk120stiff.model import Model
 SHOWN = 12  # frozen parameters and rows that are told one by one
 
 NO_TORQUE = "neither weight nor payload nor load puts a torque on it that shows"
+ABOUT = "distances to points in one line tell it together with a turn about them only"
 SHARED = "these positions tell it together with errors of geometry only"
 
 
 def known_calibration(found: Calibration) -> Model:
     """The fitted model with its uncertainty, as it is written to a file."""
     fit = found.fit
-    sigma = fit.problem.noise.sigma if fit.sigma_known else fit.rms
+    sigma = found.problem.stated_sigma or fit.rms
     source = f"{found.problem.situation.count} readings of positions"
     return fit.model.known(known_estimates(fit, sigma, source))
 
@@ -43,8 +45,13 @@ def gap_sentence(found: Calibration) -> str:
     )
     unstated = [kind for kind in problem.channels.present if not problem.channels.stated(kind)]
     if unstated:
-        of = "" if len(unstated) == len(problem.channels.present) else f" of {listed(unstated)}"
-        return f"{said} No uncertainty{of} is stated; the gap itself is taken for it."
+        whole = len(unstated) == len(problem.channels.present)
+        of = "" if whole else f" of {listed(unstated)}"
+        said += f" No uncertainty{of} is stated; the gap itself is taken for it."
+        if whole:
+            return said
+        others = [kind for kind in problem.channels.present if kind not in unstated]
+        said += f" Of {listed(others)}:"
     if fit.exceeds:
         return (
             f"{said} That is {fit.noise_factor:.3g} times the stated uncertainty: more is at work "
@@ -64,7 +71,7 @@ def unseen(found: Calibration) -> dict[str, str]:
     fit = found.fit
     alone = np.linalg.norm(fit.jacobian, axis=0) * fit.problem.span > FAINTEST
     return {
-        p.name: SHARED if shows else NO_TORQUE
+        p.name: (ABOUT if isinstance(p.effect, Viewpoint) else SHARED) if shows else NO_TORQUE
         for p, known, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
         if not known
     }

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Situation, situation_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import FormWhitener, Measurements, NoiseModel, Whitener
@@ -103,6 +103,11 @@ class Problem:
         Only parameters that the readings do not show keep them.
         """
         return np.clip(self.model.values[self.free] / self.scale, -self.span, self.span)
+
+    @property
+    def judged(self) -> Mask | None:
+        """(M,) readings whose noise is known, of which alone the misfit is judged; None: of all."""
+        return None
 
     def values(self, x: Array) -> Array:
         """(P,) internal values for scaled free parameters `x`."""

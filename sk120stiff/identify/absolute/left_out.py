@@ -1,0 +1,82 @@
+"""What errors of geometry that a model leaves out do to the others' standard errors.
+
+A joint frame that is frozen, or that nothing asked for, is not exact: it is off by as much as those
+that could be told, as far as the readings allow. With such a prior beside the readings the
+information on all parameters together is inverted; what that adds to the variance of an estimate
+is its doubt (Bayes' rule with Gaussian nuisances, e.g. Tarantola 2005, ch. 3). Errors of geometry
+themselves have none: where their sum is counted is a convention, and said.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import linalg
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Catalogue, Effect, Viewpoint
+from sk120stiff.effects.geometry import JointOffset, LinkLength, ToolOffset
+from sk120stiff.effects.joint_frame import JointFrame
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.fit import Fit, with_values
+from sk120stiff.model import Model, Parameter
+
+COUNTED = (JointFrame, JointOffset, LinkLength, ToolOffset, Viewpoint)
+NORMAL = 0.6745  # median of |x| of a standard normal x
+
+
+def doubted(found: Fit, catalogue: Catalogue) -> Fit:
+    """The fit with standard errors that know of frames off the drawing that it leaves out."""
+    problem = found.problem
+    if not isinstance(problem, PoseProblem) or not np.isfinite(found.unit):
+        return found
+    wide, sizes = _every_frame(found.model, catalogue)
+    counted = np.array([isinstance(p.effect, COUNTED) for p in found.parameters])
+    if not len(sizes) or counted.all():
+        return found
+    slope = replace(problem, model=wide).channel_gap(wide.values, derivative=True)[1]
+    per = 1.0 / (problem.of_channels.sigma * found.unit)
+    kept = slope[:, found.problem.free] * problem.scale * per[:, None]
+    more = slope[:, list(sizes)] * np.array(list(sizes.values())) * per[:, None]
+    moving = ~found.at_bound
+    alone = _variance(kept[:, moving], np.diag(1.0 / problem.prior[moving] ** 2))
+    prior = np.concatenate([1.0 / problem.prior[moving] ** 2, np.ones(len(sizes))])
+    beside = _variance(np.column_stack([kept[:, moving], more]), np.diag(prior))
+    doubt = np.zeros(len(found.x))
+    doubt[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0))
+    return with_values(replace(found, doubt=np.where(counted, 0.0, doubt)))
+
+
+def _variance(jacobian: Array, prior: Array) -> Array:
+    """(P,) diagonal of the inverse of information and prior."""
+    information = jacobian.T @ jacobian + prior
+    size = np.sqrt(np.diag(information))
+    inverse = linalg.inv(information / np.outer(size, size))
+    return np.asarray(np.diag(inverse) / size**2)
+
+
+def _every_frame(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, float]]:
+    """The model with all joint frames, and those of their parameters that it leaves out, by index,
+    with the size that those it has are of; none where it has none.
+    """
+    told: dict[str, list[float]] = {"m": [], "rad": []}
+    for p in model.parameters:
+        if p.free and isinstance(p.effect, JointFrame):
+            told[_unit(p)].append(abs(p.internal))
+    size = {unit: float(np.median(x)) / NORMAL for unit, x in told.items() if x}
+    present = {effect.id for effect in model.effects}
+    kind = catalogue["joint_frame"]
+    for where in kind.places(model.robot) if size else ():
+        effect: Effect = catalogue.effect(model.robot, "joint_frame", where)
+        if effect.id not in present:
+            model = model + [Parameter(effect, spec, 0.0, free=False) for spec in effect.parameters]
+    return model, {
+        k: size[_unit(p)]
+        for k, p in enumerate(model.parameters)
+        if isinstance(p.effect, JointFrame) and not p.free and size.get(_unit(p))
+    }
+
+
+def _unit(p: Parameter) -> str:
+    return "rad" if p.spec.unit == "rad" else "m"
