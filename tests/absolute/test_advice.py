@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.explain.absolute.candidates import usual_sizes
 from sk120stiff.explain.absolute.choose import choose
 from sk120stiff.explain.absolute.run import Explained, explain_positions
 from sk120stiff.model import Model
@@ -42,8 +41,9 @@ def test_sizes_told_as_detectable_bring_a_name_and_smaller_ones_do_not(tmp_path:
         e = ids.index(name)
         effect = linear.candidates[e]
         k = [spec.name for spec in effect.parameters].index(wave)
-        spec, column = effect.parameters[k], linear.columns[:, linear.slices[e].start + k]
-        size = spec.internal(smallest[f"{name}.{wave}"]) / usual_sizes(effect)[k]
+        own = linear.slices[e].start + k
+        spec, column = effect.parameters[k], linear.columns[:, own]
+        size = spec.internal(smallest[f"{name}.{wave}"]) / linear.sizes[own]
         for share, counts in tried.items():
             for _ in range(8):
                 noise = rng.normal(size=len(linear.residual))

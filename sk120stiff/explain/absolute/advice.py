@@ -10,7 +10,6 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
-from sk120stiff.explain.absolute.candidates import usual_sizes
 from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, entry_price, standing
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.advise.detectable import length_named
@@ -62,7 +61,7 @@ def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
         price = 2.0 * entry_price(linear, e) + volume
         fall = max(price, 2.0 * SHARE * len(linear.residual))
         need = max(length_named(round(fall, 1), block.shape[1]), CONFIRMED) * np.sqrt(noise)
-        for k, (spec, usual) in enumerate(zip(effect.parameters, usual_sizes(effect), strict=True)):
+        for k, (spec, usual) in enumerate(zip(effect.parameters, linear.sizes[own], strict=True)):
             size = float(np.linalg.norm(block[:, k]))
             value = float(need / size * usual) if size > 0.0 else np.inf
             shown = spec.public(value) if value <= spec.plausible else None

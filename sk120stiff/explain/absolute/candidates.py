@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -22,14 +22,17 @@ from sk120stiff.effects import (
     situation_of,
 )
 from sk120stiff.effects.gear import LostMotion
+from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.explain.absolute.linear import FAINT, Linear
 from sk120stiff.explain.options import Options
 from sk120stiff.identify import pose_parts
 from sk120stiff.identify.absolute.calibrate import Calibration, options_of
+from sk120stiff.identify.absolute.left_out import frames_off
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
 
 FOLDS = 5
+LIKE = 1.5  # times the errors of frames that were told, to be expected of others
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _ONLY_LOADED = ("reading_rotation", "zero_offset", "joint_offset", "link_length")
 
@@ -106,12 +109,14 @@ def linear_at(
             columns = [k for k, p in enumerate(model.parameters) if p.effect == effect]
             found[effect] = slope[:, columns]
             residual = residual + found[effect] @ model.values[columns] / sigma
+    off = frames_off(model)
     shown: list[Effect] = []
+    sizes: list[Array] = []
     blocks: list[Array] = []
     positive: list[bool] = []
     hidden: list[Effect] = []
     for effect in effects:
-        size = usual_sizes(effect)
+        size = usual_sizes(effect, off)
         block = found[effect] * size / sigma[:, None]
         before = np.linalg.norm(block, axis=0)
         for _ in range(2):
@@ -121,6 +126,7 @@ def linear_at(
             hidden.append(effect)
             continue
         shown.append(effect)
+        sizes.append(size)
         blocks.append(block)
         positive += [spec.lower == 0.0 for spec in effect.parameters]
     ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
@@ -133,6 +139,7 @@ def linear_at(
         columns=np.concatenate(blocks, axis=1) if blocks else np.zeros((len(residual), 0)),
         positive=np.array(positive, dtype=bool),
         candidates=tuple(shown),
+        sizes=np.concatenate(sizes) if sizes else np.zeros(0),
         slices=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
         row=rows,
         fold=fold[rows],
@@ -141,9 +148,20 @@ def linear_at(
     return linear, tuple(hidden)
 
 
-def usual_sizes(effect: Effect) -> Array:
-    """(p,) standard sizes that parameters have before anything is read."""
-    return np.array([np.sqrt(s.typical * s.plausible) for s in effect.parameters])
+def usual_sizes(effect: Effect, frames: Mapping[str, float]) -> Array:
+    """(p,) standard sizes that parameters have before anything is read.
+
+    Frames of one arm are off by much the same: where some were told, by unit in `frames`, the
+    others are expected to be as those.
+    """
+    usual = [np.sqrt(s.typical * s.plausible) for s in effect.parameters]
+    if isinstance(effect, JointFrame):
+        least = [s.typical for s in effect.parameters]
+        usual = [
+            min(size, max(LIKE * frames.get(s.unit, size), low))
+            for size, low, s in zip(usual, least, effect.parameters, strict=True)
+        ]
+    return np.array(usual)
 
 
 def _parts(effects: Sequence[Effect], robot: Robot) -> Iterator[list[Effect]]:

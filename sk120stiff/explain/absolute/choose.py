@@ -81,7 +81,42 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         if not _confirmed(gained, linear):
             chosen = tuple(c for c in chosen if c != e)
             dropped[e] = f"{linear.candidates[e].id} is not confirmed by poses left out."
-    return Chosen(chosen, dropped)
+    return Chosen(_beside_frames(linear, chosen, dropped), dropped)
+
+
+def _beside_frames(
+    linear: Linear, chosen: tuple[int, ...], dropped: dict[int, str]
+) -> tuple[int, ...]:
+    """Without causes that explain nothing beside errors of all joint frames.
+
+    Where one frame is off, so are the others, each by too little to ask for six parameters of its
+    own; a single one elsewhere may then stand for several of them, as a tracker that misreads the
+    scale does for an arm that is longer in every link.
+    """
+    frames = _frames(linear)
+    if not set(frames) & set(chosen):
+        return chosen
+    for e in [e for e in chosen if usual(linear.candidates[e]) == 0.0]:
+        noise = linear.noise(chosen)
+        rest = _less(chosen, e)
+        wide = tuple(dict.fromkeys((*rest, *frames)))
+        if linear.score((*wide, e), noise) - linear.score(wide, noise) >= CLEAR:
+            continue
+        dropped[e] = (
+            f"{linear.candidates[e].id} fits, but explains nothing that small errors of the other "
+            "joints' frames do not explain as well."
+        )
+        chosen, now = rest, linear.score(rest, noise)
+        while more := [f for f in frames if f not in chosen]:
+            score, best = max((linear.score((*chosen, f), noise), f) for f in more)
+            if score <= now:
+                break
+            chosen, now = (*chosen, best), score
+    return chosen
+
+
+def _frames(linear: Linear) -> list[int]:
+    return [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_frame"]
 
 
 def _threshold(linear: Linear) -> float:
@@ -187,8 +222,12 @@ def _rivals(
     rest = _less(chosen, e)
     nothing = linear.score(rest, noise)
     own = linear.score(chosen, noise)
+    frames = set(_frames(linear))
+    alone = e in frames and frames & set(rest)  # no frame is exact where others are off
     others = {
-        c: linear.score((*rest, c), noise) for c in range(len(linear.candidates)) if c not in chosen
+        c: linear.score((*rest, c), noise)
+        for c in range(len(linear.candidates))
+        if c not in chosen and not alone
     }
     rivals = tuple(
         c

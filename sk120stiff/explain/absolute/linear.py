@@ -28,6 +28,7 @@ class Linear:
         columns: (M, K) further columns per usual size of their parameter, what the base does taken
             out.
         positive: (K,) parameters that cannot be negative.
+        sizes: (K,) usual size of each parameter, internal units.
         candidates: The effects that the columns belong to.
         slices: The part of the columns of each candidate.
         row: (M,) reading that each number belongs to.
@@ -39,6 +40,7 @@ class Linear:
     base: Array
     columns: Array
     positive: Mask
+    sizes: Array
     candidates: tuple[Effect, ...]
     slices: tuple[slice, ...]
     row: Index

@@ -60,11 +60,7 @@ def _every_frame(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, f
     """The model with all joint frames, and those of their parameters that it leaves out, by index,
     with the size that those it has are of; none where it has none.
     """
-    told: dict[str, list[float]] = {"m": [], "rad": []}
-    for p in model.parameters:
-        if p.free and isinstance(p.effect, JointFrame):
-            told[_unit(p)].append(abs(p.internal))
-    size = {unit: float(np.median(x)) / NORMAL for unit, x in told.items() if x}
+    size = frames_off(model)
     present = {effect.id for effect in model.effects}
     kind = catalogue["joint_frame"]
     for where in kind.places(model.robot) if size else ():
@@ -72,11 +68,16 @@ def _every_frame(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, f
         if effect.id not in present:
             model = model + [Parameter(effect, spec, 0.0, free=False) for spec in effect.parameters]
     return model, {
-        k: size[_unit(p)]
+        k: size[p.spec.unit]
         for k, p in enumerate(model.parameters)
-        if isinstance(p.effect, JointFrame) and not p.free and size.get(_unit(p))
+        if isinstance(p.effect, JointFrame) and not p.free and size.get(p.spec.unit)
     }
 
 
-def _unit(p: Parameter) -> str:
-    return "rad" if p.spec.unit == "rad" else "m"
+def frames_off(model: Model) -> dict[str, float]:
+    """Standard size of the errors of joint frames that a model has, by unit: m and rad."""
+    told: dict[str, list[float]] = {}
+    for p in model.parameters:
+        if p.free and isinstance(p.effect, JointFrame):
+            told.setdefault(p.spec.unit, []).append(abs(p.internal))
+    return {unit: float(np.median(sizes)) / NORMAL for unit, sizes in told.items()}
