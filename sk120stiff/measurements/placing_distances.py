@@ -23,6 +23,7 @@ from sk120stiff.robot import Robot
 EACH = 6  # distances to a fixed point from which its place is found, with some to spare
 FITS = 0.03  # of the spread of the marker: what no calibrated arm leaves
 BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
+STEPS = 50  # of one fit: from trilateration it takes a few
 FAR, LEAST, ROUNDS, WILD = 8.0, 2e-4, 8, 0.2  # rows that are wild, as for positions
 
 
@@ -71,10 +72,10 @@ class _Bar:
     point: Array
     fit_marker: bool
 
-    def solved(self) -> Ranged:
+    def solved(self, rounds: int = ROUNDS) -> Ranged:
         """Fixed points in base axes, marker and instrument, without rows far off all others."""
         kept = np.ones(len(self.length), dtype=bool)
-        for _ in range(ROUNDS):
+        for _ in range(rounds):
             b, marker = self._trilaterated(kept)
             turn, shift = kabsch(b, self.fixed)
             seen = (self.fixed - shift) @ turn  # where the stated points are, base axes
@@ -102,7 +103,7 @@ class _Bar:
             return self._left(x[:size].reshape(-1, 3), x[size:] if self.fit_marker else None)[kept]
 
         x = np.concatenate([start.ravel(), np.zeros(3 if self.fit_marker else 0)])
-        x = least_squares(gap, x, x_scale="jac", loss="soft_l1", f_scale=1e-3).x
+        x = least_squares(gap, x, x_scale="jac", loss="soft_l1", f_scale=1e-3, max_nfev=STEPS).x
         return x[:size].reshape(-1, 3), x[size:] if self.fit_marker else np.zeros(3)
 
     def _left(self, b: Array, marker: Array | None) -> Array:
@@ -160,11 +161,11 @@ def _slips(bar: _Bar, robot: Robot, a: Array) -> Iterator[tuple[float, str, str]
         screws = robot.screws(np.where(np.array(robot.prismatic), a, a * factor))
         moved = replace(bar, flange=screws.frame_position, axes=screws.rotation)
         said = f"The joint angles look like {was}."
-        yield moved.solved().rms, said, f"Write [{unit}] in their headers."
+        yield moved.solved(1).rms, said, f"Write [{unit}] in their headers."
     for factor, unit in ((1e-3, "mm"), (1e3, "m")):
         much = "1000 times too " + ("small" if factor > 1 else "large")
-        rms = replace(bar, length=bar.length * factor).solved().rms
+        rms = replace(bar, length=bar.length * factor).solved(1).rms
         yield rms / factor, f"The distances look {much}.", f"Check the unit of l: {unit}?"
-        rms = replace(bar, fixed=bar.fixed * factor).solved().rms
+        rms = replace(bar, fixed=bar.fixed * factor).solved(1).rms
         said = f"The places of the fixed points look {much}."
         yield rms, said, f"Check the unit of ax, ay, az: {unit}?"

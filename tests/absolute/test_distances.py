@@ -1,0 +1,64 @@
+"""Distances alone, of fixed points in axes that nobody knows: a ball bar, a laser to points."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sk120stiff.errors import InputError
+from sk120stiff.identify.absolute.words import ABOUT, unseen
+from tests.absolute.arm import Array, errors, poses, tracked, write
+from tests.absolute.test_forms import NOISE, SIGMA, agrees, calibrated, rows
+
+A = poses(70, 2)
+POINTS = np.array([[2.0, 1, 0.5], [1.5, -2, 0], [0, 2.5, 1]])
+UNKNOWN = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
+X = errors(1).stands(A)[0]
+
+
+def measured(folder: Path, points: Array, settings: str = UNKNOWN, *, a: Array = A,
+             length: float = 1e3, place: float = 1.0, wild: int = 0) -> Path:  # fmt: skip
+    """Distances to the points (F, 3) in turn, points stated in the instrument's axes."""
+    rng = np.random.default_rng(8)
+    at = points[np.arange(len(a)) % len(points)]
+    far = np.linalg.norm(X[: len(a)] - at, axis=1) + SIGMA * rng.normal(size=len(a))
+    far[:wild] += 0.05
+    cells = rows(np.column_stack([length * far, place * tracked(at)]))
+    nothing = np.full((len(a), 3), np.nan)
+    return write(folder, a, nothing, settings + NOISE, more=",l[mm],ax[m],ay[m],az[m]", cells=cells)
+
+
+@pytest.mark.parametrize("count", [3, 1])
+def test_distances_in_unknown_axes_give_the_springs(count: int, tmp_path: Path) -> None:
+    found = calibrated(measured(tmp_path, POINTS[:count], wild=1))
+    agrees(found)
+    assert np.flatnonzero(found.wild).tolist() == [0]
+    marker = [found.fit.model.parameter(f"tool_offset:tool.offset_{axis}").value for axis in "xyz"]
+    assert marker == pytest.approx([0.05, -0.08, 0.12], abs=0.01)
+    frame = [why for name, why in unseen(found).items() if name.startswith("tracker_frame")]
+    assert frame == ([] if count == 3 else [ABOUT] * 6)
+    assert any("fixed point" in note for note in found.notes) == (count == 1)
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "said"),
+    [
+        ({"length": 1.0}, "distances look 1000 times too small"),
+        ({"place": 1e3}, "places of the fixed points look 1000 times"),
+        ({"a": np.radians(A)}, "look like radians, not degrees"),
+        ({"a": A[::-1]}, "rows of joints and distances belong together"),
+        ({"a": A[:12]}, "fewer than 6 distances to each fixed point"),
+        (
+            {"settings": "point: {xyz: [50, -80, 120], unit: mm}\n"},
+            "(?s)not where ax, ay, az state them.*frame: unknown",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_reason(
+    spoilt: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=said):
+        calibrated(measured(tmp_path, POINTS, **spoilt))

@@ -1,0 +1,68 @@
+"""Frames that are off and in no model: they enter the standard errors, and get no other's name."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import sk120stiff as sk
+from sk120stiff.explain import Options
+from sk120stiff.explain.absolute.candidates import linear_at
+from sk120stiff.explain.absolute.choose import choose
+from sk120stiff.identify.absolute.calibrate import calibrate
+from sk120stiff.model import Model
+from tests.absolute.arm import Arm, errors, poses, tracked, write
+
+SIGMA = 2e-6
+FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
+A = poses(60, 6)
+
+
+def test_a_marker_mounted_anew_on_a_turned_last_frame(tmp_path: Path) -> None:
+    """A shift of 20 mm in axes that are 1 mrad off misses by 20 µm, far beyond the noise."""
+    arm = errors(4)
+    arm.turn *= 4.0
+    moved = replace(arm, marker=arm.marker + [0.0, 0.02, 0.0])
+    late = np.arange(60) >= 30
+    x = np.where(late[:, None], moved.stands(A)[0], arm.stands(A)[0])
+    x = tracked(x) + SIGMA * np.random.default_rng(2).normal(size=x.shape)
+    series = ["two" if k else "one" for k in late]
+    data = sk.read(
+        write(tmp_path, A, x, FIT + "noise: {sigma: 2, unit: um}\n", more=",series", cells=series)
+    )
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    readings = data.with_joints(robot.actuated)
+    found = calibrate(sk.base_model(robot), readings, waves=False)
+    shift = [found.fit.model.parameter(f"marker_shift:tool.two.{axis}") for axis in "xyz"]
+    off = np.array([p.value for p in shift]) - [0.0, 0.02, 0.0]
+    std = np.array([p.std for p in shift], dtype=float)
+    assert np.abs(off).max() > 10.0 * SIGMA
+    assert (np.abs(off) < 3.0 * std).all() and std.max() < 2e-4, (off, std)
+
+
+def test_small_errors_of_all_frames_get_no_other_name(tmp_path: Path) -> None:
+    """Each too small to ask for six parameters, together like an arm that is longer."""
+    x = tracked(Arm().stands(A)[0])
+    x = x + 2e-5 * np.random.default_rng(5).normal(size=x.shape)
+    data = sk.read(write(tmp_path, A, x, FIT + "noise: {sigma: 20, unit: um}\n"))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    readings = data.with_joints(robot.actuated)
+    base = calibrate(Model(robot), readings, geometry=False, waves=False)
+    wish = Options(exclude=("joint_springs", "joint_tilt", "link_bending", "link_torsion"))
+    linear, _ = linear_at(base, wish, sk.CATALOGUE)
+    rng = np.random.default_rng(3)
+    frames = [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_frame"]
+    named: list[str] = []
+    for _ in range(12):
+        residual = rng.normal(size=len(linear.residual))
+        residual -= linear.base @ (linear.base.T @ residual)
+        for e in frames:
+            own, count = linear.slices[e], len(linear.candidates[e].parameters)
+            unit = np.where(np.arange(count) < 3, 4e-5, 6e-5) / linear.sizes[own]
+            residual += linear.columns[:, own] @ (unit * rng.normal(size=count))
+        found = choose(replace(linear, residual=residual))
+        named += [linear.candidates[e].name for e in found.order]
+    assert named.count("joint_frame") > 12
+    assert set(named) == {"joint_frame"}, named

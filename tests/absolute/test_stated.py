@@ -1,0 +1,108 @@
+"""What a file states beside its positions: payloads, places, turns of the tool, uncertainties."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import sk120stiff as sk
+from sk120stiff.errors import InputError
+from sk120stiff.identify.absolute.calibrate import calibrate
+from tests.absolute.arm import TURN, Arm, errors, poses, tracked, write
+from tests.absolute.test_forms import FIT, NOISE, SIGMA, calibrated, rows
+
+A = poses(60, 2)
+X, AXES = errors(1).stands(A)
+READ = tracked(X) + SIGMA * np.random.default_rng(9).normal(size=X.shape)
+HUNG = "payload: {point: {xyz: [0, 0, %s], unit: %s}}\n"
+
+
+@pytest.mark.parametrize(
+    ("mass", "settings", "massless", "said"),
+    [
+        (5000.0, FIT, "", "1000 times too large, as if in grams"),
+        (5000.0, FIT, "massless", "an arm that reaches .* as if in grams"),
+        (5.0, FIT + HUNG % (120, "m"), "", "the payload is stated 120 m .* arm that reaches"),
+        (5.0, FIT.replace("[0, 0, 0], unit: mm", "[0, 0, 120], unit: m"), "", "the marker is stat"),
+    ],
+)
+def test_sizes_that_no_arm_has_are_refused(
+    mass: float, settings: str, massless: str, said: str, tmp_path: Path
+) -> None:
+    path = write(
+        tmp_path, A, READ, settings + NOISE + massless, more=",payload[kg]", cells=[str(mass)] * 60
+    )
+    with pytest.raises(InputError, match=f"(?s){said}"):
+        calibrated(path)
+
+
+def test_sizes_that_are_much_too_small_are_told(tmp_path: Path) -> None:
+    near = FIT.replace("[0, 0, 0]", "[0.05, -0.08, 0.12]") + HUNG % (0.12, "mm") + NOISE
+    path = write(tmp_path, A, READ, near, more=",payload[kg]", cells=["0.05"] * 60)
+    told = " ".join(calibrated(path).notes)
+    for said in ("The marker is stated 0.153 mm", "The payload is stated 0.12 mm", "Tonnes taken"):
+        assert said in told
+    usual = write(tmp_path, A, READ, FIT + NOISE, more=",payload[kg]", cells=["50"] * 60)
+    assert not calibrated(usual).notes
+
+
+TOOL = Rotation.from_matrix(TURN.as_matrix() @ AXES)
+VECTOR, QUATERNION = ",rx[%s],ry[%s],rz[%s]", ",qw,qx,qy,qz"
+SCALAR_FIRST = np.roll(TOOL.as_quat(), 1, axis=1)
+
+
+@pytest.mark.parametrize(
+    ("header", "cells", "said"),
+    [
+        (VECTOR % (("rad",) * 3), np.degrees(TOOL.as_rotvec()), r"more than a turn.*rx\[deg\]"),
+        (VECTOR % (("deg",) * 3), TOOL.as_rotvec(), r"like radians, not degrees.*\[rad\]"),
+        (VECTOR % (("rad",) * 3), TOOL.inv().as_rotvec(), "look inverted"),
+        (QUATERNION, TOOL.as_quat(), "scalar part of the quaternions looks written last"),
+        (QUATERNION, SCALAR_FIRST * [1, -1, -1, -1], "look inverted"),
+        (
+            VECTOR % (("rad",) * 3),
+            (TOOL * Rotation.from_rotvec([0.3, 0.2, 0])).as_rotvec(),
+            "same 20.7 deg against the tool.*tool_frame",
+        ),
+        (VECTOR % (("rad",) * 3), TOOL.as_rotvec()[::-1], "not those of the placed robot"),
+    ],
+)
+def test_turns_of_the_tool_that_are_not_the_robots(
+    header: str, cells: np.ndarray, said: str, tmp_path: Path
+) -> None:
+    path = write(tmp_path, A, READ, FIT + NOISE, more=header, cells=rows(cells))
+    with pytest.raises(InputError, match=f"(?s){said}"):
+        calibrated(path)
+
+
+@pytest.mark.parametrize("stated", ["sigma: 20, unit: um", "rotation: 20, rotation_unit: urad"])
+def test_what_is_stated_of_one_kind_stays_the_yardstick(stated: str, tmp_path: Path) -> None:
+    """Twice the stated noise is a misfit; the other kind's own is found from its gap."""
+    rng = np.random.default_rng(4)
+    large = np.where(np.array(["um" in stated, "rot" in stated]), 1.0, 2.0)
+    arm = Arm(compliance=errors(1).compliance)
+    x, axes = arm.stands(A)
+    exact = Rotation.from_matrix(TURN.as_matrix() @ axes)
+    turned = Rotation.from_rotvec(2e-5 * large[1] * rng.normal(size=x.shape)) * exact
+    x = tracked(x) + SIGMA * large[0] * rng.normal(size=x.shape)
+    for factor in (1.0, 0.5):
+        number = stated.replace("20", str(20 * factor))
+        settings = FIT + f"noise: {{{number}}}\n"
+        path = write(
+            tmp_path, A, x, settings, more=VECTOR % (("rad",) * 3), cells=rows(turned.as_rotvec())
+        )
+        data = sk.read(path)
+        robot = sk.load_robot(data.robot, base="base", tool="tool")
+        readings = data.with_joints(robot.actuated)
+        found = calibrate(sk.base_model(robot), readings, geometry=False, waves=False)
+        own, other = ("position", "rotation") if "um" in stated else ("rotation", "position")
+        size = 4e-5
+        kinds = dict(zip(found.problem.channels.present, found.problem.channels.kinds, strict=True))
+        sigma = found.problem.of_channels.sigma
+        assert sigma[kinds[own]][0] == pytest.approx(2e-5 * factor)
+        assert sigma[kinds[other]][0] == pytest.approx(size, rel=0.3)
+        assert found.fit.sigma_known and found.fit.exceeds == (factor < 1.0)
+        assert found.fit.noise_factor == pytest.approx(1.0 / factor, rel=0.15)
