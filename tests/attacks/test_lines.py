@@ -17,7 +17,7 @@ Line = Callable[[Path], Iterator[Verdict]]
 BOUNDED: dict[str, tuple[Line, int]] = {  # line → a part of it, attacks at most
     "mutated robots": (lambda folder: robots.mutated_robots(folder, 60, 5000), 60),
     "hostile robots": (robots.hostile_robots, 19),
-    "options": (lambda folder: options.options(folder, 45, 7), 45),
+    "options": (lambda folder: options.options(folder, 15, 7), 15),
     "variables": (environments.variables, 2),
     "limits": (environments.limits, 2),
     "damaged maps": (lambda folder: maps.damage(folder, every=67), 9),

@@ -14,13 +14,9 @@ from tests.corpus.robots import example
 
 # URDF of example-robot-data, base and tool frame where the arm is a part of a larger robot, axes.
 ARMS = {
-    "Universal Robots UR3": ("ur3_robot.urdf", (), 6),
     "Universal Robots UR5": ("ur5_robot.urdf", (), 6),
-    "Universal Robots UR10": ("ur10_robot.urdf", (), 6),
     "Franka Panda": ("panda.urdf", (), 7),
     "Kinova Jaco": ("kinova.urdf", (), 6),
-    "UFactory xArm7": ("xarm7.urdf", (), 7),
-    "Unitree Z1": ("z1.urdf", (), 6),
     "Rethink Baxter, one arm": ("baxter.urdf", (), 7),
     "PAL TIAGo": ("tiago_no_hand.urdf", ("--base", "torso_lift_link"), 7),
 }
@@ -88,7 +84,7 @@ def test_every_step_at_its_defaults(name: str, run, tmp_path: Path, monkeypatch)
     assert scene is not None and len(json.loads(scene.group(1))["joints"]) == axes
 
 
-@pytest.mark.parametrize("urdf", ["ur3_robot.urdf", "panda.urdf"])
+@pytest.mark.parametrize("urdf", ["ur3_robot.urdf"])
 def test_a_named_effect_is_drawn_where_a_spring_cannot_be_seen(
     urdf: str, run, tmp_path: Path, monkeypatch
 ) -> None:

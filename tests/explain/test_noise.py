@@ -64,7 +64,7 @@ def test_a_statement_exceeded_eight_times_is_a_finding(springs):
 
 
 def test_hysteresis_is_named_and_not_taken_for_noise(springs):
-    answer = explain(springs, hidden(DRAG, schedule="up_down", loads=6, poses=14, sigma=5e-6))
+    answer = explain(springs, hidden(DRAG, schedule="up_down", loads=6, poses=8, sigma=5e-6))
     assert [finding.effect.id for finding in answer.findings] == ["friction_hysteresis:joint_2_l"]
     assert answer.noise.sigma == 5e-6
     assert answer.noise_floor == pytest.approx(2**0.5 * 5e-6)
@@ -72,7 +72,7 @@ def test_hysteresis_is_named_and_not_taken_for_noise(springs):
 
 def test_hysteresis_that_nothing_can_name_is_outside(springs):
     """Neither branch nor order: the effect cannot be named, and is no noise for all that."""
-    readings = hidden(DRAG, schedule="up_down", loads=6, poses=14, sigma=5e-6)
+    readings = hidden(DRAG, schedule="up_down", loads=6, poses=8, sigma=5e-6)
     bare = replace(readings, branch=None, order=None, zero_order=None)
     answer = explain(springs, bare)
     assert answer.verdict == "outside"
@@ -81,7 +81,7 @@ def test_hysteresis_that_nothing_can_name_is_outside(springs):
 
 def test_a_foreign_memory_is_not_called_noise(springs):
     cause = Memory("joint_2_l", {"share": 0.4}, {"play": 150.0})
-    answer = explain(springs, hidden(cause, schedule="up_down", loads=6, poses=14, sigma=5e-6))
+    answer = explain(springs, hidden(cause, schedule="up_down", loads=6, poses=8, sigma=5e-6))
     assert answer.verdict != "none"
 
 
