@@ -7,7 +7,7 @@
 (1, 3)
 
 `load_robot`, `read`, `read_model` open files; `stiffness`, `predict`, `simulate` compute what a
-model says; `fit`, `explain` hold it against measurements; `plan`, `compensate` use it.
+model says; `fit`, `explain` hold it against measurements; `plan`, `compensate`, `export` use it.
 
 `explain`, `plan` and `stiffness` are folders of the package too. As names of the package they are
 always the functions, whatever was imported before; what is in the folders is had by
@@ -26,10 +26,17 @@ if TYPE_CHECKING:
     from sk120stiff.effects import CATALOGUE, Catalogue, Effect, effect
     from sk120stiff.errors import InputError, Refusal, ToolkitError, ToolkitWarning
     from sk120stiff.explain.answer.explanation import Explanation
+    from sk120stiff.explain.options import Options
     from sk120stiff.explain.run import explain
+    from sk120stiff.exports import export
     from sk120stiff.identify.estimate import fit
     from sk120stiff.identify.fit import Fit
-    from sk120stiff.measurements import Measurements, read_measurements, write_measurements
+    from sk120stiff.measurements import (
+        Measurements,
+        NoiseModel,
+        read_measurements,
+        write_measurements,
+    )
     from sk120stiff.measurements import read_measurements as read
     from sk120stiff.model import (
         Model,
@@ -42,6 +49,7 @@ if TYPE_CHECKING:
     )
     from sk120stiff.model import loaded_stiffness as stiffness
     from sk120stiff.plan.planned import plan
+    from sk120stiff.plan.schedule import Schedule
     from sk120stiff.plan.simulation import simulate
     from sk120stiff.robot import Robot, load_robot
     from sk120stiff.robot.bundled import bundled_robots
@@ -57,8 +65,11 @@ _HOME = {
     "InputError": "sk120stiff.errors",
     "Measurements": "sk120stiff.measurements",
     "Model": "sk120stiff.model",
+    "NoiseModel": "sk120stiff.measurements",
+    "Options": "sk120stiff.explain.options",
     "Refusal": "sk120stiff.errors",
     "Robot": "sk120stiff.robot",
+    "Schedule": "sk120stiff.plan.schedule",
     "ToolkitError": "sk120stiff.errors",
     "ToolkitWarning": "sk120stiff.errors",
     "base_model": "sk120stiff.model",
@@ -66,6 +77,7 @@ _HOME = {
     "compensate": "sk120stiff.workspace.compensate",
     "effect": "sk120stiff.effects",
     "explain": "sk120stiff.explain.run",
+    "export": "sk120stiff.exports",
     "fit": "sk120stiff.identify.estimate",
     "joint_spring_model": "sk120stiff.model",
     "load_robot": "sk120stiff.robot",
@@ -91,8 +103,11 @@ __all__ = [
     "InputError",
     "Measurements",
     "Model",
+    "NoiseModel",
+    "Options",
     "Refusal",
     "Robot",
+    "Schedule",
     "ToolkitError",
     "ToolkitWarning",
     "base_model",
@@ -100,6 +115,7 @@ __all__ = [
     "compensate",
     "effect",
     "explain",
+    "export",
     "fit",
     "joint_spring_model",
     "load_robot",

@@ -18,6 +18,11 @@ class ToolkitError(Exception):
         what: The finding, without a final full stop.
         where: File, line, column, joint or frame that it was found at.
         remedy: What the reader can do.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> issubclass(sk.InputError, sk.ToolkitError), issubclass(sk.Refusal, sk.ToolkitError)
+        (True, True)
     """
 
     exit_code: ClassVar[int] = 1
@@ -36,14 +41,33 @@ class ToolkitError(Exception):
 
 
 class InputError(ToolkitError):
-    """A file, an option or an argument that cannot be used as given."""
+    """A file, an option or an argument that cannot be used as given.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> try:
+        ...     sk.load_robot("motoman_sk12")
+        ... except sk.InputError as error:
+        ...     print(error.exit_code, "motoman_sk120" in str(error))
+        2 True
+    """
 
     exit_code = 2
     kind = "input"
 
 
 class Refusal(ToolkitError):
-    """The input was fine and the work was done, but there is no honest result to hand out."""
+    """The input was fine and the work was done, but there is no honest result to hand out.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> arm = sk.joint_spring_model(sk.load_robot("motoman_sk120"), [1e3] * 6)  # N·m/rad
+        >>> try:
+        ...     arm.deflect([0.0] * 6, [0, 0, -1e6, 0, 0, 0])
+        ... except sk.Refusal as refusal:
+        ...     print(refusal.exit_code)
+        1
+    """
 
     exit_code = 1
 
@@ -87,7 +111,17 @@ def require(library: str, *, needed_for: str) -> None:
 
 
 class ToolkitWarning(UserWarning):
-    """Something suspicious that does not stop the work."""
+    """Something suspicious that does not stop the work.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> import warnings
+        >>> with warnings.catch_warnings(record=True) as said:
+        ...     warnings.simplefilter("always", sk.ToolkitWarning)
+        ...     torques = sk.load_robot("motoman_sk120").gravity_torque([0.0] * 6)
+        >>> print(said[0].message)
+        motoman_sk120 states no masses: its gravity torques are all zero
+    """
 
 
 def listed(words: Sequence[str], joint: str = "and") -> str:

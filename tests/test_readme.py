@@ -5,7 +5,6 @@ import re
 import shlex
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -16,26 +15,12 @@ from sk120stiff.measurements import read_measurements
 from sk120stiff.model import read_model
 from sk120stiff.paper import reproduce
 from sk120stiff.robot import load_robot
+from tests.pages import blocks
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 FILES = (ROOT / "docs" / "FILES.md").read_text(encoding="utf-8")
-BLOCK = re.compile(r"(?:<!-- file: (\S+) -->\n)?```(\w+)\n(.*?)```", re.DOTALL)
 VENV = "python3 -m venv .venv && "
-
-
-@dataclass(frozen=True)
-class Block:
-    """A fenced block, and the file that it is the content of."""
-
-    file: str
-    language: str
-    text: str
-
-
-def blocks(page: str, language: str = "") -> list[Block]:
-    found = [Block(*match) for match in BLOCK.findall(page)]
-    return [block for block in found if language in ("", block.language)]
 
 
 def section(title: str) -> str:

@@ -111,7 +111,7 @@ def _write_pages(
 ) -> dict[str, Path]:
     """Scene and report, each where it can be made."""
     from sk120stiff.show import reproducibility, scene_html
-    from sk120stiff.show.stories import explain_report, explain_scene
+    from sk120stiff.show.stories import explain_scene
 
     tell(88, 100)
     scene = page_or_warning(
@@ -123,9 +123,7 @@ def _write_pages(
     command = provenance(task.data, task.readings)["command"]
     report = page_or_warning(
         "report.html",
-        lambda: explain_report(
-            answer,
-            task.readings,
+        lambda: answer.report(
             data=task.data.name,
             scene=scene or "",
             scene_link="scene.html" if scene else "",

@@ -107,6 +107,13 @@ class Effect(ABC):
         where: URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
         scale: Length of the arm over `REFERENCE_LENGTH`: what is usual and what is plausible goes
             with it.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> robot = sk.load_robot("motoman_sk120")
+        >>> tilt = sk.effect(robot, "joint_tilt", "joint_2_l")
+        >>> [parameter.name for parameter in tilt.parameters]
+        ['stiffness_along', 'stiffness_across']
     """
 
     where: str
@@ -153,12 +160,26 @@ class Effect(ABC):
 
     @abstractmethod
     def sentence(self) -> str:
-        """What happens, in plain words, as a full sentence."""
+        """What happens, in plain words, as a full sentence.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> sk.effect(robot, "base_rocking").sentence()
+            'The base rocks on its foundation.'
+        """
 
     @classmethod
     @abstractmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every `where` at which the effect can act on this robot."""
+        """Every `where` at which the effect can act on this robot.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> sk.CATALOGUE["link_torsion"].places(robot)
+            ('link_1_s', 'link_2_l', 'link_3_u')
+        """
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:

@@ -142,7 +142,14 @@ class Catalogue:
     def effect(
         self, robot: Robot, name: str, where: str | None = None, options: Options | None = None
     ) -> Effect:
-        """One of the effects at one place of a robot; see the function `effect`."""
+        """One of the effects at one place of a robot; see the function `effect`.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> sk.CATALOGUE.effect(robot, "joint_tilt", "joint_2_l").id
+            'joint_tilt:joint_2_l'
+        """
         kind = self[name]
         places = kind.places(robot)
         if where is None and len(places) == 1:
@@ -155,7 +162,13 @@ class Catalogue:
         return kind.at(robot, where, options or Options())
 
     def unknown(self, name: str) -> InputError:
-        """What to say of a name that is no effect's."""
+        """What to say of a name that is no effect's.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> print(sk.CATALOGUE.unknown("base_rockin").what)
+            there is no effect 'base_rockin' (did you mean 'base_rocking'?)
+        """
         close = get_close_matches(name, self.names, n=1)
         hint = f" (did you mean {close[0]!r}?)" if close else ""
         return InputError(

@@ -30,6 +30,15 @@ class Options:
         prior: How probable effects are before anything is measured, by ``name`` or ``name:where``;
             the others are as probable as `priors.py` has them.
         seed: Of folds and resampling.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(data / "table2_measured.csv")
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> answer = sk.explain(model, readings, options=sk.Options(only=("joint_tilt",)))
+        >>> answer.limits
+        ('Only these were looked for: joint_tilt.',)
     """
 
     only: tuple[str, ...] = ()

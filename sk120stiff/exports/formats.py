@@ -96,6 +96,15 @@ def export(
 
     Raises:
         InputError: No such format, or the model is one that the format has no word for.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> import tempfile, pathlib
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     made = sk.export(model, pathlib.Path(folder) / "sk120.xml")
+        >>> "<mujoco" in made.text
+        True
     """
     path = Path(out)
     made = exported(model, Request(path, pose, frame), format_of(path, to))

@@ -48,6 +48,14 @@ class Fit:
         inflation: Variance of the estimates over that of least squares with the same weights
             (robust fits).
         doubt: (P_free,) by how much other possible models move the estimates; None: by nothing.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(data / "table2_measured.csv")
+        >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+        >>> print(f"{1e6 * found.rms:.1f} µm, {found.degrees_of_freedom} degrees of freedom")
+        17.2 µm, 42 degrees of freedom
     """
 
     problem: Problem
@@ -81,6 +89,14 @@ class Fit:
         """One row per estimated parameter in its public unit: value, std, 95 % interval, note.
 
         What the readings do not tell has neither value nor error, and a note.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> found.to_frame().columns.tolist()
+            ['name', 'value', 'std', 'unit', 'free', 'note', 'low_95', 'high_95']
         """
         rows = parameter_frame(self.parameters)
         low, high = np.array(self.intervals()).reshape(-1, 2).T
@@ -277,7 +293,16 @@ class Fit:
         )
 
     def reach(self, level: float = 0.95) -> float:
-        """Half width of an interval in standard errors: normal, or Student where σ is estimated."""
+        """Half width of an interval in standard errors: normal, or Student where σ is estimated.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> print(f"{found.reach():.3f} {found.reach(0.99):.3f}")  # of Student
+            2.018 2.698
+        """
         upper = 0.5 * (1.0 + level)
         if np.isinf(self.freedom) or self.freedom < 1:
             return float(stats.norm.ppf(upper))
@@ -289,6 +314,15 @@ class Fit:
         They are made where the readings are nearly linear, in compliances, and then turned over: so
         an interval of a stiffness is not symmetric, and it is open upwards where the readings do
         not exclude a rigid part. A physical bound cuts them.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> low, high = found.intervals()[0]
+            >>> print(f"{low:.3g} to {high:.3g} {found.parameters[0].spec.unit}")
+            1.33e+06 to 1.39e+06 N*m/rad
         """
         ends = internal_intervals(
             self.x,

@@ -85,6 +85,10 @@ class Measurements(Tabular):
 
     Raises:
         InputError: A shape, a sign, a label or a number that does not fit.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> readings = sk.read(sk.bundled_robots()["motoman_sk120"] / "data/table2_measured.csv")
     """
 
     pose: tuple[str, ...]
@@ -200,6 +204,12 @@ class Measurements(Tabular):
 
         Raises:
             InputError: No row has the label; the message lists those that exist.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> home = sk.bundled_robots()["motoman_sk120"]
+            >>> sk.read(home / "data/table2_measured.csv").rows_of("2").tolist()
+            [5, 6, 7, 8, 9]
         """
         if pose not in self._rows_of_each:
             close = get_close_matches(pose, self.poses, n=1)
@@ -216,6 +226,12 @@ class Measurements(Tabular):
         """The chosen rows as measurements of their own: a mask (N,) or indices.
 
         Zero groups keep their numbers, so chosen rows share a zero reading as they did before.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> home = sk.bundled_robots()["motoman_sk120"]
+            >>> sk.read(home / "data/table2_measured.csv").select([0, 5, 10]).poses
+            ('1', '2', '3')
         """
         chosen = np.asarray(rows)
         index = np.flatnonzero(chosen) if chosen.dtype == bool else chosen.astype(np.int64)
@@ -232,7 +248,14 @@ class Measurements(Tabular):
         return dataclasses.replace(self, **changes)
 
     def masked(self) -> Measurements:
-        """The rows in use, without the masked ones."""
+        """The rows in use, without the masked ones.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> home = sk.bundled_robots()["motoman_sk120"]
+            >>> sk.read(home / "data/table2_measured.csv").masked().n_readings  # no row is masked
+            15
+        """
         return self if bool(self.use.all()) else self.select(self.use)
 
     def with_joints(self, names: Sequence[str], kinds: Sequence[str] | None = None) -> Measurements:
@@ -245,6 +268,13 @@ class Measurements(Tabular):
         Raises:
             InputError: A column is no actuated joint, a joint has no column, or its unit is of
                 another kind.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> home = sk.bundled_robots()["motoman_sk120"]
+            >>> readings = sk.read(home / "data/table2_measured.csv")
+            >>> readings.with_joints(sk.load_robot("motoman_sk120").actuated).joint_names[0]
+            'joint_1_s'
         """
         listed = f"The actuated joints are {', '.join(names)}."
         for name in self.joint_names:

@@ -92,6 +92,23 @@ class Tabular:
         found = reading.assembled(table, settings_of(settings, NOWHERE), told.hexdigest(), actuated)
         return replace(found, path=None)
 
+    def __add__(self, other: Measurements) -> Measurements:
+        """These readings and those of a further campaign; zero readings are not shared.
+
+        Raises:
+            InputError: They differ in robot, frames, points, noise or columns.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> first = sk.read(data / "hidden_cause.csv")
+            >>> first + sk.read(data / "hidden_cause_holdout.csv").select(range(5))
+            <Measurements: 105 readings at 21 poses, ...hidden_cause.csv>
+        """
+        from sk120stiff.measurements.joining import join_measurements
+
+        return join_measurements([cast("Measurements", self), other])
+
     def _repr_html_(self) -> str | None:
         """What a notebook shows: the first rows; without pandas the line of `repr`."""
         from html import escape

@@ -47,6 +47,15 @@ class NoiseModel:
 
     Raises:
         InputError: A sigma that is not positive, a growth below zero or from 1 up, an unknown zero.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(data / "table2_measured.csv")
+        >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+        >>> known = sk.fit(found.model, readings, noise=sk.NoiseModel(20e-6))  # m, stated
+        >>> known.sigma_known, found.sigma_known
+        (True, False)
     """
 
     sigma: float
@@ -79,6 +88,11 @@ class NoiseModel:
         """The same model with sigma and growth times `factor`.
 
         V is multiplied by factor², except for what rows state of their own (sx, sy, sz).
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> sk.NoiseModel(10e-6).scaled(2.0).sigma
+            2e-05
         """
         return dataclasses.replace(
             self,
@@ -99,6 +113,14 @@ class NoiseModel:
 
         Raises:
             InputError: A growth without sizes in a plan, or sizes of another shape.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> loaded, zero = sk.NoiseModel(10e-6).variances(readings)  # m²
+            >>> print(loaded.shape, f"{1e6 * (loaded + zero).max() ** 0.5:.1f} µm")
+            (15, 3) 14.1 µm
         """
         count = measurements.n_readings
         own = np.full((count, 3), self.sigma**2)
@@ -118,6 +140,14 @@ class NoiseModel:
         """The whitener of these readings; parameters and errors as in `variances`.
 
         `weights` (N,) is the share of its information that each reading keeps; None: all of it.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> whitener = sk.NoiseModel(10e-6).whitener(readings)
+            >>> whitener.apply(readings.displacement).shape
+            (45,)
         """
         own, zero = self.variances(measurements, sizes)
         group = measurements.zero_group
@@ -129,7 +159,16 @@ class NoiseModel:
         return FormWhitener(noise, self.form, measurements) if self.form else noise
 
     def covariance(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Array:
-        """Dense covariance (3, N, N) per axis, m²: for a look at few readings, not for fits."""
+        """Dense covariance (3, N, N) per axis, m²: for a look at few readings, not for fits.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> V = sk.NoiseModel(10e-6).covariance(readings)[0]  # m², along x
+            >>> print(f"{V[0, 1] / V[0, 0]:.2f}")  # two rows of a pose share their zero reading
+            0.50
+        """
         own, zero = self.variances(measurements, sizes)
         same = np.eye(len(own), dtype=bool)
         if self.zero == "shared":
@@ -138,7 +177,13 @@ class NoiseModel:
         return full + np.eye(len(own)) * own.T[:, :, None]
 
     def of_growth_and_zero(self) -> str:
-        """What the model holds beside the size of sigma, in plain words."""
+        """What the model holds beside the size of sigma, in plain words.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> sk.NoiseModel(10e-6).of_growth_and_zero()
+            'Rows that subtract the same zero reading share its error.'
+        """
         said = ""
         if self.growth > 0:
             said = f"The loaded one has {self.growth * 100:.3g} % of its displacement besides. "

@@ -54,6 +54,16 @@ def write_measurements(
     Raises:
         InputError: The folder cannot be written to, the path does not end in ``.csv``, or a
             ``.yml`` file of the same stem is in the way.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(data / "table2_measured.csv")
+        >>> import tempfile, pathlib
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     file = sk.write_measurements(readings, pathlib.Path(folder) / "copy.csv")
+        ...     sk.read(file).n_readings
+        15
     """
     target = Path(path)
     check_name(target)

@@ -116,7 +116,17 @@ def _commented(text: str, model: Model) -> str:
 
 
 def write_model(model: Model, path: str | os.PathLike[str]) -> Path:
-    """Write the model; an interrupted write leaves an old file as it was."""
+    """Write the model; an interrupted write leaves an old file as it was.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> import tempfile, pathlib
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     file = sk.write_model(model, pathlib.Path(folder) / "model.yaml")
+        ...     sk.read_model(file).names == model.names
+        True
+    """
     return write_atomically(path, model_text(model, folder=Path(path).parent))
 
 

@@ -43,6 +43,12 @@ class Model:
         provenance: Where the whole came from: data hash, command, date.
         uncertainty: How well the parameters are known, where a fit said so; a change of a value, or
             of what is in the model, ends it.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> model + sk.effect(model.robot, "base_rocking")
+        <Model of motoman_sk120: joint_springs at ...; base_rocking at base_link>
     """
 
     robot: Robot
@@ -65,7 +71,14 @@ class Model:
         return None
 
     def to_frame(self) -> pd.DataFrame:
-        """One row per parameter in its public unit: name, value, std, unit, free, note."""
+        """One row per parameter in its public unit: name, value, std, unit, free, note.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> model.to_frame()["value"].round().tolist()
+            [1409800.0, 400760.0, 935280.0]
+        """
         return parameter_frame(self.parameters)
 
     @cached_property
@@ -103,6 +116,12 @@ class Model:
 
         Raises:
             InputError: There is none.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> model.parameter("joint_springs:joint_1_s.stiffness").value
+            1409800.0
         """
         if name not in self.names:
             raise InputError(
@@ -135,6 +154,12 @@ class Model:
 
         Raises:
             InputError: It is not in the model.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> model.without("joint_springs:joint_1_s").names
+            ('joint_springs:joint_2_l.stiffness', 'joint_springs:joint_3_u.stiffness')
         """
         kept = tuple(p for p in self.parameters if p.effect.id != effect_id)
         if len(kept) == len(self.parameters):
@@ -147,7 +172,15 @@ class Model:
     def with_values(
         self, values: Array, std: Sequence[float | None] | None = None, origin: str | None = None
     ) -> Model:
-        """The model with other internal values (P,), their errors, and where they came from."""
+        """The model with other internal values (P,), their errors, and where they came from.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> softer = model.with_values(1.1 * model.values)  # compliances [rad/(N·m)]
+            >>> print(f"{softer.parameters[0].value:.4g}")
+            1.282e+06
+        """
         if len(values) != len(self.parameters):
             raise ValueError(f"{len(values)} values for {len(self.parameters)} parameters")
         errors = [p.internal_std for p in self.parameters] if std is None else list(std)
@@ -162,10 +195,21 @@ class Model:
         )
         return replace(self, parameters=changed, uncertainty=None)
 
-    def with_public(self, **values: float) -> Model:
-        """The model with public values by full name (use ``**{"a:b.c": 1.0}``)."""
+    def with_public(self, values: Mapping[str, float] | None = None, /, **named: float) -> Model:
+        """The model with public values, in public units, by the full names of the parameters.
+
+        Raises:
+            InputError: There is no parameter of that name.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> model = model.with_public({"joint_springs:joint_1_s.stiffness": 1.2e6})
+            >>> model.joint_stiffness()[0].item()
+            1200000.0
+        """
         new = self.values.copy()
-        for name, value in values.items():
+        for name, value in {**(values or {}), **named}.items():
             new[self.names.index(self.parameter(name).name)] = self.parameter(name).spec.internal(
                 value
             )
@@ -176,13 +220,32 @@ class Model:
 
         Raises:
             InputError: It is about a parameter that the model does not have.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> from sk120stiff.identify import known_model
+            >>> model = known_model(found)  # the model with what its fit knows
+            >>> found.model.known(model.uncertainty).uncertainty is model.uncertainty
+            True
         """
         for name in uncertainty.names:
             self.parameter(name)
         return replace(self, uncertainty=uncertainty)
 
     def solve(self, situation: Situation, values: Array | None = None) -> Solution:
-        """Equilibrium of all readings at once; see `predict` for many."""
+        """Equilibrium of all readings at once; see `predict` for many.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> from sk120stiff.effects import situation_of_load
+            >>> one = situation_of_load(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
+            >>> model.solve(one).displacement.shape  # m
+            (1, 3)
+        """
         return self.assembly.solve(situation, self.values if values is None else values)
 
     def predict(self, situation: Situation, values: Array | None = None) -> Array:
@@ -190,6 +253,14 @@ class Model:
 
         Raises:
             Refusal: The springs cannot hold a load.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> from sk120stiff.effects import situation_of_load
+            >>> one = situation_of_load(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
+            >>> model.predict(one).shape  # m
+            (1, 3)
         """
         given = self.values if values is None else values
         return np.concatenate(
@@ -200,7 +271,16 @@ class Model:
     def predict_with_sensitivities(
         self, situation: Situation, values: Array | None = None
     ) -> tuple[Array, Array]:
-        """(N, 3) predicted readings [m] and (N, 3, P) derivatives by the internal values."""
+        """(N, 3) predicted readings [m] and (N, 3, P) derivatives by the internal values.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> from sk120stiff.effects import situation_of_load
+            >>> one = situation_of_load(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
+            >>> model.predict_with_sensitivities(one)[1].shape
+            (1, 3, 3)
+        """
         given = self.values if values is None else values
         displacement, derivative = [], []
         for part in self._blocks(situation):
@@ -227,12 +307,27 @@ class Model:
         """(N, 3) true displacement of a point under base-axes wrenches (N, 6) [m].
 
         Instruments have no say here: the model's load and reading errors are left out.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> moved = model.deflect([0, 0.2, -0.3, 0, -1, 0], [0, 0, -490, 0, 0, 0])  # m
+            >>> print(f"{1e3 * moved[0, 2]:.3f} mm")
+            -1.052 mm
         """
         situation = situation_of_load(self.robot, a, wrench, point=point, force_point=force_point)
         return self.physical().predict(situation)
 
     def physical(self) -> Model:
-        """The arm alone: the model without load and reading errors."""
+        """The arm alone: the model without load and reading errors.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> sensor = model + sk.effect(model.robot, "force_bias")
+            >>> len(sensor.parameters), len(sensor.physical().parameters)
+            (6, 3)
+        """
         return replace(
             self,
             parameters=tuple(
@@ -241,7 +336,14 @@ class Model:
         )
 
     def joint_stiffness(self) -> Array:
-        """(n,) springs of the actuated joints [N·m/rad or N/m]; infinite where rigid."""
+        """(n,) springs of the actuated joints [N·m/rad or N/m]; infinite where rigid.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> model.joint_stiffness().round().tolist()  # N·m/rad; the wrist is rigid
+            [1409800.0, 400760.0, 935280.0, inf, inf, inf]
+        """
         springs = np.full(self.robot.n, np.inf)
         for parameter in self.parameters:
             if parameter.effect.joint_spring:

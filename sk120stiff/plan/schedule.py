@@ -29,6 +29,14 @@ class Schedule:
 
     Raises:
         InputError: A number below one, or an unknown word.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> steps = sk.Schedule("up-down", levels=3)
+        >>> made = sk.simulate(model, sk.plan(model, 4), schedule=steps).measurements
+        >>> made.n_readings, made.branch[:6]
+        (20, ('load', 'load', 'load', 'unload', 'unload', 'load'))
     """
 
     kind: Kind = "as-given"

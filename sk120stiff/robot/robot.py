@@ -60,6 +60,11 @@ class Robot:
         foundation: (3,) point of the base frame about which the base rocks [m].
         gravity: (3,) acceleration in axes of the URDF's root [m/s²].
         controller: How the controller counts the joints, for robot programs.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> sk.load_robot("ur5e")
+        <Robot ur5e: shoulder_pan_joint, ...; tool0>
     """
 
     name: str
@@ -138,7 +143,14 @@ class Robot:
         return {}
 
     def mechanism(self, frame: str | None = None) -> Mechanism:
-        """Chain and coupling from the base frame to `frame` (default: the tool)."""
+        """Chain and coupling from the base frame to `frame` (default: the tool).
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> robot.mechanism("reflector").n
+            6
+        """
         name = frame or self.tool_frame
         if name not in self._mechanisms:
             chain = self.tree.chain(self.base_frame, name)
@@ -153,6 +165,12 @@ class Robot:
         Raises:
             InputError: `a` has another number of coordinates, is not finite, or `frame` does not
                 exist.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> robot.screws([0.0] * 6).position.round(3).tolist()  # m
+            [1.745, 0.0, 1.35]
         """
         coordinates = self.coordinates(a)
         at = None if point is None else np.asarray(point, dtype=float)
@@ -161,7 +179,14 @@ class Robot:
     def placement(
         self, a: ArrayLike, frame: str | None = None, point: ArrayLike | None = None
     ) -> Array:
-        """(..., 4, 4) T_base_frame, with its origin moved to `point` of the frame [m]."""
+        """(..., 4, 4) T_base_frame, with its origin moved to `point` of the frame [m].
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> robot.placement([0.0] * 6)[:3, 3].round(3).tolist()  # m
+            [1.745, 0.0, 1.35]
+        """
         screws = self.screws(a, frame, point)
         T_base_frame = np.zeros((*screws.position.shape[:-1], 4, 4))
         T_base_frame[..., :3, :3] = screws.rotation
@@ -175,11 +200,24 @@ class Robot:
         """(..., 6, n) Jacobian of a point by the actuated coordinates, [linear; angular].
 
         Base axes, Pinocchio's LOCAL_WORLD_ALIGNED. Units m/rad and rad/rad (per m for slides).
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> robot.jacobian([[0.0] * 6, [0.1] * 6]).shape
+            (2, 6, 6)
         """
         return self.screws(a, frame, point).jacobian
 
     def joint_values(self, a: ArrayLike) -> dict[str, Array]:
-        """Value (...,) of every moving joint, coupled ones included, by joint name."""
+        """Value (...,) of every moving joint, coupled ones included, by joint name.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> robot.joint_values([0, 0.2, 0, 0, 0, 0])["joint_2_l"].item()
+            0.2
+        """
         q = self.coupling.motion(self.coordinates(a)).q
         return {name: q[..., k] for k, name in enumerate(self.tree.joint_names)}
 
@@ -199,6 +237,12 @@ class Robot:
         """(...,) where the closed loops can be closed; everywhere if there are none.
 
         `margin` keeps away from dead points, see `LoopCoupling.closes`.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> robot.closes([0.0] * 6).item()
+            True
         """
         coordinates = self.coordinates(a)
         if isinstance(self.coupling, LoopCoupling):
@@ -212,6 +256,12 @@ class Robot:
 
         Warns:
             ToolkitWarning: The URDF states no mass at all, so that every torque is zero.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("ur5e")
+            >>> robot.gravity_torque([0, -0.5, 0.5, 0, 0, 0]).round(1).tolist()  # N·m
+            [0.0, 54.7, 18.4, 0.0, 0.0, 0.0]
         """
         coordinates = self.coordinates(a)
         if self.total_mass == 0.0:
@@ -237,6 +287,12 @@ class Robot:
 
         Raises:
             InputError: Another number of coordinates, or a value that is not finite.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> robot.coordinates([0, 1, 0, 0, 0, 0]).dtype
+            dtype('float64')
         """
         values = np.asarray(a, dtype=float)
         if values.shape[-1:] != (self.n,):

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
@@ -18,6 +18,9 @@ from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.identify import Fit, Yardstick, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Share
+
+if TYPE_CHECKING:
+    from sk120stiff.show import Report
 
 Verdict = Literal["none", "named", "ambiguous", "outside"]
 
@@ -49,6 +52,14 @@ class Explanation:
         next_poses: (K, n) coordinates and (K, 6) wrenches to measure next, or None.
         catalogue: The effects that were considered.
         details: Further figures for reports.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(data / "table2_measured.csv")
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> sk.explain(model, readings, options=sk.Options(only=("joint_tilt",)))
+        <Explanation: none; gap 17.2 µm rms>
     """
 
     verdict: Verdict
@@ -90,11 +101,36 @@ class Explanation:
         return error_budget(self.final)
 
     def effect(self, name: str) -> Effect:
-        """The effect ``name:where`` of the catalogue, as it was considered."""
+        """The effect ``name:where`` of the catalogue, as it was considered.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> answer = sk.explain(model, readings, options=sk.Options(only=("joint_tilt",)))
+            >>> answer.effect("joint_tilt:joint_2_l").sentence()
+            'The bearing of joint_2_l tilts about the axes normal to its joint axis.'
+        """
         readings = self.base.problem.measurements
         kind, _, where = name.partition(":")
         told = Options(poses=readings.poses, timed=readings.time is not None)
         return self.catalogue.effect(self.base.model.robot, kind, where, told)
+
+    def next_readings(self) -> Measurements | None:
+        """The poses and loads that would tell the names apart, as a plan; None: none are needed.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> folder = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(folder / "table2_measured.csv")
+            >>> answer = sk.explain(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> answer.next_readings() is None  # nothing is missing that needs a name
+            True
+        """
+        from sk120stiff.explain.answer.saving import plan_of
+
+        return None if self.next_poses is None else plan_of(self, self.readings)
 
     def save(
         self, folder: str | os.PathLike[str], *, provenance: Mapping[str, str] | None = None
@@ -102,7 +138,7 @@ class Explanation:
         """Write verdict.json, model.yaml, gaps.csv, and next_poses.csv where poses would tell more.
 
         Files of an earlier answer in the folder are replaced, pages too, all in one moment. The
-        report and the scene are pages of `sk120stiff.show.stories`.
+        report is `report`.
 
         Args:
             folder: Made where it is missing.
@@ -110,10 +146,57 @@ class Explanation:
 
         Returns:
             dict: The content of verdict.json.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> import tempfile
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> answer = sk.explain(model, readings, options=sk.Options(only=("joint_tilt",)))
+            >>> with tempfile.TemporaryDirectory() as folder:
+            ...     written = answer.save(folder)
+            >>> written["verdict"], written["schema"]
+            ('none', 2)
         """
         from sk120stiff.explain.answer.saving import save
 
         return save(self, folder, provenance=provenance)
+
+    def report(self, file: str | os.PathLike[str] | None = None, **told: Any) -> Report:
+        """The report that `sk120stiff explain` writes, with its figures and the 3-D scene.
+
+        A notebook shows it as it is; ``.html()`` is its text and ``.write(file)`` writes it.
+
+        Args:
+            file: Where to write it: one HTML file that opens offline. None: nowhere.
+            told: What it may be told beside the answer, see `show.stories.explain_report`, such as
+                ``data="my arm"`` or ``scene=""`` for a report without a scene.
+
+        Raises:
+            MissingPart: What draws pictures is not installed.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> folder = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(folder / "table2_measured.csv")
+            >>> answer = sk.explain(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> answer.report(scene="").subtitle
+            'motoman_sk120, 15 readings at 3 poses, `table2_measured.csv`'
+        """
+        from sk120stiff.show import reproducibility, scene_html
+        from sk120stiff.show.stories import explain_report, explain_scene
+
+        path = self.readings.path
+        told.setdefault("data", "" if path is None else path.name)
+        if "scene" not in told:
+            told["scene"] = scene_html(explain_scene(self, subtitle=told["data"]))
+        if "reproducibility" not in told:
+            told["reproducibility"] = reproducibility("Explanation.report", [path] if path else [])
+        report = explain_report(self, self.readings, **told)
+        if file is not None:
+            report.write(file)
+        return report
 
     def __repr__(self) -> str:
         names = ", ".join(finding.effect.id for finding in self.findings)

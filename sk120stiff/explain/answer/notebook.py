@@ -1,6 +1,6 @@
 """An explanation as a notebook shows it: the names, the gap step by step, where it lives.
 
-The whole story with its figures is `sk120stiff.show.stories.explain_report`.
+The whole story with its figures is `Explanation.report`.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ FROM_SI: Final = {"deg": 180.0 / pi, "rad": 1.0, "mm": 1e3, "m": 1.0}
 
 WIDTH: Final = 7.2  # inches: the text width of a report page
 
-_RC: Final[Any] = {
+HOUSE: Final[Any] = {
     "axes.axisbelow": True,
     "axes.edgecolor": palette.SOFT_INK,
     "axes.facecolor": palette.PAPER,
@@ -69,7 +69,7 @@ def styled() -> Iterator[None]:
     require("matplotlib", needed_for="a picture")
     from matplotlib import rc_context
 
-    with rc_context(_RC):
+    with rc_context(HOUSE):
         yield
 
 
