@@ -23,6 +23,9 @@ SOMETHING_ELSE = 0.1  # that a cause is at work which the catalogue lacks
 # benchmark with which the judgement was made, before the last of its rules, 2 of 39 strongest names
 # and 7 of 17 further ones did: the numbers are a judgement between these and what the rules mend.
 IMPOSTOR, FURTHER_IMPOSTOR = 0.04, 0.25
+# Of what its evidence alone would say of a name that fell in the judgement: that it is at work all
+# the same, as other poses, resampling or a better place speak against it.
+FALLEN = 0.2
 
 
 @dataclass(frozen=True)

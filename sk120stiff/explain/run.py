@@ -17,7 +17,7 @@ from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
 from sk120stiff.explain.judge.attribution import MISSPECIFICATION, judged
 from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
-from sk120stiff.explain.judge.posterior import one_more
+from sk120stiff.explain.judge.posterior import doubted, one_more
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.steps import gap_steps
@@ -97,6 +97,8 @@ def explain(
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     remainder = remainder_of(held_against(noise, found.final))
+    if left.lacking:
+        remainder = remainder.beside(left.probability)
     findings = tuple(
         each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else)
         for k, each in enumerate(named.findings)
@@ -127,7 +129,11 @@ def explain(
         limits=options.limits,
         suspects=suspects,
         guess=guess,
-        odds=one_more(found.regression, found.chosen),
+        odds=doubted(
+            one_more(found.regression, found.chosen),
+            {each.id for each in named.fallen},
+            remainder.something_else,
+        ),
         catalogue=catalogue,
     )
     tell("what these readings cannot tell", 0.85)

@@ -7,8 +7,11 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.findings import NAMED, Confirmation, Evidence, Finding
 from sk120stiff.explain.judge import confirm as confirming
 from sk120stiff.explain.judge.adequacy import Adequacy
-from sk120stiff.explain.judge.posterior import posterior
+from sk120stiff.explain.judge.posterior import NONE, doubted, posterior
+from sk120stiff.explain.judge.remainder import Remainder
+from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.score import score_set
+from sk120stiff.measurements import ModelForm
 from sk120stiff.robot import load_robot
 from tests.explain.test_regression import POSES, regression
 
@@ -87,3 +90,25 @@ def test_adequacy_is_lacking_by_its_smallest_probability_alone():
     assert not fine.lacking
     assert Adequacy(0.0009, 1.0, 5.0, {}).lacking
     assert fine.chance is None
+
+
+def test_what_is_left_is_significant_where_structure_alone_says_so():
+    """Random effects that differ from pose to pose hardly see what is alike at all of them."""
+    left = Remainder(17e-6, (6e-6, 28e-6), 0.024, ModelForm(0.01), something_else=0.45)
+    assert not left.significant
+    assert left.beside(0.5) is left
+    seen = left.beside(1e-12)
+    assert seen.significant
+    assert seen.something_else > 0.999
+    assert seen.rms == left.rms
+    # p = 0.001 speaks for it by 1 / (e p ln 1/p) = 53 at most, against odds of 1 to 9
+    assert left.beside(1e-3).something_else == pytest.approx(53.26 / (53.26 + 9.0), abs=1e-3)
+
+
+def test_names_that_fell_and_those_beside_something_else_are_less_probable():
+    odds = {NONE: 0.1, "a": 0.5, "b": 0.4}
+    assert doubted(odds, (), 0.0) == odds
+    less = doubted(odds, {"a"}, 0.8)
+    assert less["a"] == pytest.approx(FALLEN * 0.5)
+    assert less["b"] == pytest.approx((1.0 - 0.8 * FURTHER_IMPOSTOR) * 0.4)
+    assert less[NONE] == 0.1

@@ -7,11 +7,12 @@ probabilities within the catalogue: a cause that it lacks has no score.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
 from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.beam import gains
 from sk120stiff.explain.select.score import score_set
 
@@ -48,3 +49,20 @@ def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]
     found = posterior(fair, none=base.score)
     listed = {name: share for name, share in found.items() if share > LISTED}
     return {NONE: 1.0 - sum(found.values()), **listed}
+
+
+def doubted(
+    odds: Mapping[str, float], fallen: Collection[str], something_else: float
+) -> dict[str, float]:
+    """Probabilities of one effect more, where names have fallen or may imitate what has none.
+
+    Args:
+        odds: As of `one_more`.
+        fallen: Names that fell in the judgement.
+        something_else: Probability that a cause without a name is at work.
+    """
+    held = 1.0 - FURTHER_IMPOSTOR * something_else
+    return {
+        name: share * (FALLEN if name in fallen else 1.0 if name == NONE else held)
+        for name, share in odds.items()
+    }

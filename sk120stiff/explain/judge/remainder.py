@@ -6,12 +6,13 @@ The left-over of a fitted model is laid out as model-form error beside the noise
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
 from scipy.special import expit
+from scipy.special import logit as _logit
 
 from sk120stiff.explain.priors import SOMETHING_ELSE
 from sk120stiff.identify import Fit
@@ -52,6 +53,22 @@ class Remainder:
     def significant(self) -> bool:
         """Noise alone does not explain it."""
         return self.probability < LEVEL
+
+    def beside(self, chance: float) -> Remainder:
+        """The same where another test of what is left has this probability of noise alone.
+
+        Such a test speaks for something else by 1 / (-e p ln p) at most (Sellke, Bayarri & Berger
+        2001).
+        """
+        if not self.rms or chance >= self.probability:
+            return self
+        p = float(np.clip(chance, 1e-300, np.exp(-1.0)))
+        logit = _logit(SOMETHING_ELSE) - 1.0 - float(np.log(-p * np.log(p)))
+        return replace(
+            self,
+            probability=chance,
+            something_else=max(self.something_else, float(expit(logit))),
+        )
 
     def sentence(self) -> str:
         """How large it is, in plain words."""
@@ -104,6 +121,5 @@ def remainder_of(fit: Fit) -> Remainder:
 def _something_else(found: Components, poses: int) -> float:
     """By the gain of random effects, each of whose sizes costs ln of the number of poses (BIC)."""
     sizes = max(int(found.form.proportional > 0.0) + int(found.form.constant > 0.0), 1)
-    logit = np.log(SOMETHING_ELSE / (1.0 - SOMETHING_ELSE))
-    logit += 0.5 * (max(found.gain, 0.0) - sizes * np.log(max(poses, 2)))
+    logit = _logit(SOMETHING_ELSE) + 0.5 * (max(found.gain, 0.0) - sizes * np.log(max(poses, 2)))
     return float(expit(logit))
