@@ -79,6 +79,10 @@ class ModelCompliance:
         law, _ = self._laws(a, np.zeros(6))
         return symmetric_part(law(np.zeros((len(a), self.mechanism.n)))[1])
 
+    def linear_at(self, a: Array) -> Array:
+        """(n, n) or (N, n, n) compliance of what is linear, which is what yields to the weight."""
+        return symmetric_part(self._laws(a, np.zeros(6))[1])
+
     def weight_at(self, a: Array) -> Weight | None:
         """See `Compliant`."""
         if not self.mechanism.chain.weighs:

@@ -12,10 +12,11 @@ from sk120stiff.effects import LinearElastic, situation_of_load
 from sk120stiff.errors import InputError
 from sk120stiff.model import ModelCompliance, probing_poses
 from sk120stiff.robot import LinearCoupling
+from sk120stiff.show.scene.gears import gear_terms
 from sk120stiff.show.scene.scene import Scene
 from sk120stiff.stiffness import ConstantCompliance
 
-HELD = "effects that change with pose or load are held as they are at the first pose, unloaded"
+HELD = "one effect is held as it is at the first pose, unloaded: this page cannot follow it"
 DEGREE = 5  # highest angle of a Fourier series, as many times a joint's: twice what a linkage needs
 MOST_JOINTS = 3  # on which one compliance may depend
 GOOD = 1e-9  # share of its size by which a series may be off
@@ -42,7 +43,8 @@ def serialised(scene: Scene) -> dict[str, Any]:
     nodes = scene.tree.riding(chain)
     first = scene.first_pose[None]
     weight = arm.weight_at(first)
-    constant, terms = _compliance(arm, first)
+    gears = None if isinstance(arm, ConstantCompliance) else gear_terms(arm)
+    constant, terms = _compliance(arm, first, without_gears=gears is not None)
     shift = arm.start(first)[0]
     shift[: robot.n] -= first[0]
     return {
@@ -52,6 +54,7 @@ def serialised(scene: Scene) -> dict[str, Any]:
         "shift": shift.tolist(),
         "compliance": constant.tolist(),
         "terms": terms,
+        "gears": gears or [],
         "gravity": None if weight is None else weight.gravity.tolist(),
         "chain": {
             "nodes": [nodes.joints.index(name) for name in chain.names],
@@ -76,15 +79,18 @@ def follows_pose_and_load(arm: ConstantCompliance | ModelCompliance) -> bool:
     """Does the serialised mechanism hold all that the arm does?"""
     if isinstance(arm, ConstantCompliance):
         return True
-    return arm.linear and _series(arm) is not None
+    return gear_terms(arm) is not None and _series(arm) is not None
 
 
 def _compliance(
-    arm: ConstantCompliance | ModelCompliance, first: Array
+    arm: ConstantCompliance | ModelCompliance, first: Array, *, without_gears: bool
 ) -> tuple[Array, list[Term]]:
     """(n, n) at the first pose less what changes, and the terms that bring it back."""
     n = arm.mechanism.n
-    held = arm.compliance_at(first).reshape(-1, n, n)[0]
+    if without_gears and isinstance(arm, ModelCompliance):
+        held = arm.linear_at(first).reshape(-1, n, n)[0]
+    else:
+        held = arm.compliance_at(first).reshape(-1, n, n)[0]
     found = None if isinstance(arm, ConstantCompliance) else _series(arm)
     if not found:
         return held, []

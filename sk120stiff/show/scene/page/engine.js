@@ -3,7 +3,7 @@
 "use strict";
 SK.makeEngine = (mechanism, onState = () => {}) => {
   const m = SK.algebra;
-  const { drives, A, b, shift, gravity, chain, tree } = mechanism;
+  const { drives, A, b, shift, gravity, chain, tree, gears } = mechanism;
   const n = shift.length, count = chain.nodes.length, none = [0, 0, 0];
   const rate = chain.nodes.map((node) => A[tree.coordinates[node]]); // of a chain joint's value, by z
 
@@ -21,6 +21,41 @@ SK.makeEngine = (mechanism, onState = () => {}) => {
       if (i !== j) C[j][i] += value;
     }
     return C;
+  }
+
+  // A gear's law by its torque: twist and slope. Its own weight stands on it before the load comes.
+  function shape({ kind, torque: T, side }, torque) {
+    const size = Math.abs(torque);
+    const [value, slope] = {
+      square: [torque * size, 2 * size], cube: [torque ** 3, 3 * size ** 2], sign: [Math.sign(torque), 0],
+      clip: [Math.min(Math.max(torque, -T), T), size < T ? 1 : 0], tanh: [Math.tanh(torque / T), 0],
+    }[kind];
+    return [side ? side * Math.max(side * value, 0) : value, slope];
+  }
+  const ungeared = { tangent: (C) => C, add: (elongations) => elongations };
+  const hardly = 1e-9 * chain.masses.reduce((sum, mass) => sum + mass, 0);
+  function gearsAt(a, start, wrench, point) {
+    if (!gears.length) return ungeared;
+    const zero = [...none, ...none], onset = stateAt(start, wrench, point).torques;
+    const hanging = stateAt(a.concat(new Array(n - drives).fill(0)), zero, point).hanging;
+    const terms = gears.map((gear) => {
+      const weight = gear.weight && Math.abs(hanging[gear.at]) > hardly ? hanging[gear.at] : 0;
+      return { gear, weight, before: shape(gear, weight)[0] };
+    });
+    return {
+      // Compliance with what gears yield to a little more torque.
+      tangent(C, torques) {
+        const whole = C.map((row) => row.slice());
+        for (const { gear, weight } of terms)
+          if (!gear.switch) whole[gear.at][gear.at] += gear.size * shape(gear, (torques ? torques[gear.at] : 0) + weight)[1];
+        return whole;
+      },
+      add(elongations, torques) {
+        for (const { gear, weight, before } of terms)
+          elongations[gear.at] += gear.size * (shape(gear, (gear.switch ? onset : torques)[gear.at] + weight)[0] - before);
+        return elongations;
+      },
+    };
   }
 
   // Placement of every link and virtual joint in the base frame.
@@ -78,16 +113,18 @@ SK.makeEngine = (mechanism, onState = () => {}) => {
     };
   }
 
-  // Exact equilibrium z = start + C (torques of load and weight), by Newton; null where none holds.
-  function equilibrium(start, C, wrench, point) {
+  // Exact equilibrium z = start + C (torques of load and weight) + gears, by Newton; null: none holds.
+  function equilibrium(start, C, wrench, point, law) {
     let z = start.slice();
     for (let step = 0; step < 60; step++) {
-      const state = stateAt(z, wrench, point), K = plus(state.K_C, state.K_g);
-      const error = m.minus(m.minus(z, start), m.apply(C, m.add(state.torques, state.hanging)));
-      const change = m.solve(m.difference(m.identity(n), m.times(C, K)), error.map((e) => [e]));
+      const state = stateAt(z, wrench, point), now = law.tangent(C, state.torques);
+      const given = law.add(m.apply(C, m.add(state.torques, state.hanging)), state.torques);
+      const error = m.minus(m.minus(z, start), given);
+      const feedback = plus(m.times(now, state.K_C), m.times(C, state.K_g));
+      const change = m.solve(m.difference(m.identity(n), feedback), error.map((e) => [e]));
       if (!change || !change.every((row) => Number.isFinite(row[0]))) return null;
       const largest = Math.max(0, ...change.map((row) => Math.abs(row[0])));
-      if (largest <= 1e-12) return holds(C, K) ? { ...state, z } : null;
+      if (largest <= 1e-12) return holds(now, plus(state.K_C, state.K_g)) ? { ...state, z } : null;
       z = z.map((value, i) => value - Math.min(1, 0.5 / largest) * change[i][0]);
     }
     return null;
@@ -134,15 +171,16 @@ SK.makeEngine = (mechanism, onState = () => {}) => {
   }
 
   function compute({ a, wrench, point, exaggeration }) {
-    const C = complianceAt(a), start = m.add(a.concat(new Array(n - drives).fill(0)), shift);
-    const still = gravity ? equilibrium(start, C, [...none, ...none], point) : { z: start };
+    const springs = complianceAt(a), start = m.add(a.concat(new Array(n - drives).fill(0)), shift);
+    const still = gravity ? equilibrium(start, springs, [...none, ...none], point, ungeared) : { z: start };
     if (!still) return null;
+    const law = gearsAt(a, start, wrench, point), C = law.tangent(springs); // under small loads
     const { z } = still, { T, end, position, J, K_C, K_g, torques } = stateAt(z, wrench, point);
     const loaded = m.solve(m.difference(m.identity(n), m.times(C, plus(K_C, K_g))), C); // K⁻¹
     if (!loaded) return null;
     const top = J.slice(0, 3), bottom = J.slice(3), links = T.slice(0, tree.links);
     const deflection = { conventional: m.apply(top, m.apply(C, torques)) };
-    const rest = equilibrium(start, C, wrench, point);
+    const rest = equilibrium(start, springs, wrench, point, law);
     if (rest) deflection.equilibrium = m.minus(rest.position, position);
     const { c, V } = yielding(C), load = within(V, K_C), own = within(V, K_g);
     const taken = shares(c, load, own);
