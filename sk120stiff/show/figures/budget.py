@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,16 +20,22 @@ MEASURED = "µm rms per axis at the measured loads, ± one standard error"
 
 
 def budget_bars(
-    names: Sequence[str], sizes: Array, errors: Array, *, label: str = MEASURED
+    names: Sequence[str],
+    sizes: Array,
+    errors: Array,
+    *,
+    label: str = MEASURED,
+    named: Collection[str] = (),
 ) -> Figure:
-    """One bar for each share: sizes (k,) and their standard errors (k,) in µm."""
+    """One bar for each share: sizes (k,) and standard errors (k,) [µm]; those `named` stand out."""
     if not len(names):
         raise InputError("no share to draw")
     with styled():
         figure = new_figure(1.05 + 0.32 * len(names))
         panel = figure.subplots()
         rows = np.arange(len(names))
-        panel.barh(rows, sizes, xerr=errors, color=palette.SKY, ecolor=palette.INK, capsize=3)
+        colours = [palette.NAMED if name in named else palette.YIELDS for name in names]
+        panel.barh(rows, sizes, xerr=errors, color=colours, ecolor=palette.INK, capsize=3)
         panel.set_yticks(rows, list(names))
         panel.set_ylim(len(names) - 0.4, -0.6)
         panel.set_xlabel(label)

@@ -64,7 +64,8 @@ def force_deflection(
 ) -> Figure:
     """Displacement of the point over the size of the load, one panel per pose.
 
-    Colours are the base axes, markers are readings, line styles are models.
+    Marker shapes are the base axes, which the lines are named by too; colours and line styles are
+    readings and models, the last model that at hand.
     """
     if not curves:
         raise InputError("no pose to draw")
@@ -92,43 +93,49 @@ def force_deflection(
 def _draw(panel: Axes, curve: LoadCurve, names: Sequence[str]) -> None:
     panel.set_title(curve.title)
     panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
+    looks = _looks(names)
     for axis in range(3):
-        colour = palette.AXES[axis]
         if curve.measured is not None:
             panel.errorbar(
                 curve.force,
                 1e6 * np.asarray(curve.measured)[:, axis],
                 yerr=None if curve.sigma is None else 1e6 * np.asarray(curve.sigma)[:, axis],
                 fmt=_MARKERS[axis],
-                color=colour,
+                color=palette.MEASURED,
                 markerfacecolor=palette.PAPER,
                 markeredgewidth=1.3,
                 elinewidth=0.9,
                 capsize=2,
                 zorder=3,
             )
-        loads = curve.force if curve.line_force is None else curve.line_force
+        loads = np.asarray(curve.force if curve.line_force is None else curve.line_force)
         for name, values in curve.models.items():
-            style = _DASHES[names.index(name) % len(_DASHES)]
+            style, colour = looks[name]
             panel.plot(loads, 1e6 * np.asarray(values)[:, axis], style, color=colour)
-    panel.margins(x=0.03, y=0.08)
+        ends = [values[:, axis] for values in (*reversed(curve.models.values()), curve.measured)
+                if values is not None]  # fmt: skip
+        if len(loads) and ends:
+            end = (float(loads[-1]), 1e6 * float(ends[0][-1]))
+            panel.annotate(f"d{'xyz'[axis]}", end, (5, 0), textcoords="offset points", va="center",
+                           fontsize=8.5)  # fmt: skip
+    panel.margins(x=0.1, y=0.08)
+
+
+def _looks(names: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Line style and colour of every model: the last is the one at hand."""
+    earlier = [(_DASHES[1 + k % 3], palette.BEFORE) for k in range(len(names) - 1)]
+    return dict(zip(names, [*earlier, ("-", palette.PREDICTED)], strict=False))
 
 
 def _key(names: Sequence[str], measured: bool) -> list[Line2D]:
     from matplotlib.lines import Line2D
 
     handles = [
-        Line2D([], [], color=palette.AXES[k], marker=_MARKERS[k] if measured else "", linestyle="-",
-               markerfacecolor=palette.PAPER, label=f"d{'xyz'[k]}")
-        for k in range(3)
+        Line2D([], [], color=palette.MEASURED, marker=_MARKERS[k], linestyle="",
+               markerfacecolor=palette.PAPER, label=f"d{'xyz'[k]} measured")
+        for k in range(3 if measured else 0)
     ]  # fmt: skip
-    if measured:
-        handles.append(
-            Line2D([], [], color=palette.INK, marker="o", linestyle="",
-                   markerfacecolor=palette.PAPER, label="measured")
-        )  # fmt: skip
-    handles += [
-        Line2D([], [], color=palette.INK, linestyle=_DASHES[k % len(_DASHES)], label=name)
-        for k, name in enumerate(names)
+    return handles + [
+        Line2D([], [], color=colour, linestyle=style, label=name)
+        for name, (style, colour) in _looks(names).items()
     ]
-    return handles

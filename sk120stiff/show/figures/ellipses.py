@@ -71,11 +71,11 @@ def plane_ellipses(
                 panel.plot(e.outline[:, u], e.outline[:, v], "-o", color=palette.NOISE,
                            linewidth=2.4, markersize=4, solid_capstyle="round")  # fmt: skip
             curve = centre[:, None] + per_metre * (symmetric_part(e.compliance)[pick] @ circle)
-            panel.fill(*curve, color=palette.SKY, alpha=0.35, linewidth=0)
-            panel.plot(*curve, color=palette.BLUE, linewidth=1.6)
+            panel.fill(*curve, color=palette.ENHANCED, alpha=0.35, linewidth=0)
+            panel.plot(*curve, color=palette.ENHANCED, linewidth=1.6)
             if e.reference is not None:
                 other = centre[:, None] + per_metre * (symmetric_part(e.reference)[pick] @ circle)
-                panel.plot(*other, "--", color=palette.VERMILION, linewidth=1.2)
+                panel.plot(*other, "--", color=palette.CONVENTIONAL, linewidth=1.2)
             panel.plot(*centre, ".", color=palette.INK, markersize=5)
             if e.label:
                 panel.annotate(e.label, centre, (7, 7), textcoords="offset points", fontsize=8.5)
@@ -101,8 +101,8 @@ def _key(
     shown, reference = names[0] or "compliance", names[1] or "reference"
     scale = 0.1 / per_metre * 1e6
     handles = [
-        Line2D([], [], color=palette.BLUE, label=f"{shown} (0.1 m = {scale:.3g} µm/N)"),
+        Line2D([], [], color=palette.ENHANCED, label=f"{shown} (0.1 m = {scale:.3g} µm/N)"),
     ]
     if any(e.reference is not None for e in ellipses):
-        handles.append(Line2D([], [], color=palette.VERMILION, linestyle="--", label=reference))
+        handles.append(Line2D([], [], color=palette.CONVENTIONAL, linestyle="--", label=reference))
     return handles

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_BEFORE_AFTER = (palette.NOISE, palette.BLUE, palette.GREEN, palette.ORANGE, palette.PURPLE)
-_INSIDE = (palette.INK, palette.PAPER)  # text on the first bar and on the later ones
-
 
 @dataclass(frozen=True)
 class GapStep:
@@ -54,10 +51,12 @@ def gap_per_pose(
         panel = figure.subplots()
         width = 0.8 / max(1, len(series))
         place = np.arange(count)
-        for k, (name, values) in enumerate(series.items()):
+        for k, ((name, values), shade) in enumerate(
+            zip(series.items(), palette.steps(len(series)), strict=True)
+        ):
             bars = panel.bar(
                 place + (k - 0.5 * (len(series) - 1)) * width, values, 0.92 * width,
-                color=_BEFORE_AFTER[k % len(_BEFORE_AFTER)], label=name, zorder=2,
+                color=shade, label=name, zorder=2,
             )  # fmt: skip
             if count * len(series) <= 14:
                 panel.bar_label(bars, fmt=_short, fontsize=7.5, padding=2)
@@ -87,28 +86,30 @@ def gap_waterfall(
         figure = new_figure(1.15 + 0.42 * len(steps))
         panel = figure.subplots()
         rows = np.arange(len(steps))
+        farthest = 1.28 * float(np.nanmax([*fit, *held]))
         for k in range(len(steps)):
             start = fit[k - 1] if k else fit[0]
             if k and start > fit[k]:
-                panel.barh(k, start - fit[k], left=fit[k], height=0.56, color=palette.GREEN,
-                           alpha=0.28, zorder=2)  # fmt: skip
+                panel.barh(k, start - fit[k], left=fit[k], height=0.56, color=palette.RULE,
+                           zorder=2)  # fmt: skip
+            last = k == len(steps) - 1
             panel.barh(k, fit[k], height=0.56, zorder=2,
-                       color=palette.NOISE if k == 0 else palette.BLUE)  # fmt: skip
+                       color=palette.GAP if last else palette.BEFORE)  # fmt: skip
             saved = f"  (−{start - fit[k]:.3g})" if k and start > fit[k] else ""
-            inside = fit[k] > 0.3 * fit.max()
+            inside = fit[k] > 0.3 * farthest
             edge = fit[k] if inside else np.nanmax([fit[k], start, held[k]])
             panel.annotate(
                 f"{_short(fit[k])} µm{saved}", (edge, k), (-7 if inside else 8, 0),
                 textcoords="offset points", ha="right" if inside else "left", va="center",
-                fontsize=8.5, color=_INSIDE[min(k, 1)] if inside else palette.INK, zorder=5,
+                fontsize=8.5, color=palette.PAPER if inside and last else palette.INK, zorder=5,
             )  # fmt: skip
         if np.isfinite(held).any():
-            panel.plot(held, rows, "D", color=palette.ORANGE, markeredgecolor="white",
+            panel.plot(held, rows, "D", color=palette.PAPER, markeredgecolor=palette.INK,
                        markersize=7, label="held-out poses", zorder=4)  # fmt: skip
         _floor(panel, noise_floor, vertical=True)
         panel.set_yticks(rows, [step.model for step in steps])
         panel.invert_yaxis()
-        panel.set_xlim(0.0, 1.28 * float(np.nanmax([*fit, *held])))
+        panel.set_xlim(0.0, farthest)
         panel.set_xlabel("rms gap [µm]")
         panel.grid(visible=False, axis="y")
         panel.tick_params(axis="y", length=0)
@@ -124,7 +125,7 @@ def _floor(panel: Axes, noise_floor: float | None, *, vertical: bool = False) ->
         return
     draw = panel.axvline if vertical else panel.axhline
     draw(
-        1e6 * noise_floor, color=palette.VERMILION, linestyle="--", linewidth=1.3, zorder=3,
+        1e6 * noise_floor, color=palette.INK, linestyle="--", linewidth=1.3, zorder=3,
         label=f"noise floor {_short(1e6 * noise_floor)} µm",
     )  # fmt: skip
 

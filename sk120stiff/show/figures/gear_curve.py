@@ -39,16 +39,16 @@ def _draw(panel: Axes, curve: GearCurve, spring: float) -> None:
         panel.fill(
             np.concatenate([torque, torque[::-1]]), np.concatenate([found + band,
                                                                     (found - band)[::-1]]),
-            color=palette.SKY, alpha=0.35, linewidth=0.0, label="95 % band",
+            color=palette.PREDICTED, alpha=0.25, linewidth=0.0, label="95 % band",
         )  # fmt: skip
     x = curve.measured[:, 0]
     y = 1e6 * (curve.measured[:, 1] - spring * x)
     near = np.abs(y) < LIMIT * np.abs(found).max(initial=0.0)
-    panel.plot(x[near], y[near], "o", color=palette.NOISE, markersize=2.6, alpha=0.6,
+    panel.plot(x[near], y[near], "o", color=palette.MEASURED, markersize=2.6, alpha=0.6,
                markeredgewidth=0, label="readings")  # fmt: skip
     panel.plot(torque, 1e6 * (curve.ideal - straight), "--", color=palette.INK, linewidth=1.1,
                label="plain law")  # fmt: skip
-    panel.plot(torque, found, color=palette.BLUE, label="found")
+    panel.plot(torque, found, color=palette.PREDICTED, label="found")
     panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
     panel.axvline(0.0, color=palette.SOFT_INK, linewidth=0.7)
     panel.set_xlabel("torque of the joint [N·m]")

@@ -94,6 +94,7 @@ def _bent(plane: xarray.Dataset, first: str, second: str, where: str, name: str)
             stiffness_slice(
                 x, y, values, x_label=first, y_label=second, units=units,
                 value_label=f"{ending.removeprefix('deflection_')} [µm]", scale=1e6,
+                low_is_soft=False,
                 title=f"{title}\n{fill(where + _white(values), 52)}",
             ),
         )

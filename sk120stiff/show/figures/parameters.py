@@ -62,12 +62,12 @@ def parameter_forest(
         rows = np.arange(len(estimates))
         panel.axvline(1.0, color=palette.SOFT_INK, linewidth=1.0, linestyle=":")
         panel.errorbar(
-            centre[seen], rows[seen], xerr=spread[seen], fmt="o", color=palette.BLUE, capsize=3,
-            markersize=6, elinewidth=1.6,
+            centre[seen], rows[seen], xerr=spread[seen], fmt="o", color=palette.PREDICTED,
+            capsize=3, markersize=6, elinewidth=1.6,
         )  # fmt: skip
         compared = [k for k, e in enumerate(estimates) if e.reference is not None and e.shown]
         if compared:
-            panel.plot(np.ones(len(compared)), compared, "|", color=palette.ORANGE, markersize=17,
+            panel.plot(np.ones(len(compared)), compared, "|", color=palette.BEFORE, markersize=17,
                        markeredgewidth=2.6, zorder=1)  # fmt: skip
         panel.set_yticks(rows, [e.name for e in estimates])
         panel.set_ylim(len(estimates) - 0.4, -0.6)

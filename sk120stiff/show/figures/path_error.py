@@ -10,12 +10,12 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.figures.style import new_figure, styled, subplots
+from sk120stiff.show.figures.style import new_figure, soft_to_stiff, styled, subplots
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COLOURS = {"before": palette.ORANGE, "after": palette.BLUE}
+COLOURS = {"before": palette.BEFORE, "after": palette.GAP}
 LONGEST_ARROW = 0.16  # of the picture's extent
 MOST_ARROWS = 40
 MOST_POINTS = 1500  # drawn; more only make the page heavy
@@ -47,7 +47,7 @@ def error_along(
                        marker="o" if len(x) < 3 else "", zorder=2)  # fmt: skip
         if std is not None and np.isfinite(std).any():
             panel.fill_between(
-                x, 0.0, 1e6 * (predicted["after"] + std)[shown], color=palette.SKY, alpha=0.35,
+                x, 0.0, 1e6 * (predicted["after"] + std)[shown], color=palette.GAP, alpha=0.2,
                 linewidth=0.0, label="after, ± one standard distance", zorder=1,
             )  # fmt: skip
         for run, values in measured.items():
@@ -98,12 +98,12 @@ def path_map(position: Array, away: Array, worst: int) -> Figure:
             ends = position + scale * away
             lines = np.stack([position, ends], axis=1)[every]
             for line in lines:
-                panel.plot(1e3 * line[:, a], 1e3 * line[:, b], color=palette.GAP, linewidth=0.8,
+                panel.plot(1e3 * line[:, a], 1e3 * line[:, b], color=palette.BEFORE, linewidth=0.8,
                            alpha=0.7, zorder=2)  # fmt: skip
             drawn = panel.scatter(1e3 * position[:, a], 1e3 * position[:, b], c=size, s=16,
-                                  cmap="viridis", zorder=3)  # fmt: skip
+                                  cmap=soft_to_stiff().reversed(), zorder=3)  # fmt: skip
             panel.plot(*(1e3 * mark[[a, b]]), "o", markersize=11, zorder=4,
-                       markerfacecolor="none", markeredgecolor=palette.VERMILION)  # fmt: skip
+                       markerfacecolor="none", markeredgecolor=palette.INK)  # fmt: skip
             panel.set_xlabel(f"{'xyz'[a]} [mm]")
             panel.set_ylabel(f"{'xyz'[b]} [mm]")
             panel.set_aspect("equal", adjustable="datalim")

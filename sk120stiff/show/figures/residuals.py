@@ -59,7 +59,7 @@ def residual_suspects(
     with styled():
         figure, axes = subplots(rows, columns, height=0.3 + 1.85 * rows, sharey=True)
         for k, (panel, suspect) in enumerate(zip(axes, suspects, strict=False)):
-            colour = palette.VERMILION if k == strongest else palette.BLUE
+            colour = palette.GAP
             values = np.asarray(suspect.values, dtype=float)
             panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
             panel.plot(values, gap, "o", color=colour, markersize=3.2, alpha=0.75,
@@ -78,7 +78,7 @@ def residual_suspects(
             panel.locator_params(nbins=4)
             if k == strongest:
                 for side in ("left", "bottom", "top", "right"):
-                    panel.spines[side].set(color=palette.VERMILION, linewidth=1.5, visible=True)
+                    panel.spines[side].set(color=palette.INK, linewidth=1.5, visible=True)
             if k % columns == 0:
                 panel.set_ylabel(label)
         hide_spare(axes, len(suspects))

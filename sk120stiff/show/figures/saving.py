@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from sk120stiff.errors import InputError
 from sk120stiff.files import write_atomically
+from sk120stiff.show import palette
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,7 +42,7 @@ def save_figure(figure: Figure, path: str | os.PathLike[str], *, dpi: int = 200)
 def inline_svg(figure: Figure, alt: str) -> str:
     """The figure as an `<svg>` element that a screen reader announces as `alt`.
 
-    Ids are made unique, so that many figures can stand in one page.
+    Ids are made unique, so that many figures can stand in one page, and its colours are the page's.
     """
     svg = _rendered(figure, "svg", 72).decode("utf-8")
     svg = svg[svg.index("<svg") :]
@@ -49,7 +50,7 @@ def inline_svg(figure: Figure, alt: str) -> str:
     prefix = f"f{next(_numbers)}-"
     svg = re.sub(r'\bid="', f'id="{prefix}', svg)
     svg = re.sub(r'href="#', f'href="#{prefix}', svg)
-    svg = re.sub(r"url\(#", f"url(#{prefix}", svg)
+    svg = palette.followed(re.sub(r"url\(#", f"url(#{prefix}", svg))
     opening, rest = svg.split(">", 1)
     opening = re.sub(r'\s(width|height)="[^"]*"', "", opening)
     widest = _PIXELS_PER_INCH * figure.get_figwidth()

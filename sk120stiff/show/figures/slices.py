@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.figures.style import FROM_SI, new_figure, styled
+from sk120stiff.show.figures.style import FROM_SI, new_figure, soft_to_stiff, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,6 +28,7 @@ def stiffness_slice(
     marks: Mapping[str, tuple[float, float]] | None = None,
     units: tuple[str, str] = ("deg", "deg"),
     title: str | None = None,
+    low_is_soft: bool = True,
 ) -> Figure:
     """A quantity over two joint values or two positions, as filled contours.
 
@@ -36,6 +37,7 @@ def stiffness_slice(
         values: (ny, nx) quantity in SI, e.g. the least principal stiffness [N/m]; NaN stays white.
         scale: Factor from SI to the unit that `value_label` names.
         marks: Label → (x, y) [rad or m] of poses to mark.
+        low_is_soft: Are small values those of a soft arm, as of a stiffness? Else the large ones.
         units: Units of the two axes as they are drawn: keys of `figures.style.FROM_SI`.
     """
     x, y = FROM_SI[units[0]] * np.asarray(x), FROM_SI[units[1]] * np.asarray(y)
@@ -52,8 +54,9 @@ def stiffness_slice(
 
         figure = new_figure(3.9, width=5.4)
         panel = figure.subplots()
+        cmap = soft_to_stiff() if low_is_soft else soft_to_stiff().reversed()
         levels = np.linspace(low, top, 15)
-        drawn = panel.contourf(x, y, np.clip(shown, None, top), levels=levels, cmap="cividis")
+        drawn = panel.contourf(x, y, np.clip(shown, None, top), levels=levels, cmap=cmap)
         lines = panel.contour(
             x, y, np.clip(shown, None, top), levels=levels[2:-1:3],
             colors="white", linewidths=0.6,
@@ -64,7 +67,7 @@ def stiffness_slice(
             place = (FROM_SI[units[0]] * mark[0], FROM_SI[units[1]] * mark[1])
             right = place[0] > 0.5 * (x[0] + x[-1])  # the label stays inside the picture
             high = place[1] > 0.5 * (y[0] + y[-1])
-            panel.plot(*place, "o", color=palette.VERMILION, markeredgecolor="white",
+            panel.plot(*place, "o", color=palette.INK, markeredgecolor=palette.PAPER,
                        markersize=7, clip_on=False, zorder=5)  # fmt: skip
             panel.annotate(
                 label, place, (-7 if right else 7, -6 if high else 6), textcoords="offset points",

@@ -12,6 +12,7 @@ from sk120stiff.show import palette
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import LinearSegmentedColormap
     from matplotlib.figure import Figure
 
 #: Factor from SI to a unit that axes are drawn in.
@@ -87,6 +88,13 @@ def subplots(
     figure = new_figure(height, width=width)
     grid = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(grid.flat)
+
+
+def soft_to_stiff() -> LinearSegmentedColormap:
+    """Colours of a map, from soft to stiff."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("soft to stiff", palette.SOFT_TO_STIFF)
 
 
 def hide_spare(axes: list[Axes], used: int) -> None:

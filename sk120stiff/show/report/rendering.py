@@ -22,11 +22,6 @@ from sk120stiff.show.report.attempts import failure
 from sk120stiff.show.report.blocks import Block, Picture, SceneFrame, Section, Table
 
 WHOLE = 1e4  # up to here a number without digits after the point is easier read than a power
-_COLOURS = {
-    name.lower(): value
-    for name, value in vars(palette).items()
-    if isinstance(value, str) and value.startswith("#")
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +45,8 @@ class Report:
     def html(self) -> str:
         """The whole page as text."""
         template = _environment().get_template("report.html.j2")
-        return template.render(report=self, colours=_COLOURS)
+        colours = Markup(palette.style_variables())
+        return template.render(report=self, colours=colours, scenes=_has_scene(self.sections))
 
     def write(self, path: str | os.PathLike[str]) -> Path:
         """Write the page; an interrupted write leaves the old file as it was."""
@@ -61,6 +57,13 @@ class Report:
         return f'<iframe title="{escape(self.title, quote=True)}" srcdoc="{page}" ' + (
             'style="width:100%;height:640px;border:0"></iframe>'
         )
+
+
+def _has_scene(blocks: Sequence[Block]) -> bool:
+    return any(
+        isinstance(block, SceneFrame) or (isinstance(block, Section) and _has_scene(block.blocks))
+        for block in blocks
+    )
 
 
 @cache

@@ -150,7 +150,7 @@ def cloud_html(scene: Scene, cloud: Cloud) -> str:
             payload=Markup(json_for_script(payload)),
             viewer=Markup(viewer_script()),
             scripts=[Markup(script(name)) for name in SCRIPTS],
-            colours={n.lower(): v for n, v in vars(palette).items() if str(v).startswith("#")},
+            colours=Markup(palette.style_variables()),
         )
     )
 

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
-from sk120stiff.show import palette
 from sk120stiff.show.scene.bodies import bodies_of
 from sk120stiff.show.scene.frame import Frame, Request, compute_frame
 from sk120stiff.show.scene.mechanism import HELD, follows_pose_and_load, serialised
@@ -59,9 +58,6 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
             "point": _list(np.asarray(scene.point, dtype=float)),
         },
         "scale": scale_of(scene),
-        "colours": {
-            name.lower(): getattr(palette, name) for name in vars(palette) if name.isupper()
-        },
         "command": {
             "robot": scene.robot_argument or robot.source,
             "model": scene.model_argument,

@@ -76,7 +76,7 @@ def render_page(payload: dict[str, Any], *, viewer: str | None) -> str:
             payload=Markup(json_for_script(payload)),
             viewer=None if viewer is None else Markup(viewer),
             scripts=[Markup(script(name)) for name in SCRIPTS],
-            colours={n.lower(): v for n, v in vars(palette).items() if str(v).startswith("#")},
+            colours=Markup(palette.style_variables()),
         )
     )
 

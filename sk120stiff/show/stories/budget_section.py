@@ -31,9 +31,10 @@ def budget_section(answer: Explanation) -> Section | None:
                     [share.name for share in drawn],
                     np.array([1e6 * share.rms for share in drawn]),
                     np.array([1e6 * (share.std or 0.0) for share in drawn]),
+                    named=[finding.effect.id for finding in answer.findings],
                 ),
                 alt=f"Bars of {len(drawn)} shares: {told}.",
-                caption="What each effect moves the point by.",
+                caption="What each effect moves the point by. Violet: what was named.",
             ),
             Table(
                 ["what yields", "moves", "±"],

@@ -225,7 +225,7 @@ def _second_act(demo: Demo) -> Section:
             Picture(
                 lambda: parameter_forest(estimates, reference_name="paper's value"),
                 alt=f"Identified springs as multiples of the paper's: {ratios}",
-                caption="Identified springs as multiples of the paper's (orange).",
+                caption="Identified springs as multiples of the paper's (grey).",
             ),
             Picture(
                 lambda: gap_per_pose(found.problem.situation.poses, gaps, noise_floor=floor),

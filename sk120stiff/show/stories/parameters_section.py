@@ -39,7 +39,7 @@ def parameters_section(answer: Explanation) -> Section:
                 lambda: parameter_forest(drawn, reference_name="value before"),
                 alt="Each parameter with its 95 % range, as a multiple of its value before: "
                 + "; ".join(f"{e.name} {number(e.value / (e.reference or 1.0), 3)}" for e in drawn),
-                caption="Values with the added effect, as multiples of those without it (orange).",
+                caption="Values with the added effect, as multiples of those without it (grey).",
             )
         )
     return Section("Parameters before and after", blocks)

@@ -44,7 +44,7 @@ def gap_vectors(views: Sequence[ArmView]) -> Figure:
     The side view turns every pose about the vertical into one plane.
     """
     names = list(dict.fromkeys(name for view in views for name in view.gaps))
-    colours = dict(zip(names, (palette.GAP, palette.GREEN, palette.BLUE), strict=False))
+    colours = dict(zip(names, palette.steps(len(names)), strict=True))
     points = np.concatenate([view.outline for view in views])
     span = float(np.ptp(points, axis=0).max()) or 1.0
     largest = max(float(np.linalg.norm(gap)) for view in views for gap in view.gaps.values())
@@ -64,7 +64,7 @@ def gap_vectors(views: Sequence[ArmView]) -> Figure:
         axes[1].set_title("from the side")
         axes[1].set_xlabel("distance from the first axis [m]")
         axes[1].set_ylabel("z [m]")
-        handles = [Line2D([], [], color=palette.NOISE, linewidth=2, label="arm")]
+        handles = [Line2D([], [], color=palette.YIELDS, linewidth=2, label="arm")]
         handles += [Line2D([], [], color=colours[name], linewidth=2, label=name) for name in names]
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
     return figure
@@ -90,7 +90,7 @@ def _draw_arm(
     tip = view.outline[-1]
     flat = _side if side else _above
     shown = np.array([flat(point, tip) for point in view.outline])
-    panel.plot(shown[:, 0], shown[:, 1], "-", color=palette.NOISE, linewidth=1.4, alpha=0.45,
+    panel.plot(shown[:, 0], shown[:, 1], "-", color=palette.YIELDS, linewidth=1.4, alpha=0.45,
                solid_capstyle="round", zorder=1)  # fmt: skip
     panel.plot(*shown[-1], ".", color=palette.INK, markersize=3, zorder=2)
     for name in names:
@@ -132,7 +132,7 @@ def suspect_panels(found: Localisation, *, columns: int = 3) -> Figure:
 
 
 def _draw_suspicion(panel: Axes, suspicion: Suspicion, *, marked: bool) -> None:
-    colour = palette.VERMILION if marked else (palette.BLUE if suspicion.seen else palette.NOISE)
+    colour = palette.GAP if suspicion.seen else palette.NOISE
     panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
     every = slice(None, None, -(-suspicion.partial.size // MOST_POINTS))
     x, y = suspicion.abscissa[every], 1e6 * suspicion.partial[every]
@@ -145,4 +145,4 @@ def _draw_suspicion(panel: Axes, suspicion: Suspicion, *, marked: bool) -> None:
                     fontweight="bold" if marked else "normal")  # fmt: skip
     if marked:
         for side in ("left", "bottom", "top", "right"):
-            panel.spines[side].set(color=palette.VERMILION, linewidth=1.5, visible=True)
+            panel.spines[side].set(color=palette.INK, linewidth=1.5, visible=True)

@@ -3,7 +3,7 @@
 SK.makeActors = (stage, scene) => {
   const THREE = MeshCat.THREE, m = SK.algebra;
   const { put, move, show, materials, shapes, reach, viewer } = stage;
-  const colours = scene.colours;
+  const { colours } = SK;
   const thin = 0.0028 * reach;
   const labels = [];
   const layer = document.createElement("div");

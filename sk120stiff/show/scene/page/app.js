@@ -4,7 +4,7 @@ SK.start = (scene) => {
   const m = SK.algebra, { quantities, principal, number } = SK.words;
   const pane = document.getElementById("pane");
   const stage = SK.makeStage(pane, scene), camera = SK.makeCamera(stage), actors = SK.makeActors(stage, scene);
-  const { colours, scale, poses } = scene, { reach } = scale;
+  const { colours } = SK, { scale, poses } = scene, { reach } = scale;
   const state = {
     a: scene.start.a.slice(), wrench: scene.start.wrench.slice(), point: scene.start.point.slice(),
     exaggeration: scale.exaggeration, scale: 1, quantity: "compliance", formulation: "enhanced",
@@ -17,8 +17,8 @@ SK.start = (scene) => {
 
   const ellipsoids = {
     enhanced: actors.makeEllipsoid("enhanced", colours.enhanced, true),
-    conventional: actors.makeEllipsoid("conventional", "#9c4a7c", false),
-    conventionalFilled: actors.makeEllipsoid("conventional_filled", "#9c4a7c", true),
+    conventional: actors.makeEllipsoid("conventional", colours["conventional-line"], false),
+    conventionalFilled: actors.makeEllipsoid("conventional_filled", colours["conventional-line"], true),
   };
   const arrows = {
     force: actors.makeArrow("force", colours.ink),
@@ -26,7 +26,7 @@ SK.start = (scene) => {
     measured: actors.makeArrow("measured", colours.measured),
     predicted: actors.makeArrow("predicted", colours.predicted),
     gap: actors.makeArrow("gap", colours.gap),
-    before: actors.makeArrow("before", colours.noise),
+    before: actors.makeArrow("before", colours.before),
   };
   const marks = scene.marks.map(([link, text]) => ({ link, text, words: actors.makeLabel("named") }));
   const frames = { base: actors.makeFrame("base", 0.16 * reach), tool: actors.makeFrame("tool", 0.1 * reach) };
@@ -204,6 +204,10 @@ SK.start = (scene) => {
   const readouts = SK.makeReadouts(scene, state);
   document.getElementById("panel").append(readouts.root);
   const panel = SK.makePanel(scene, state, actions);
+  // With readings the gap matters first, and stiffness stands behind the controls.
+  const measured = poses.some((pose) => pose.readings.length);
+  if (measured) panel.root.lastChild.before(readouts.rest);
+  else readouts.root.after(readouts.rest);
   const legendList = document.getElementById("legend"), narrow = window.matchMedia("(max-width: 900px)");
   const settle = () => (narrow.matches ? panel.root.prepend(legendList) : pane.after(legendList));
   narrow.addEventListener("change", settle);
@@ -224,5 +228,5 @@ SK.start = (scene) => {
   engine.request(state, begin);
   // Is anything still to be computed, moved or drawn?
   const busy = () => Boolean(pending || asked || gliding || camera.busy() || stage.viewer.needs_render);
-  Object.assign(SK, { busy, state, stage, camera, actions, changed, redraw, panel, frame: () => frame, picture: camera.picture });
+  Object.assign(SK, { busy, state, stage, camera, actions, changed, redraw, panel, frame: () => frame, picture: camera.picture, still: camera.still });
 };

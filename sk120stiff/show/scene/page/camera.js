@@ -8,12 +8,12 @@ SK.makeCamera = (stage) => {
   viewer.set_object(["Cameras", "default", "rotated"], camera); // undoes the turn of the scene
   viewer.set_camera(camera);
   Object.assign(viewer.controls, { minDistance: 0.1 * reach, maxDistance: 12 * reach, zoomSpeed: 0.8, rotateSpeed: 0.7 });
-  const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   let flight = 0, flying = false;
 
   function look(position, target, smoothly = true) {
     const mine = ++flight, from = camera.position.clone(), fromTarget = viewer.controls.target.clone();
-    const begin = performance.now(), span = smoothly && !still ? 420 : 0;
+    const begin = performance.now(), span = smoothly && !calm ? 420 : 0;
     const step = () => {
       if (mine !== flight) return;
       const t = span ? Math.min(1, (performance.now() - begin) / span) : 1, ease = t * t * (3 - 2 * t);
@@ -82,16 +82,16 @@ SK.makeCamera = (stage) => {
   pane.addEventListener("wheel", release, { passive: true });
   const follow = (point) => { if (current) preset(current, point); };
 
-  // The picture with its background and labels, as a PNG address.
-  function picture() {
+  // What is seen, with its background and labels, as a canvas.
+  function still() {
     viewer.render();
     const source = viewer.renderer.domElement, canvas = document.createElement("canvas");
     canvas.width = source.width;
     canvas.height = source.height;
     const brush = canvas.getContext("2d"), ratio = source.width / pane.clientWidth;
     const wash = brush.createLinearGradient(0, 0, 0, canvas.height);
-    wash.addColorStop(0, "#ffffff");
-    wash.addColorStop(1, "#e6ecf3");
+    wash.addColorStop(0, SK.colours["sky-top"]);
+    wash.addColorStop(1, SK.colours["sky-low"]);
     brush.fillStyle = wash;
     brush.fillRect(0, 0, canvas.width, canvas.height);
     brush.drawImage(source, 0, 0);
@@ -104,13 +104,22 @@ SK.makeCamera = (stage) => {
       brush.textBaseline = "middle";
       const x = (box.left - origin.left + box.width / 2) * ratio, y = (box.top - origin.top + box.height / 2) * ratio;
       brush.lineWidth = 4 * ratio;
-      brush.strokeStyle = "rgba(255,255,255,.9)";
+      brush.strokeStyle = SK.colours.paper;
       brush.strokeText(element.textContent, x, y);
       brush.fillStyle = style.color;
       brush.fillText(element.textContent, x, y);
     }
-    return canvas.toDataURL("image/png");
+    return canvas;
   }
+  const picture = () => still().toDataURL("image/png");
 
-  return { preset, follow, busy: () => flying, picture, names: [...Object.keys(views), "tool"] };
+  // Paper gets a still: a canvas that WebGL draws on would come out blank.
+  window.addEventListener("beforeprint", () => {
+    const drawn = still(), sheet = document.getElementById("still");
+    sheet.width = drawn.width;
+    sheet.height = drawn.height;
+    sheet.getContext("2d").drawImage(drawn, 0, 0);
+  });
+
+  return { preset, follow, busy: () => flying, picture, still, names: [...Object.keys(views), "tool"] };
 };

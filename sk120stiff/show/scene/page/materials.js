@@ -1,9 +1,12 @@
 // Colours and surfaces. URDF colours are what a screen shows, so they become linear for the shader.
 "use strict";
-SK.makeMaterials = (colours) => {
+// The palette as the page has it at this moment, light or dark.
+SK.colours = new Proxy({}, { get: (_, name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() });
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => location.reload());
+SK.makeMaterials = () => {
   const THREE = MeshCat.THREE;
   const linear = (colour) => new THREE.Color(colour).convertSRGBToLinear();
-  const cache = new Map();
+  const cache = new Map(), colours = SK.colours;
 
   function body([red, green, blue, alpha]) {
     const key = [red, green, blue, alpha].join();
@@ -32,5 +35,7 @@ SK.makeMaterials = (colours) => {
     side: THREE.DoubleSide, depthWrite: true,
     polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8, // behind the link where they touch
   });
-  return { body, glass, flat, line, ghost, named, linear };
+  const namedGhost = ghost.clone();
+  namedGhost.color = linear(colours.named);
+  return { body, glass, flat, line, ghost, named, namedGhost, linear };
 };

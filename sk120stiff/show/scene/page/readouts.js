@@ -1,12 +1,12 @@
 // The numbers at this pose.
 "use strict";
 SK.makeReadouts = (scene, state) => {
-  const { element, section } = SK.widgets, { number, percent, quantities, principal } = SK.words;
+  const { element, section, more } = SK.widgets, { number, percent, quantities, principal } = SK.words;
   const verdict = element("p", { class: "verdict", role: "status" });
   const table = element("table", { class: "numbers first-bold" });
-  const facts = element("dl", { class: "facts" });
+  const facts = element("dl", { class: "facts" }), further = element("dl", { class: "facts" });
   const data = element("div", { class: "data" });
-  const root = section("At this pose", verdict, table, facts, data);
+  const root = section("At this pose", verdict, data, facts), rest = section("Stiffness here", table, more("Share of the load in it", further));
   const sub = (text) => element("sub", {}, text), K_C = () => element("span", {}, "K", sub("C"));
   const ranks = ["softest", "middle", "stiffest"];
 
@@ -31,12 +31,20 @@ SK.makeReadouts = (scene, state) => {
   const size = (d) => SK.algebra.norm(d);
   const fact = (name, value, note = "") => [element("dt", {}, name), element("dd", {}, value, note ? element("small", {}, note) : null)];
 
-  function loadFacts(frame) {
+  // A reading has more in it than the arm: what instruments add, and loads that were on before.
+  function asRead(rest, current) {
+    const predicted = current && state.model === scene.models[scene.models.length - 1] && current.predicted[state.model];
+    if (!predicted || size(SK.algebra.minus(predicted, rest)) < 1e-3 * size(predicted)) return "";
+    return `; as read ${number(1e6 * size(predicted), 4)} µm, with what instruments and earlier loads add`;
+  }
+
+  function loadFacts(frame, current) {
     const loaded = size(state.wrench) > 0, rest = frame.deflection.equilibrium;
     const rows = [];
+    facts.replaceChildren();
     if (loaded) {
-      rows.push(...(rest
-        ? fact("Deflection", `${number(1e6 * size(rest), 4)} µm`, `${vector(rest)} µm`)
+      facts.append(...(rest
+        ? fact("Deflection", `${number(1e6 * size(rest), 4)} µm`, `${vector(rest)} µm${asRead(rest, current)}`)
         : fact("Deflection", "none", "no equilibrium: the load is beyond the critical one")));
       const off = (name) => (rest && frame.deflection[name] ? `${number(1e6 * size(SK.algebra.minus(frame.deflection[name], rest)), 2)} µm off` : "\u2013");
       rows.push(...fact(element("span", {}, "One step, with ", K_C()), off("enhanced")), ...fact("One step, without", off("conventional")));
@@ -49,7 +57,7 @@ SK.makeReadouts = (scene, state) => {
       const critical = frame.softening > 0 ? 1 / frame.softening : Infinity;
       rows.push(...fact("Critical load", critical === Infinity ? "none this way" : `${number(critical, 3)} \u00d7 this load`));
     }
-    facts.replaceChildren(...rows);
+    further.replaceChildren(...rows);
   }
 
   function reading(current) {
@@ -76,8 +84,8 @@ SK.makeReadouts = (scene, state) => {
       verdict.replaceChildren(text.split(":")[0] + ": K", sub("\u03b8"), " \u2212 K", sub("C"), ` is ${frame.classes.stiffness}`);
     verdict.classList.toggle("bad", !stable);
     principalTable(frame);
-    loadFacts(frame);
+    loadFacts(frame, current);
     reading(current);
   }
-  return { root, refresh };
+  return { root, rest, refresh };
 };

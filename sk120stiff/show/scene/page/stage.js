@@ -4,8 +4,8 @@ SK.makeStage = (pane, scene) => {
   const THREE = MeshCat.THREE;
   const { reach } = scene.scale;
   const viewer = new MeshCat.Viewer(pane);
-  const materials = SK.makeMaterials(scene.colours), shapes = SK.makeShapes(scene);
-  const fog = materials.linear("#edf1f6");
+  const materials = SK.makeMaterials(), shapes = SK.makeShapes(scene);
+  const fog = materials.linear(SK.colours.fog);
 
   viewer.gui.domElement.style.display = "none"; // our panel takes the place of Meshcat's
   viewer.renderer.outputEncoding = THREE.sRGBEncoding;
@@ -61,7 +61,7 @@ SK.makeStage = (pane, scene) => {
       list.push(mine.length ? find(path) : null);
       mine.forEach((body, k) => {
         const twin = group === "deflected";
-        const mesh = new THREE.Mesh(shapes.geometryOf(body), twin ? materials.ghost : marked.has(link) ? materials.named : materials.body(body.colour));
+        const mesh = new THREE.Mesh(shapes.geometryOf(body), twin ? (marked.has(link) ? materials.namedGhost : materials.ghost) : marked.has(link) ? materials.named : materials.body(body.colour));
         if (body.kind === "mesh") mesh.scale.fromArray(body.size);
         mesh.castShadow = mesh.receiveShadow = !twin;
         viewer.set_object(path.concat(String(k)), mesh);
@@ -92,11 +92,11 @@ SK.makeStage = (pane, scene) => {
   // The floor lies under the robot's lowest part at its first pose, and stays there.
   function layFloor() {
     const height = bounds().min.y - 0.0005 * reach;
-    const floor = new THREE.Mesh(new THREE.CircleGeometry(9 * reach, 64), new THREE.ShadowMaterial({ opacity: 0.13 }));
+    const floor = new THREE.Mesh(new THREE.CircleGeometry(9 * reach, 64), new THREE.ShadowMaterial({ opacity: Number(SK.colours.shade) }));
     floor.receiveShadow = true;
     viewer.set_object(["room", "floor"], floor);
     const step = 10 ** Math.round(Math.log10(reach / 4)), count = 2 * Math.ceil((4 * reach) / step);
-    const grid = new THREE.GridHelper(count * step, count, materials.linear("#9fb0c0"), materials.linear("#c3ced9"));
+    const grid = new THREE.GridHelper(count * step, count, materials.linear(SK.colours.grid), materials.linear(SK.colours["grid-fine"]));
     grid.material.transparent = true;
     grid.material.opacity = 0.55;
     grid.rotateX(Math.PI / 2);
