@@ -156,5 +156,12 @@ SK.makeActors = (stage, scene) => {
     for (const { element, x, y } of boxes) element.style.transform = `translate(-50%, -50%) translate(${x}px, ${y}px)`;
   };
 
-  return { makeArrow, makeFrame, makeEllipsoid, makeLabel, labels };
+  // Where a point is seen, in pixels of the pane.
+  function screenOf(at) {
+    stage.viewer.camera.updateMatrixWorld();
+    spot.copy(stage.toWorld(at)).project(viewer.camera);
+    return [((spot.x + 1) / 2) * stage.pane.clientWidth, ((1 - spot.y) / 2) * stage.pane.clientHeight];
+  }
+
+  return { makeArrow, makeFrame, makeEllipsoid, makeLabel, labels, screenOf };
 };

@@ -1,16 +1,16 @@
-// A map: coloured points around the robot, a scale, and sliders that hide what is not asked for.
+// A map: coloured points around the robot, the softest one named, values under the pointer.
 "use strict";
 SK.startCloud = (scene) => {
-  const THREE = MeshCat.THREE, { cloud } = scene, { element, slider, button } = SK.widgets;
+  const THREE = MeshCat.THREE, { cloud } = scene, { element, slider, button } = SK.widgets, { number } = SK.words;
   const pane = document.getElementById("pane"), panel = document.getElementById("panel");
-  const stage = SK.makeStage(pane, scene), camera = SK.makeCamera(stage);
+  const stage = SK.makeStage(pane, scene), camera = SK.makeCamera(stage), actors = SK.makeActors(stage, scene);
 
   function numbers(text) {
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
     return new Float32Array(bytes.buffer);
   }
-  const position = numbers(cloud.position), values = numbers(cloud.values);
-  const [low, high] = cloud.colour_range;
+  const position = numbers(cloud.position), values = numbers(cloud.values), places = numbers(cloud.places);
+  const [low, high] = cloud.colour_range, { axes } = cloud;
   const linear = cloud.colours.map((rgb) => new THREE.Color(...rgb).convertSRGBToLinear());
   const colour = new Float32Array(position.length);
   values.forEach((value, k) => {
@@ -20,15 +20,58 @@ SK.startCloud = (scene) => {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(position, 3));
   geometry.setAttribute("color", new THREE.BufferAttribute(colour, 3));
-  const size = { dot: 0.5 };
+  const size = { dot: 0.6 };
   // Neighbouring points are about this far apart if they fill their box.
   geometry.computeBoundingBox();
   const extent = geometry.boundingBox.getSize(new THREE.Vector3());
   const filled = [extent.x, extent.y, extent.z].filter((each) => each > 1e-9);
   const spacing = filled.length ? (filled.reduce((a, b) => a * b, 1) / values.length) ** (1 / filled.length) : 0.05 * stage.reach;
-  const material = new THREE.PointsMaterial({ size: size.dot * spacing, vertexColors: true, sizeAttenuation: true });
+  // A disk with a darker rim: it is seen on every background, and before others of its colour.
+  const disk = document.createElement("canvas"), brush = disk.getContext("2d");
+  disk.width = disk.height = 64;
+  for (const [radius, shade] of [[31, "#8d8d8d"], [24, "#ffffff"]]) {
+    brush.fillStyle = shade;
+    brush.beginPath();
+    brush.arc(32, 32, radius, 0, 2 * Math.PI);
+    brush.fill();
+  }
+  const material = new THREE.PointsMaterial({
+    size: size.dot * spacing, vertexColors: true, sizeAttenuation: true, map: new THREE.CanvasTexture(disk), alphaTest: 0.5, fog: false,
+  });
   const points = new THREE.Points(geometry, material);
   stage.viewer.set_object(["map", "points"], points);
+
+  const at = (k) => [...position.subarray(3 * k, 3 * k + 3)];
+  const valued = (k) => `${number(values[k], 4)}${cloud.unit ? " " + cloud.unit : ""}`;
+  const where = (k) => axes.map(({ name, unit }, i) => `${name} ${number(places[axes.length * k + i], 4)}${unit === "°" ? "" : " "}${unit}`).join(", ");
+
+  // The softest point and the stiffest: named on the map, and in words.
+  const marks = cloud.marks.map(({ point, text }, i) => {
+    const ring = new THREE.Mesh(new THREE.SphereGeometry(0.022 * stage.reach, 24, 16), stage.materials.flat(SK.colours[i ? "soft-ink" : "ink"]));
+    ring.renderOrder = 5;
+    stage.put(["map", "mark" + i], ring);
+    stage.move(["map", "mark" + i], [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, ...at(point), 1]);
+    actors.makeLabel("mark").set(at(point), `${text} ${valued(point)}`);
+    return element("p", { class: "mark" }, element("strong", {}, `${text}: ${valued(point)}`), ` at ${where(point)}`);
+  });
+
+  // The point under the pointer, or under the finger.
+  const hint = actors.makeLabel("hint"), caster = new THREE.Raycaster(), pointer = new THREE.Vector2();
+  const told = element("p", { id: "told", role: "status" }, "Point at the map to read it.");
+  function tell(event) {
+    const box = pane.getBoundingClientRect();
+    pointer.set(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
+    caster.setFromCamera(pointer, stage.viewer.camera);
+    caster.params.Points.threshold = 0.5 * size.dot * spacing;
+    const hit = caster.intersectObject(points).sort((a, b) => a.distance - b.distance)[0];
+    if (hit) {
+      hint.set(at(hit.index), valued(hit.index));
+      told.textContent = `${valued(hit.index)} at ${where(hit.index)}`;
+    } else hint.hide();
+    stage.viewer.set_dirty();
+  }
+  pane.addEventListener("pointermove", tell);
+  pane.addEventListener("pointerdown", tell);
 
   // What is drawn: values between the limits, beyond the cut: the camera begins on the side of negative y.
   const limits = { from: cloud.range[0], to: cloud.range[1] };
@@ -45,20 +88,21 @@ SK.startCloud = (scene) => {
   }
 
   const span = (cloud.range[1] - cloud.range[0]) || 1;
-  const places = Math.max(0, 3 - Math.floor(Math.log10(span)));
+  const digits = Math.max(0, 3 - Math.floor(Math.log10(span)));
   const reading = (key, label) => slider({
-    label, unit: cloud.unit || "1", factor: 1, lower: cloud.range[0], upper: cloud.range[1], step: "any", places,
+    label, unit: cloud.unit || "1", factor: 1, lower: cloud.range[0], upper: cloud.range[1], step: "any", places: digits,
     read: () => limits[key], write: (value) => { limits[key] = value; choose(); },
   }).row;
   const stops = cloud.colours.filter((_, k) => k % 15 === 0)
     .map((rgb) => `rgb(${rgb.map((part) => Math.round(255 * part)).join(" ")})`).join(", ");
-  const shown = (value) => Number(value.toPrecision(4)).toString();
   panel.append(
     element("section", {},
       element("h2", {}, cloud.label + (cloud.unit ? ` [${cloud.unit}]` : "")),
+      ...marks,
       element("div", { class: "scale", style: `background: linear-gradient(90deg, ${stops})` }),
-      element("div", { class: "ends" }, element("span", {}, `≤ ${shown(low)}`), element("span", {}, `≥ ${shown(high)}`)),
-      count),
+      element("div", { class: "ends" },
+        element("span", {}, `${cloud.ends[0]} \u2264 ${number(low, 4)}`), element("span", {}, `\u2265 ${number(high, 4)} ${cloud.ends[1]}`)),
+      told, count),
     element("section", {},
       element("h2", {}, "Show"),
       reading("from", "at least"),
@@ -82,5 +126,9 @@ SK.startCloud = (scene) => {
     views.append(button(name, () => camera.preset(name, null), { "aria-label": `Camera: ${name}` }));
   }
   choose();
+  SK.drawn = 1;
   camera.preset("overview", null, false);
+  document.documentElement.dataset.ready = "yes";
+  const busy = () => Boolean(camera.busy() || stage.viewer.needs_render);
+  Object.assign(SK, { busy, stage, camera, still: camera.still, screenOf: (k) => actors.screenOf(at(k)) });
 };
