@@ -186,7 +186,10 @@ def command(
             )
         _draw(picture, found, turned, minimise)
     if page is not None:
-        _write_page(page, *seen_from(believed, at or robot.tool_frame, np.zeros(3)), found, task)
+        _write_page(
+            page, *seen_from(believed, at or robot.tool_frame, np.zeros(3)), found, task, freedom,
+            compliance=minimise == Minimise.compliance,
+        )  # fmt: skip
     document = {
         "robot": robot.name,
         "rows": given.count,
@@ -228,18 +231,65 @@ def _draw(file: Path, found: BestPosture, turned: Landscape | None, minimise: Mi
     save_figure(figure, file)
 
 
-def _write_page(file: Path, model: Model, point: Array, found: BestPosture, task: PathTask) -> None:
+def _write_page(
+    file: Path,
+    model: Model,
+    point: Array,
+    found: BestPosture,
+    task: PathTask,
+    place: Placement | None,
+    *,
+    compliance: bool,
+) -> None:
+    """The arm at every point, in the posture that was found and in one chosen blindly."""
     from sk120stiff.show import ScenePose, scene_of_model, static_scene
+    from sk120stiff.show.scene.path import ScenePath
+    from sk120stiff.show.wording import um
 
     worst = int(np.argmax(found.per_point))
+    best, blind = (
+        f"{1e-6 / value:#.3g} N/µm" if compliance else f"{um(value)} µm"
+        for value in (found.objective, float(np.median(found.admissible)))
+    )
+    what = "Stiffness" if compliance else "Deflection"
     scene = scene_of_model(
         model,
         title=f"{model.robot.name}: best posture",
+        subtitle=f"{what} at the weakest point: {best}; with a posture chosen blindly {blind} "
+        f"(median of {len(found.admissible)})",
         a=found.a[worst],
         wrench=task.each().wrench[worst],
     )
-    poses = tuple(ScenePose(f"point {k + 1}", a) for k, a in enumerate(found.a))
-    static_scene(file, replace(scene, poses=poses, point=point))
+    poses = [ScenePose(f"point {k + 1}", a) for k, a in enumerate(found.a)]
+    poses += [ScenePose(f"chosen blindly, point {k + 1}", a) for k, a in enumerate(found.usual)]
+    path = ScenePath(
+        before=np.asarray(task.position, dtype=float),
+        after=model.robot.screws(found.a, point=point).position,
+        worst=worst,
+        said=f"weakest: {best}",
+        freedom=_freedom(task, place),
+        middle=None if place is None else place.origin + 0.5 * (place.lower + place.upper)[:3],
+        reach=None if place is None else 0.5 * (place.upper - place.lower)[:3],
+        turns=task.axis is not None,
+    )
+    static_scene(file, replace(scene, poses=tuple(poses), point=point, path=path))
+
+
+def _freedom(task: PathTask, place: Placement | None) -> str:
+    """What was free to be chosen, in words."""
+    free = ["free: branch of the arm"]
+    if task.rotation is None:
+        free.append("orientation" if task.axis is None else "turn about the tool's axis")
+    if place is not None:
+        span = place.upper - place.lower
+        free += [
+            f"{name} of the part over {1e3 * width:.0f} mm"
+            if name in "xyz"
+            else f"{name} of the part over {np.degrees(width):.0f}°"
+            for name, width in zip(_PLACES, span, strict=True)
+            if width
+        ]
+    return ", ".join(free)
 
 
 def _placement(text: str, position: Array) -> Placement:

@@ -50,7 +50,8 @@ DARK: Final = {
     NAMED: "#B79AE8",
 }
 #: From soft to stiff: as strong on white as on a dark page, and told apart by every reader.
-SOFT_TO_STIFF: Final = ("#C8102E", "#E07B39", "#B59A5B", "#6E93AE", "#2A6FBF")
+SOFT: Final = "#C8102E"
+SOFT_TO_STIFF: Final = (SOFT, "#E07B39", "#B59A5B", "#6E93AE", "#2A6FBF")
 
 #: Colours for x, y and z wherever axes are told apart.
 AXES: Final = (VERMILION, GREEN, BLUE)

@@ -92,6 +92,7 @@ class BestPosture:
         limit_margin: Smallest distance of any joint from its limits [rad or m].
         admissible: (k,) objectives of the postures that were met at random in the beginning: what
             choosing blindly would give.
+        usual: (N, n) the one of these in the middle: as many are better as are worse.
     """
 
     a: Array
@@ -101,6 +102,7 @@ class BestPosture:
     condition: Array
     limit_margin: float
     admissible: Array
+    usual: Array
 
 
 def best_posture(
@@ -165,6 +167,7 @@ def best_posture(
             "leave more freedom.",
         )
     pool = first.best(kept)
+    passing = first.best(len(first.objective)).path
     admissible = np.sort(first.objective[np.isfinite(first.objective)])
     radius = np.full(len(pool.objective), FIRST_STEP)
     for done in range(rounds):
@@ -178,7 +181,7 @@ def best_posture(
         radius = np.clip(radius * np.where(better.improved, GROW, SHRINK), LAST_STEP, FIRST_STEP)
         if progress:
             progress(done + 1, rounds)
-    return judge.report(pool, admissible)
+    return judge.report(pool, admissible, passing[len(passing) // 2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,7 +315,7 @@ class Judge:
                 cost = np.abs((d * displaced).sum(-1))
         return np.where(found.stable, cost, np.inf), found.of("condition")
 
-    def report(self, pool: Pool, admissible: Array) -> BestPosture:
+    def report(self, pool: Pool, admissible: Array, usual: Array) -> BestPosture:
         """The best of a pool, with what it gives at every point."""
         best = int(np.argmin(pool.objective))
         a, placement = pool.path[best], pool.placement[best]
@@ -329,6 +332,7 @@ class Judge:
             condition=np.concatenate(conditions),
             limit_margin=float(distance.min()),
             admissible=admissible,
+            usual=usual,
         )
 
 

@@ -51,12 +51,15 @@ class Page:
             {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600},
         )
 
-    def open(self, address: str, size: tuple[int, int] = SMALL) -> None:
+    def open(self, address: str, size: tuple[int, int] = SMALL, *, dark: bool = False) -> None:
         self.driver.get("about:blank")
         self.console()
         self.requests()  # what earlier pages said and asked for is not this page's
         self.size(*size)
-        still = [{"name": "prefers-reduced-motion", "value": "reduce"}]
+        still = [
+            {"name": "prefers-reduced-motion", "value": "reduce"},
+            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
+        ]
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": still})
         self.driver.get(address)
 

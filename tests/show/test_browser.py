@@ -10,24 +10,37 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from sk120stiff import load_robot
+from sk120stiff.effects import effect
+from sk120stiff.measurements import read_measurements
 from sk120stiff.model import base_model
-from sk120stiff.show import Elastic, Items, Report, Scene, SceneFrame, Section, static_scene
+from sk120stiff.show import (
+    Elastic,
+    Items,
+    Picture,
+    Report,
+    Scene,
+    SceneFrame,
+    Section,
+    scene_of_model,
+    static_scene,
+)
+from sk120stiff.show.figures import gap_per_pose
 from sk120stiff.show.scene.frame import Request, compute_frame
+from sk120stiff.show.scene.path import ScenePath
 from sk120stiff.show.scene.payload import frame_payload
 from sk120stiff.stiffness import POSITIONS
-from tests.show.browser import DESKTOP, PHONE, Page, browser, changed, colours
-from tests.show.scenes import TWO_SLIDES, random_pose, sk120, sk120_scene
-from tests.show.test_frame import with_effect
+from tests.show.browser import DESKTOP, PHONE, Page, changed, colours
+from tests.show.scenes import DATA, TWO_SLIDES, random_pose, sk120, sk120_scene, springs
+from tests.show.test_engine import with_effects
 
 INSIDE = ("file:", "data:", "blob:", "about:", "chrome:")  # the last: its own new-tab page
 
 pytestmark = pytest.mark.timeout(180)
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    with browser(tmp_path_factory.mktemp("profile")) as window:
-        yield window
+@pytest.fixture
+def page(window: Page) -> Page:
+    return window
 
 
 def bare_robot():
@@ -35,21 +48,32 @@ def bare_robot():
     return load_robot(text)
 
 
+PATH = np.array([[1.5, -0.2, -0.3], [1.5, 0.0, -0.3], [1.5, 0.2, -0.3]])
 SCENES = {
     "sk120": sk120_scene,
-    "sk120_bending": lambda: Scene(
-        sk120(), Elastic.of_model(with_effect("link_bending", "link_2_l", 6e6)), title="SK120"
-    ),
-    "sk120_offset": lambda: Scene(
-        sk120(), Elastic.of_model(with_effect("joint_offset", "joint_3_u", 1.0)), title="SK120"
-    ),
     "gantry": lambda: Scene(
         load_robot(TWO_SLIDES),
         Elastic.of_model(base_model(load_robot(TWO_SLIDES))),
         wrench=np.array([100.0, 50.0, -80.0, 5.0, -3.0, 2.0]),
     ),
-    "indefinite": lambda: Scene(
-        sk120(), Elastic.of_model(with_effect("closure_coupling", "joint_2_l,joint_3_u", 2e5))
+    "gears": lambda: scene_of_model(
+        with_effects("motoman_sk120", "gear_hardening:joint_2_l"),
+        read_measurements(DATA),
+        named=[effect(sk120(), "gear_hardening", "joint_2_l")],
+    ),
+    "path": lambda: Scene(
+        sk120(),
+        Elastic.of_model(springs()),
+        path=ScenePath(
+            PATH,
+            PATH + [0.1, 0.0, 0.0],
+            worst=1,
+            said="weakest: 0.25 N/µm",
+            freedom="free: x",
+            middle=PATH.mean(axis=0),
+            reach=np.array([0.2, 0.0, 0.0]),
+            turns=True,
+        ),
     ),
     "capsules": lambda: Scene(bare_robot(), Elastic.of_model(base_model(bare_robot()))),
 }
@@ -90,8 +114,9 @@ def agree(ours: object, theirs: object, place: str) -> None:
         np.testing.assert_allclose(ours, theirs, atol=bound, rtol=0.0, err_msg=place)
 
 
-@pytest.mark.parametrize("name", list(SCENES))
-def test_the_page_computes_what_python_computes(page: Page, files, name: str) -> None:
+def test_the_page_computes_what_python_computes(page: Page, files) -> None:
+    """In the browser too; `test_engine` has every kind of arm and effect."""
+    name = "gears"
     scene = SCENES[name]()
     page.open(files[name].as_uri())
     page.ready()
@@ -206,6 +231,83 @@ def test_poses_of_the_data_are_visited_with_their_arrows(page: Page, files) -> N
     slider(page, "joint_1_s in °").send_keys(Keys.ARROW_RIGHT)
     page.settled()
     assert page.js(visible) == [False, False, False]  # no longer the pose that was measured
+    clean(page)
+
+
+def test_a_bending_gear_deflects_the_page_as_it_was_predicted(page: Page, files) -> None:
+    """One question, one number: under every load of the data, and what was named moves violet."""
+    page.open(files["gears"].as_uri())
+    page.ready()
+    for pose, number in ((0, 4), (1, 2), (2, 4)):
+        page.js("SK.actions.goToPose(arguments[0])", pose)
+        page.js("SK.actions.goToReading(arguments[0])", number)
+        page.settled()
+        found = page.js("return SK.frame().deflection.equilibrium")
+        reading = SCENES["gears"]().poses[pose].readings[number]
+        np.testing.assert_allclose(found, reading.predicted["model"], atol=1e-10)
+    colour = (
+        "let found; const { children } = SK.stage.viewer.scene_tree.find(['deflected']);"
+        "const key = Object.keys(children).find((k) => k.endsWith(arguments[0]));"
+        "const look = ({ material }) => { if (material) found = material.color.getHex(); };"
+        "children[key].object.traverse(look);"
+        "return found"
+    )
+    assert page.js(colour, "link_2_l") != page.js(colour, "link_3_u")
+    clean(page)
+
+
+def test_a_path_is_drawn_with_what_was_free(page: Page, files) -> None:
+    page.open(files["path"].as_uri())
+    page.ready()
+    corners = (
+        "const box = new MeshCat.THREE.Box3().setFromObject("
+        "SK.stage.viewer.scene_tree.find(['path', arguments[0]]).object);"
+        "return [...SK.stage.fromWorld(box.min), ...SK.stage.fromWorld(box.max)]"
+    )
+    for name, moved in (("before", 0.0), ("after", 0.1)):
+        x = page.js(corners, name)[0::3]
+        np.testing.assert_allclose(x, 1.5 + moved, atol=0.03)  # as thick as its dots
+    x = sorted(page.js(corners, "freedom")[0::3])
+    np.testing.assert_allclose(x, [1.3, 1.7], atol=1e-6)
+    ring = page.js(corners, "turn")
+    middle = 0.5 * (np.array(ring[:3]) + ring[3:])
+    np.testing.assert_allclose(middle, page.js("return SK.frame().position"), atol=1e-6)
+    assert "weakest: 0.25 N/µm" in page.js("return document.getElementById('pane').textContent")
+    legend = page.driver.find_element(By.ID, "legend").text
+    assert all(said in legend for said in ("path as placed", "path as given", "free: x"))
+    clean(page)
+
+
+def test_a_dark_screen_gets_a_dark_page_and_paper_a_still(page: Page, files, tmp_path) -> None:
+    figure = gap_per_pose(["1", "2"], {"before": [4e-5, 3e-5], "after": [1e-5, 1e-5]})
+    frame = SceneFrame(files["sk120"].read_text(), "The arm")
+    blocks = [Picture(figure, "Bars, one for each pose"), frame]
+    report = Report("R", sections=[Section("S", blocks)]).write(tmp_path / "r.html")
+    lightness = {}
+    for dark in (False, True):
+        page.open(report.as_uri(), dark=dark)
+        words, paper = page.js(
+            "const text = document.querySelector('svg g[id*=text] g[style], svg g[id*=text] path');"
+            "return [getComputedStyle(text).fill,"
+            " getComputedStyle(document.querySelector('main section')).backgroundColor]"
+        )
+        lightness[dark] = [sum(map(int, re.findall(r"\d+", c)[:3])) / 765 for c in (words, paper)]
+    assert lightness[False][0] < 0.3 < 0.9 < lightness[False][1]
+    assert lightness[True][1] < 0.3 < 0.8 < lightness[True][0]
+    page.wait("document.querySelector('iframe').contentWindow.SK?.drawn")
+    page.js("dispatchEvent(new Event('beforeprint'))")
+    still = (
+        "const sheet = document.querySelector('canvas'), brush = sheet.getContext('2d');"
+        "const { data } = brush.getImageData(0, 0, sheet.width, sheet.height);"
+        "return new Set(new Uint32Array(data.buffer)).size"
+    )
+    assert page.js(still) > 1000
+    clean(page)
+    page.open(files["sk120"].as_uri(), dark=True)
+    page.ready()
+    assert np.median(page.pane("sk120_dark")) < 80
+    page.js("dispatchEvent(new Event('beforeprint'))")
+    assert page.js(still.replace("'canvas'", "'#still'")) > 1000
     clean(page)
 
 

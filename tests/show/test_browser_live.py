@@ -12,7 +12,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from tests.corpus.robots import example
-from tests.show.browser import DESKTOP, PHONE, browser, changed, colours
+from tests.show.browser import DESKTOP, PHONE, changed, colours
 from tests.show.scenes import DATA
 from tests.show.test_browser import ELLIPSOID, INSIDE, slider
 from tests.show.test_live import _address
@@ -20,10 +20,9 @@ from tests.show.test_live import _address
 pytestmark = pytest.mark.timeout(180)
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    with browser(tmp_path_factory.mktemp("profile")) as window:
-        yield window
+@pytest.fixture
+def page(window):
+    return window
 
 
 @pytest.fixture

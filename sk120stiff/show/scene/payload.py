@@ -48,6 +48,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
         "links": list(tree.names),
         "bodies": bodies,
         "marks": [[tree.names.index(link), text] for link, text in scene.marks.items()],
+        "path": None if scene.path is None else scene.path.payload(),
         "meshes": [_mesh(mesh) for mesh in meshes],
         "kinematics": None if live else serialised(scene),
         "poses": [_pose(pose) for pose in scene.poses],

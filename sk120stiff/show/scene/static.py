@@ -31,6 +31,7 @@ SCRIPTS = (
     "shapes.js",
     "stage.js",
     "actors.js",
+    "path.js",
     "camera.js",
     "words.js",
     "widgets.js",

@@ -9,7 +9,7 @@ SK.start = (scene) => {
     a: scene.start.a.slice(), wrench: scene.start.wrench.slice(), point: scene.start.point.slice(),
     exaggeration: scale.exaggeration, scale: 1, quantity: "compliance", formulation: "enhanced",
     pose: -1, reading: -1, model: scene.models[scene.models.length - 1] || "",
-    show: { ellipsoid: !scene.marks.length, labels: true, deflected: true, load: true, displacements: true, frames: false },
+    show: { ellipsoid: !scene.marks.length && !scene.path, labels: true, deflected: !scene.path, load: true, displacements: true, frames: false },
   };
   const same = (a, b) => a.every((value, k) => Math.abs(value - b[k]) < 1e-12);
   state.pose = poses.findIndex((pose) => same(pose.a, state.a));
@@ -29,6 +29,7 @@ SK.start = (scene) => {
     before: actors.makeArrow("before", colours.before),
   };
   const marks = scene.marks.map(([link, text]) => ({ link, text, words: actors.makeLabel("named") }));
+  const path = scene.path && SK.makePath(stage, actors, scene.path);
   const frames = { base: actors.makeFrame("base", 0.16 * reach), tool: actors.makeFrame("tool", 0.1 * reach) };
   let frame = null, pending = false, asked = 0, flight = 0, gliding = false, timer = 0;
 
@@ -107,6 +108,7 @@ SK.start = (scene) => {
     drawEllipsoids();
     drawArrows();
     marks.forEach(({ link, text, words }) => words.set(frame.links[link].slice(12, 15), state.show.labels ? text : ""));
+    if (path) path.follow(frame);
     frames.base.set([0, 0, 0], baseAxes, state.show.frames);
     frames.tool.set(frame.position, frame.rotation, state.show.frames);
     readouts.refresh(frame, currentReading());
@@ -132,6 +134,7 @@ SK.start = (scene) => {
       rows.push(entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", `predicted, ${state.model}`), entry("gap", `gap, \u00d7 ${Number(scale.gap.toPrecision(3))}`)] : []),
         ...(scene.models.length > 1 && state.model !== scene.models[0] ? [entry("before", `gap ${scene.models[0]}, the same scale`)] : []));
     if (scene.marks.length) rows.push(entry("named", "where what was named acts"));
+    if (path) rows.push(...path.legend.map((row) => entry(...row)));
     document.getElementById("legend").replaceChildren(...rows);
   }
 
@@ -204,9 +207,8 @@ SK.start = (scene) => {
   const readouts = SK.makeReadouts(scene, state);
   document.getElementById("panel").append(readouts.root);
   const panel = SK.makePanel(scene, state, actions);
-  // With readings the gap matters first, and stiffness stands behind the controls.
-  const measured = poses.some((pose) => pose.readings.length);
-  if (measured) panel.root.lastChild.before(readouts.rest);
+  // With poses to visit the controls come first, and stiffness stands behind them.
+  if (poses.length) panel.root.lastChild.before(readouts.rest);
   else readouts.root.after(readouts.rest);
   const legendList = document.getElementById("legend"), narrow = window.matchMedia("(max-width: 900px)");
   const settle = () => (narrow.matches ? panel.root.prepend(legendList) : pane.after(legendList));

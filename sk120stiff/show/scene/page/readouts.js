@@ -6,7 +6,7 @@ SK.makeReadouts = (scene, state) => {
   const table = element("table", { class: "numbers first-bold" });
   const facts = element("dl", { class: "facts" }), further = element("dl", { class: "facts" });
   const data = element("div", { class: "data" });
-  const root = section("At this pose", verdict, data, facts), rest = section("Stiffness here", table, more("Share of the load in it", further));
+  const root = section("At this pose", verdict, data, facts), rest = section("Stiffness here", table, more("What the load does to it", further));
   const sub = (text) => element("sub", {}, text), K_C = () => element("span", {}, "K", sub("C"));
   const ranks = ["softest", "middle", "stiffest"];
 
@@ -27,7 +27,7 @@ SK.makeReadouts = (scene, state) => {
       })));
   }
 
-  const vector = (d) => `(${d.map((value) => number(1e6 * value, 3)).join(", ")})`;
+  const vector = (d) => `(${d.map((value) => number(Math.abs(value) < 1e-9 * size(d) ? 0 : 1e6 * value, 3)).join(", ")})`;
   const size = (d) => SK.algebra.norm(d);
   const fact = (name, value, note = "") => [element("dt", {}, name), element("dd", {}, value, note ? element("small", {}, note) : null)];
 
