@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-_DASHES: tuple[Literal["-", "--", ":", "-."], ...] = ("-", "--", ":", "-.")
+Dash = Literal["-", "--", ":", "-."]
+_DASHES: tuple[Dash, ...] = ("--", ":", "-.")  # of earlier models
 _MARKERS = ("o", "s", "^")
 
 
@@ -112,7 +113,7 @@ def _draw(panel: Axes, curve: LoadCurve, names: Sequence[str]) -> None:
         for name, values in curve.models.items():
             style, colour = looks[name]
             panel.plot(loads, 1e6 * np.asarray(values)[:, axis], style, color=colour)
-        ends = [values[:, axis] for values in (*reversed(curve.models.values()), curve.measured)
+        ends = [values[:, axis] for values in (*list(curve.models.values())[::-1], curve.measured)
                 if values is not None]  # fmt: skip
         if len(loads) and ends:
             end = (float(loads[-1]), 1e6 * float(ends[0][-1]))
@@ -121,10 +122,12 @@ def _draw(panel: Axes, curve: LoadCurve, names: Sequence[str]) -> None:
     panel.margins(x=0.1, y=0.08)
 
 
-def _looks(names: Sequence[str]) -> dict[str, tuple[str, str]]:
+def _looks(names: Sequence[str]) -> dict[str, tuple[Dash, str]]:
     """Line style and colour of every model: the last is the one at hand."""
-    earlier = [(_DASHES[1 + k % 3], palette.BEFORE) for k in range(len(names) - 1)]
-    return dict(zip(names, [*earlier, ("-", palette.PREDICTED)], strict=False))
+    looks: list[tuple[Dash, str]] = [
+        (_DASHES[k % len(_DASHES)], palette.BEFORE) for k in range(len(names) - 1)
+    ]
+    return dict(zip(names, [*looks, ("-", palette.PREDICTED)], strict=False))
 
 
 def _key(names: Sequence[str], measured: bool) -> list[Line2D]:
