@@ -32,7 +32,8 @@ FLAGS = (
     "--hide-scrollbars",
     "--force-color-profile=srgb",
 )
-DESKTOP, PHONE, SMALL = (1280, 800), (390, 844), (940, 560)
+INSIDE = ("file:", "data:", "blob:", "about:", "chrome:")  # the last: its own new-tab page
+DESKTOP, PHONE, SMALL = (1280, 800), (390, 844), (940, 400)
 
 
 def found() -> bool:
@@ -138,3 +139,10 @@ def changed(before: np.ndarray, after: np.ndarray) -> float:
     """Share of pixels that differ visibly."""
     difference = np.abs(before.astype(int) - after.astype(int)).max(axis=-1)
     return float((difference > 12).mean())
+
+
+def clean(page: Page) -> None:
+    """No complaint on the console, no request that leaves the machine."""
+    assert page.console() == []
+    outside = [u for u in page.requests() if not u.startswith(INSIDE)]
+    assert outside == []

@@ -1,95 +1,20 @@
 """Static scenes and reports in a real browser: they move, they compute what Python computes."""
 
 import json
-import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from sk120stiff import load_robot
-from sk120stiff.effects import effect
-from sk120stiff.measurements import read_measurements
-from sk120stiff.model import base_model
-from sk120stiff.show import (
-    Elastic,
-    Items,
-    Picture,
-    Report,
-    Scene,
-    SceneFrame,
-    Section,
-    scene_of_model,
-    static_scene,
-)
-from sk120stiff.show.figures import gap_per_pose
 from sk120stiff.show.scene.frame import Request, compute_frame
-from sk120stiff.show.scene.path import ScenePath
 from sk120stiff.show.scene.payload import frame_payload
 from sk120stiff.stiffness import POSITIONS
-from tests.show.browser import DESKTOP, PHONE, Page, changed, colours
-from tests.show.scenes import DATA, TWO_SLIDES, random_pose, sk120, sk120_scene, springs
-from tests.show.test_engine import with_effects
-
-INSIDE = ("file:", "data:", "blob:", "about:", "chrome:")  # the last: its own new-tab page
+from tests.show.browser import Page, changed, clean, colours
+from tests.show.scenes import random_pose, sk120, sk120_scene
+from tests.show.shown import SCENES
 
 pytestmark = pytest.mark.timeout(180)
-
-
-@pytest.fixture
-def page(window: Page) -> Page:
-    return window
-
-
-def bare_robot():
-    text = re.sub(r"<visual>.*?</visual>", "", TWO_SLIDES, flags=re.DOTALL)
-    return load_robot(text)
-
-
-PATH = np.array([[1.5, -0.2, -0.3], [1.5, 0.0, -0.3], [1.5, 0.2, -0.3]])
-SCENES = {
-    "sk120": sk120_scene,
-    "gantry": lambda: Scene(
-        load_robot(TWO_SLIDES),
-        Elastic.of_model(base_model(load_robot(TWO_SLIDES))),
-        wrench=np.array([100.0, 50.0, -80.0, 5.0, -3.0, 2.0]),
-    ),
-    "gears": lambda: scene_of_model(
-        with_effects("motoman_sk120", "gear_hardening:joint_2_l"),
-        read_measurements(DATA),
-        named=[effect(sk120(), "gear_hardening", "joint_2_l")],
-    ),
-    "path": lambda: Scene(
-        sk120(),
-        Elastic.of_model(springs()),
-        path=ScenePath(
-            PATH,
-            PATH + [0.1, 0.0, 0.0],
-            worst=1,
-            said="weakest: 0.25 N/µm",
-            freedom="free: x",
-            middle=PATH.mean(axis=0),
-            reach=np.array([0.2, 0.0, 0.0]),
-            turns=True,
-        ),
-    ),
-    "capsules": lambda: Scene(bare_robot(), Elastic.of_model(base_model(bare_robot()))),
-}
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory) -> dict[str, Path]:
-    folder = tmp_path_factory.mktemp("scenes")
-    return {name: static_scene(folder / f"{name}.html", make()) for name, make in SCENES.items()}
-
-
-def clean(page: Page) -> None:
-    """No complaint on the console, no request that leaves the machine."""
-    assert page.console() == []
-    outside = [u for u in page.requests() if not u.startswith(INSIDE)]
-    assert outside == []
 
 
 def agree(ours: object, theirs: object, place: str) -> None:
@@ -278,39 +203,6 @@ def test_a_path_is_drawn_with_what_was_free(page: Page, files) -> None:
     clean(page)
 
 
-def test_a_dark_screen_gets_a_dark_page_and_paper_a_still(page: Page, files, tmp_path) -> None:
-    figure = gap_per_pose(["1", "2"], {"before": [4e-5, 3e-5], "after": [1e-5, 1e-5]})
-    frame = SceneFrame(files["sk120"].read_text(), "The arm")
-    blocks = [Picture(figure, "Bars, one for each pose"), frame]
-    report = Report("R", sections=[Section("S", blocks)]).write(tmp_path / "r.html")
-    lightness = {}
-    for dark in (False, True):
-        page.open(report.as_uri(), dark=dark)
-        words, paper = page.js(
-            "const text = document.querySelector('svg g[id*=text] g[style], svg g[id*=text] path');"
-            "return [getComputedStyle(text).fill,"
-            " getComputedStyle(document.querySelector('main section')).backgroundColor]"
-        )
-        lightness[dark] = [sum(map(int, re.findall(r"\d+", c)[:3])) / 765 for c in (words, paper)]
-    assert lightness[False][0] < 0.3 < 0.9 < lightness[False][1]
-    assert lightness[True][1] < 0.3 < 0.8 < lightness[True][0]
-    page.wait("document.querySelector('iframe').contentWindow.SK?.drawn")
-    page.js("dispatchEvent(new Event('beforeprint'))")
-    still = (
-        "const sheet = document.querySelector('canvas'), brush = sheet.getContext('2d');"
-        "const { data } = brush.getImageData(0, 0, sheet.width, sheet.height);"
-        "return new Set(new Uint32Array(data.buffer)).size"
-    )
-    assert page.js(still) > 1000
-    clean(page)
-    page.open(files["sk120"].as_uri(), dark=True)
-    page.ready()
-    assert np.median(page.pane("sk120_dark")) < 80
-    page.js("dispatchEvent(new Event('beforeprint'))")
-    assert page.js(still.replace("'canvas'", "'#still'")) > 1000
-    clean(page)
-
-
 def test_typed_numbers_are_taken_within_the_limits(page: Page, files) -> None:
     page.open(files["sk120"].as_uri())
     page.ready()
@@ -376,54 +268,3 @@ def test_what_is_copied_runs(page: Page, files) -> None:
     exec(source, space)
     np.testing.assert_allclose(space["a"], sk120_scene().first_pose, atol=1e-9)
     np.testing.assert_allclose(space["wrench"], sk120_scene().first_load, atol=1e-6)
-
-
-def test_the_notebook_cell_shows_the_scene(page: Page, tmp_path) -> None:
-    cell = tmp_path / "cell.html"
-    cell.write_text(f"<!doctype html><meta charset=utf-8>{sk120_scene()._repr_html_()}")
-    page.open(cell.as_uri())
-    page.driver.switch_to.frame(0)
-    page.ready()
-    page.driver.switch_to.default_content()
-    assert colours(page.pixels("notebook")) > 2000
-    clean(page)
-
-
-@pytest.mark.parametrize("name", ["sk120", "gantry", "capsules"])
-@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
-def test_it_fits_the_window(page: Page, files, name: str, size: tuple[int, int]) -> None:
-    page.open(files[name].as_uri(), size)
-    page.ready()
-    assert page.js("return document.documentElement.scrollWidth") <= size[0]
-    box = page.js(
-        "const r = document.getElementById('pane').getBoundingClientRect();"
-        "return [r.width, r.height]"
-    )
-    assert box[0] >= min(size[0], 640)
-    assert box[1] >= 300
-    assert colours(page.pane(f"{name}_{size[0]}")) > 500
-    clean(page)
-
-
-def test_a_checksum_within_a_list_does_not_widen_the_page(page: Page, tmp_path) -> None:
-    words = Items([f"Model: arm.yaml with SHA-256 {'0123456789abcdef' * 4}."])
-    path = Report("Sheet", [Section("Assumed", [words])]).write(tmp_path / "sheet.html")
-    page.open(path.as_uri(), PHONE)
-    assert page.js("return document.documentElement.scrollWidth") <= PHONE[0]
-    clean(page)
-
-
-def test_a_report_with_a_scene_opens_from_disk(page: Page, tmp_path) -> None:
-    path = Report("Motoman SK120", [Section("Scene", [SceneFrame(sk120_scene(), "SK120")])]).write(
-        tmp_path / "report.html"
-    )
-    for size in (DESKTOP, PHONE):
-        page.open(path.as_uri(), size)
-        page.js("document.querySelector('iframe').scrollIntoView()")
-        page.wait("document.querySelector('iframe').contentDocument")
-        page.driver.switch_to.frame(0)
-        page.ready()
-        page.driver.switch_to.default_content()
-        assert page.js("return document.documentElement.scrollWidth") <= size[0]
-        assert colours(page.pixels(f"report_{size[0]}")) > 1000
-    clean(page)

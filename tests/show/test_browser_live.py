@@ -12,17 +12,12 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from tests.corpus.robots import example
-from tests.show.browser import DESKTOP, PHONE, changed, colours
+from tests.show.browser import DESKTOP, INSIDE, PHONE, changed, colours
 from tests.show.scenes import DATA
-from tests.show.test_browser import ELLIPSOID, INSIDE, slider
+from tests.show.test_browser import ELLIPSOID, slider
 from tests.show.test_live import _address
 
 pytestmark = pytest.mark.timeout(180)
-
-
-@pytest.fixture
-def page(window):
-    return window
 
 
 @pytest.fixture
