@@ -7,9 +7,10 @@ import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.explain import Options, explain
+from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.measurements import Measurements, read_measurements
 from sk120stiff.model import joint_spring_model
-from tests.explain.readings import hidden
+from tests.explain.readings import base_fit, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.real_arms import fanuc
 
@@ -94,3 +95,20 @@ if fanuc.FOLDER.is_dir():
         if sigma is not None:
             assert answer.remainder.significant
             assert 100e-6 < answer.remainder.rms < 200e-6
+
+
+@pytest.mark.parametrize(("poses", "loads", "seed"), [(5, 5, 1), (4, 6, 3), (20, 5, 5)])
+def test_the_remainder_is_what_these_readings_have_left(poses, loads, seed):
+    """Springs take on their share of the roughness; no remainder is larger than the gap."""
+    clean = hidden(poses=poses, loads=loads, seed=seed)
+    rough = roughened(clean, 0.04, seed=seed)
+    fit = base_fit(rough)
+    left, problem = remainder_of(fit), fit.problem
+    predicted, columns = fit.model.predict_with_sensitivities(problem.situation)
+    assert left.rms < np.sqrt(np.mean((problem.measured - predicted) ** 2))
+    axes = problem.situation.reading_axes
+    added = np.einsum("nji,nj->ni", axes, rough.displacement - clean.displacement)
+    white = problem.whitener.apply(np.concatenate([columns, added[:, :, None]], axis=2))
+    taken = np.linalg.lstsq(white[:, :-1], white[:, -1], rcond=None)[0]
+    true = np.sqrt(np.mean((added - columns @ taken) ** 2))
+    assert left.interval[0] < true < left.interval[1]
