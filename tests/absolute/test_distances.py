@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.words import ABOUT, unseen
@@ -62,3 +63,19 @@ def test_what_cannot_be_is_refused_with_its_reason(
 ) -> None:
     with pytest.raises(InputError, match=said):
         calibrated(measured(tmp_path, POINTS, **spoilt))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_turn_about_one_point_or_two_changes_no_distance(count: int, tmp_path: Path) -> None:
+    """As was said, and not with three."""
+    found = calibrated(measured(tmp_path, POINTS[:count]))
+    names, values = found.fit.model.names, found.fit.model.values.copy()
+    frame = [names.index(f"tracker_frame:tracker.{k}") for k in ("x", "y", "z", "rx", "ry", "rz")]
+    fixed = tracked(POINTS[:count])
+    axis = np.array([0.6, 0.0, 0.8]) if count == 1 else fixed[1] - fixed[0]
+    turn = Rotation.from_rotvec(0.1 * axis / np.linalg.norm(axis))
+    before = found.problem.channel_gap(values)[0]
+    values[frame[:3]] = fixed[0] + turn.apply(values[frame[:3]] - fixed[0])
+    values[frame[3:]] = (turn * Rotation.from_rotvec(values[frame[3:]])).as_rotvec()
+    change = np.abs(found.problem.channel_gap(values)[0] - before).max()
+    assert change < 1e-8 if count < 3 else change > 1e-2
