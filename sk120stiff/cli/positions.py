@@ -10,7 +10,7 @@ from sk120stiff.cli.explain_output import page_or_warning
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import progress_bar, table
-from sk120stiff.effects import Elastic
+from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import InputError
 from sk120stiff.explain import Options
 from sk120stiff.explain.absolute.document import gaps_table, save_positions
@@ -106,9 +106,7 @@ def _pages(answer: Explained, readings: Measurements, data: Path, out: Path) -> 
     from sk120stiff.show.scene.building import scene_of_model
     from sk120stiff.show.stories import positions_report
 
-    model = answer.final.fit.model
-    if not any(isinstance(effect, Elastic) for effect in model.effects):
-        model = base_model(model.robot)  # a scene needs something that yields
+    model = yielding(answer.final.fit.model)
     scene = page_or_warning(
         "scene.html", lambda: scene_html(scene_of_model(model, title=model.robot.name))
     )
@@ -126,6 +124,12 @@ def _pages(answer: Explained, readings: Measurements, data: Path, out: Path) -> 
     if page is not None:
         written["report"] = write_atomically(out / "report.html", page)
     return written
+
+
+def yielding(model: Model) -> Model:
+    """The model, or plain springs where nothing in it yields: a scene needs something that does."""
+    soft = any(isinstance(p.effect, LinearElastic) and p.internal > 0.0 for p in model.parameters)
+    return model if soft else base_model(model.robot)
 
 
 def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]:

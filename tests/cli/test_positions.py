@@ -8,6 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sk120stiff as sk
+from sk120stiff.cli.positions import yielding
+from sk120stiff.model import Model
+from sk120stiff.show.scene.building import scene_of_model
 from tests.absolute.arm import Arm, poses, tracked, write
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
@@ -65,3 +69,14 @@ def test_options_that_do_nothing_for_positions_are_refused(
     outcome = run(command, str(path), option, *rest)
     assert outcome.code == 2
     assert option in outcome.stderr and "positions" in outcome.stderr
+
+
+def test_an_arm_of_which_play_alone_is_named_has_its_scene(tmp_path: Path) -> None:
+    write(tmp_path, poses(1, 1), np.zeros((1, 3)), FIT)
+    robot = sk.load_robot(str(tmp_path / "six.urdf"), base="base", tool="tool")
+    play = Model(robot) + sk.CATALOGUE.effect(robot, "lost_motion", "j3")
+    rigid = sk.base_model(robot).with_values(np.zeros(6))
+    for model in (Model(robot), play.with_values(np.array([1e-4])), rigid):
+        assert scene_of_model(yielding(model), title="six").elastic is not None
+    springs = sk.base_model(robot)
+    assert yielding(springs) is springs
