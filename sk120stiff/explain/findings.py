@@ -99,9 +99,19 @@ class Finding:
         )
 
     @property
+    def others(self) -> frozenset[str]:
+        """Alternatives that other readings could tell from it."""
+        return frozenset(self.alternatives) - frozenset(self.exact)
+
+    @property
+    def places(self) -> int:
+        """At how many places of the arm it may be."""
+        return len({name.partition(":")[2] for name in (self.effect.id, *self.others)})
+
+    @property
     def settled(self) -> bool:
         """One name, or one class of names, is sure enough; no further poses could tell more."""
-        return set(self.alternatives) <= set(self.exact) and self.probability >= NAMED
+        return not self.others and self.probability >= NAMED
 
     def doubted(self, impostor: float) -> Finding:
         """The same where, with this probability, it imitates part of what has no name."""

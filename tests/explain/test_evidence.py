@@ -85,6 +85,15 @@ def test_a_name_stands_alone_from_its_probability_on(odds, alternatives, exact, 
     assert not half.settled
 
 
+def test_a_name_may_be_at_as_many_places_as_its_alternatives_that_could_be_told_from_it():
+    tilt = effect(load_robot("motoman_sk120"), "joint_tilt", "joint_2_l")
+    bent, alias = "link_bending:link_2_l", "link_bending:link_1_s"
+    names = (bent, "lost_motion:joint_2_l", alias)
+    found = Finding(tilt, names, (alias,), Evidence(9.0, 9.0, None, np.inf, SEEN, {}))
+    assert found.others == {bent, "lost_motion:joint_2_l"}
+    assert found.places == 2
+
+
 def test_adequacy_is_lacking_by_its_smallest_probability_alone():
     fine = Adequacy(0.002, 1.0, 5.0, {})
     assert not fine.lacking

@@ -9,9 +9,11 @@ from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect, situation_of
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import Options, explain
+from sk120stiff.explain.judge.attribution import _objection as objection
+from sk120stiff.explain.judge.attribution import findings_of
 from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
-from sk120stiff.explain.select.stepwise import refit
+from sk120stiff.explain.select.stepwise import attempt, refit
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, ModelForm
 from tests.explain.readings import NOISE, hidden
@@ -21,6 +23,7 @@ from tests.hidden.generator.causes_sensor import ForceBias, ForceCrosstalk
 
 ROUGH = replace(NOISE, form=ModelForm(0.01, 0.0))
 COUPLING = ("closure_coupling", "joint_2_l,joint_3_u")
+PLACES = [("joint_tilt", f"joint_{where}") for where in ("1_s", "2_l", "3_u", "5_b")]
 TILT = JointTilt("joint_2_l", {"first": 8e-7, "second": 0.0})
 
 
@@ -133,3 +136,13 @@ def test_the_search_begins_beside_what_confirmed_names_leave(springs):
             beside_model_form(at, under, names=ids, seed=0)
     assert sizes[0] > 0.01
     assert sizes[1] < 0.1 * sizes[0]
+
+
+def test_beside_model_form_error_a_name_is_at_few_places(springs):
+    """What fits at many joints is part of what has no name."""
+    for noise, stands in ((NOISE, True), (ROUGH, False)):
+        candidates = [effect(springs.robot, *where) for where in PLACES]
+        found = attempt(springs, hidden(TILT), noise, candidates, max_effects=1, alpha=0.01)
+        findings, _ = findings_of(found, seed=0)
+        many = replace(findings[0], alternatives=tuple(each.id for each in candidates))
+        assert (objection(found, many, [], -np.inf) is None) == stands

@@ -28,6 +28,7 @@ MISSPECIFICATION = (
 NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
+MOST_PLACES = 3  # the same beside model-form error, part of which fits at many places
 ALONG = 0.75  # share of draws' square along one direction, of which chance gives a third
 CONTENDERS = 24  # rivals looked at for every effect
 NEAR = 40.0  # difference of scores within which a rival's neighbours may take other laws
@@ -161,11 +162,12 @@ def _objection(
             f"{name} fits, but something in proportion to the load at every pose would fit as "
             "well; it is not named.",
         )
-    if len(set(finding.alternatives) - set(finding.exact)) > MOST_NAMES:
+    beside = bool(found.base.problem.noise.form)
+    if len(finding.others) > MOST_NAMES or (beside and finding.places > MOST_PLACES):
         return Fallen(
             name,
-            f"{name} fits, but so do {len(finding.alternatives)} other names at as many places; "
-            "the readings do not tell what it is, and it is not named.",
+            f"{name} fits, but so do {len(finding.others)} other names; the readings do not tell "
+            "what it is, and it is not named.",
         )
     if finding.evidence.score_gain < least:
         return Fallen(
