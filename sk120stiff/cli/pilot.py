@@ -1,0 +1,250 @@
+"""`sk120stiff pilot DIR`."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from pydantic import ValidationError
+
+from sk120stiff.cli.cell import opened_cell
+from sk120stiff.cli.frame import Answer, emit, note
+from sk120stiff.cli.opening import open_model
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import Measurements
+from sk120stiff.pilot.campaign import Campaign, State
+from sk120stiff.pilot.confirming import Confirmation, confirmed
+from sk120stiff.pilot.folder import READINGS, Folder, Settings
+from sk120stiff.units import parse_values
+
+SHOWN = 6  # names on the screen
+LOOK_AGAIN = 1.0  # s between looks at a file that grows
+WORDS = {
+    "named": "Stop: the name is sure.", "class": "Stop: one of these.", "none": "Stop.",
+    "target": "Stop: the target is met.", "hopeless": "Stop: hopeless.", "most": "Stop.",
+}  # fmt: skip
+
+_Text = str | None
+
+
+def command(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="The campaign's folder.")],
+    model: Annotated[
+        str | None, typer.Option(metavar="MODEL", help="Robot or model file; begins a campaign.")
+    ] = None,
+    force: Annotated[_Text, typer.Option(metavar="FORCE", help="Largest load: '400 N'.")] = None,
+    noise: Annotated[
+        _Text, typer.Option(metavar="LENGTH", help="Standard uncertainty of one reading: '10 um'.")
+    ] = None,
+    point: Annotated[
+        _Text,
+        typer.Option(metavar="XYZ", help="Measured and loaded point, tool frame: '0,50,120 mm'."),
+    ] = None,
+    zero: Annotated[
+        _Text, typer.Option(metavar="ZERO", help="separate: a zero reading for each; or shared.")
+    ] = None,
+    target: Annotated[
+        _Text, typer.Option(metavar="SHARE", help="Springs known to this are enough: '2 %'.")
+    ] = None,
+    most: Annotated[int | None, typer.Option(min=1, help="Readings at most.")] = None,
+    cell: Annotated[
+        Path | None,
+        typer.Option(metavar="YAML", help="What stands around the arm, its rig, its tracker."),
+    ] = None,
+    typed: Annotated[
+        bool, typer.Option("--type", help="Ask for each reading here, and write it down.")
+    ] = False,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Look again whenever readings.csv grows.")
+    ] = False,
+) -> Answer:
+    """Which reading to take next, what is known by now, and when to stop.
+
+    The folder is the state: pilot.yaml holds the settings, readings.csv grows by your hand (or by
+    --type), next.csv holds the pose and load to measure next. It can be left and taken up at any
+    time. A name that is sure (P of 0.95) is put before the full judgement of 'explain'.
+
+    Example: sk120stiff pilot campaign --model robots/motoman_sk120/model.yaml --point '0,50,120 mm'
+    Example: sk120stiff pilot campaign --type
+    """
+    at = Folder(folder)
+    stated = {
+        "model": None if model is None else _seen_from(folder, model),
+        "cell": None if cell is None else _seen_from(folder, str(cell)),
+        "force": force, "noise": noise, "point": point, "zero": zero, "target": target,
+        "most": most,
+    }  # fmt: skip
+    if model is not None:
+        at.begin(_settings({key: value for key, value in stated.items() if value is not None}))
+    elif any(value is not None for value in stated.values()):
+        raise InputError(
+            "the settings of a campaign are written when it begins",
+            where=str(folder),
+            remedy="Give --model too to begin one, or edit pilot.yaml.",
+        )
+    settings = at.settings()
+    opened = open_model(str(at.beside(settings.model)) if _is_file(settings) else settings.model)
+    around = opened_cell(
+        opened.robot, None if settings.cell is None else at.beside(settings.cell), folder
+    )
+    with progress_bar("what can be measured"):
+        campaign = settings.campaign(opened, around)
+    answer, plan = _looked(at, settings, campaign)
+
+    def go_on() -> None:
+        turn = plan
+        grown = _grown(at)
+        while _typed(at, turn) if typed else next(grown):
+            found, turn = _looked(at, settings, campaign)
+            emit(found, as_json=False)
+            if _over(found):
+                return
+
+    going = (typed or watch) and not _over(answer)
+    return Answer(answer.document, answer.parts, afterwards=go_on if going else None)
+
+
+def _over(answer: Answer) -> bool:
+    stop = answer.document["stop"]
+    return isinstance(stop, dict) and bool(stop["final"])
+
+
+def _settings(said: dict[str, object]) -> Settings:
+    try:
+        settings = Settings.model_validate(said)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise InputError(first["msg"], where=f"--{first['loc'][0]}") from error
+    _ = settings.sigma, settings.share, settings.at  # refuse now what has no unit
+    return settings
+
+
+def _seen_from(folder: Path, named: str) -> str:
+    """A file as seen from the folder; a bundled robot by its name."""
+    if not Path(named).exists():
+        return named
+    return Path(os.path.relpath(Path(named).resolve(), folder.resolve())).as_posix()
+
+
+def _is_file(settings: Settings) -> bool:
+    return "/" in settings.model or "." in settings.model
+
+
+def _looked(
+    at: Folder, settings: Settings, campaign: Campaign
+) -> tuple[Answer, Measurements | None]:
+    readings = at.readings()
+    with progress_bar("which reading next"):
+        state = campaign.state(readings)
+        asked = None
+        if readings is not None and state.stop and state.stop.reason in ("named", "class"):
+            asked = confirmed(campaign.model, readings, state.stop)
+    plan = None
+    if state.row is not None:
+        plan = at.propose(campaign, settings, state.row, f"p{state.count + 1}")
+    return _answer(at, campaign, state, plan, asked), plan
+
+
+def _answer(
+    at: Folder, campaign: Campaign, state: State, plan: Measurements | None,
+    asked: Confirmation | None,
+) -> Answer:  # fmt: skip
+    final = state.stop is not None and (asked is None or asked.agrees)
+    names = list(state.belief.probabilities.items())
+    rows = [
+        (name, f"{value:.5g}", f"± {std:.2g}" if std < abs(value) else "not known yet", unit)
+        for name, value, std, unit in state.springs
+    ]
+    said: list[object] = [
+        table(f"After {state.count} readings", ["spring", "value", "", "unit"], rows),
+        table("Probabilities", ["name", "P"], [(n, f"{p:.3f}") for n, p in names[:SHOWN]]),
+    ]
+    if state.belief.unexplained:
+        said.append(
+            "More is left than noise, whatever is taken from the catalogue: a slip, a noise stated "
+            "too small, or a cause that it lacks."
+        )
+    if state.stop is not None:
+        said.append(f"{WORDS[state.stop.reason]} {state.stop.sentence}" if final else (
+            f"{state.stop.sentence} The full judgement is not convinced yet "
+            f"({asked.verdict if asked else ''}): go on."
+        ))  # fmt: skip
+    if plan is not None and not final:
+        said += [_next(plan), f"It would tell {state.decides}."]
+        said.append(f"Written to {at.path / 'next.csv'}; what is read goes into {READINGS}.")
+    if not state.count:
+        said += campaign.pool.remarks
+    document = {
+        "readings": state.count,
+        "springs": [
+            {"name": name, "value": value, "std": std, "unit": unit}
+            for name, value, std, unit in state.springs
+        ],
+        "probabilities": [{"name": n, "probability": p} for n, p in names if p > 0.01],
+        "unexplained": state.belief.unexplained,
+        "stop": None
+        if state.stop is None
+        else {
+            "reason": state.stop.reason, "names": state.stop.names,
+            "sentence": state.stop.sentence, "final": final,
+            "verdict": None if asked is None else asked.verdict,
+        },
+        "next": None
+        if plan is None
+        else {
+            "pose": plan.pose[0],
+            "joints": dict(zip(plan.joint_names, plan.joints[0].tolist(), strict=True)),
+            "wrench": plan.wrench[0],
+            "decides": state.decides,
+        },
+        "remarks": campaign.pool.remarks,
+        "out": at.path / "next.csv",
+    }  # fmt: skip
+    return Answer(document, said)
+
+
+def _next(plan: Measurements) -> object:
+    scale = [180.0 / np.pi if kind == "angle" else 1e3 for kind in plan.joint_kinds]
+    unit = ["deg" if kind == "angle" else "mm" for kind in plan.joint_kinds]
+    columns = ["pose", *(f"{n} [{u}]" for n, u in zip(plan.joint_names, unit, strict=True))]
+    row = (plan.pose[0], *(f"{x:.2f}" for x in plan.joints[0] * scale))
+    force = tuple(f"{x:.0f}" for x in plan.wrench[0, :3])
+    return table("Measure next", [*columns, "fx [N]", "fy [N]", "fz [N]"], [(*row, *force)])
+
+
+def _typed(at: Folder, plan: Measurements | None) -> bool:
+    """One reading from the keyboard, written down; False where the input ends."""
+    while plan is not None:
+        print("dx, dy, dz with unit, e.g. 0.12,-0.30,0.05 mm (empty: leave): ", end="", flush=True)
+        line = sys.stdin.readline().strip()
+        if not line:
+            return False
+        try:
+            read = parse_values(line, "length", where="reading", like="0.12,-0.30,0.05 mm")
+        except InputError as error:
+            note(f"Error: {error}")
+            continue
+        at.append(plan, read)
+        return True
+    return False
+
+
+def _grown(at: Folder) -> Iterator[bool]:
+    """True each time that the file of readings has changed."""
+    before = at.readings_file.stat().st_mtime_ns
+    while True:
+        time.sleep(LOOK_AGAIN)
+        try:
+            now = at.readings_file.stat().st_mtime_ns
+        except OSError:
+            continue  # an editor is just replacing it
+        if now != before:
+            before = now
+            yield True

@@ -1,0 +1,257 @@
+"""The state of a campaign after some readings: what is known, what comes next, or why to stop.
+
+Everything follows from the readings alone: a campaign can be left and taken up at any time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.effects import Situation, situation_of
+from sk120stiff.identify import Problem
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model
+from sk120stiff.pilot.belief import Belief, Hypothesis
+from sk120stiff.pilot.choosing import best, expected, separation
+from sk120stiff.pilot.linear import LinearMap, Sums
+from sk120stiff.plan import Pool
+from sk120stiff.plan.design import DISPLACEMENT
+
+SURE = 0.95
+OPEN = 0.05  # probability from which on a rival counts
+FIRST = 4  # readings before which nothing is said
+APART = 3.3  # √λ at which two names are told apart
+LITTLE = 0.01  # nat: a reading that brings less about names tells next to nothing
+QUIET, ENOUGH = 0.7, 12  # probability of nothing, and readings, from which silence counts
+ROUNDS = 2  # of putting the linearisation where the readings are
+
+Reason = Literal["named", "class", "none", "target", "hopeless", "most"]
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Why the campaign may end.
+
+    Attributes:
+        reason: ``named``: a name is sure; ``class``: one of several is, which no reading of this
+            rig separates; ``none``: nothing is missing; ``target``: the springs are known well
+            enough; ``hopeless``: no reading would tell more; ``most``: enough is enough.
+        names: The names that are meant.
+        sentence: The same in words, with what would help.
+    """
+
+    reason: Reason
+    names: tuple[str, ...]
+    sentence: str
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What is known after some readings.
+
+    Attributes:
+        count: Number of readings.
+        belief: Probabilities of the names.
+        springs: Name, value, standard error and unit of the base model's parameters, as people
+            write them.
+        row: The pool's reading to take next; None where there is nothing to take.
+        decides: What that reading would decide, in words.
+        stop: Why to stop, or None.
+    """
+
+    count: int
+    belief: Belief
+    springs: tuple[tuple[str, float, float, str], ...]
+    row: int | None
+    decides: str
+    stop: Stop | None
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """What does not change from reading to reading.
+
+    Attributes:
+        model: Base model.
+        pool: Readings that can be taken.
+        sigma: Standard uncertainty of one reading per axis [m].
+        linear, X: The linear map, and its columns at the pool in units of the noise (M, 3, P).
+        target: Relative standard error of every spring at which enough is known; None: go on until
+            a name is sure.
+        most: Readings after which to stop in any case.
+        given: Probabilities of effects beforehand.
+    """
+
+    model: Model
+    pool: Pool
+    sigma: float
+    linear: LinearMap
+    X: Array
+    target: float | None = None
+    most: int = 60
+    given: dict[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        pool: Pool,
+        sigma: float,
+        *,
+        target: float | None = None,
+        most: int = 60,
+        given: dict[str, float] | None = None,
+    ) -> Campaign:
+        """A campaign with a base model and the readings that can be taken."""
+        linear, X = LinearMap.of(model, pool.situation, sigma * DISPLACEMENT)
+        return cls(model, pool, sigma, linear, X, target, most, given or {})
+
+    def belief(self, readings: Measurements | None) -> Belief:
+        """What readings say, the linearisation put where the most probable hypothesis is."""
+        linear = self.linear
+        size = len(linear.scale)
+        if readings is None:
+            return Belief(linear, Sums.none(size), self.given)
+        used = readings.masked()
+        zero: Literal["shared", "separate"] = "shared" if used.zero == "shared" else "separate"
+        problem = Problem(self.model, used, NoiseModel(self.sigma, zero=zero))
+        start = linear.model.values
+        v = np.zeros(size)
+        found = Belief(linear, Sums.none(size), self.given)
+        for _ in range(ROUNDS):
+            at = linear.model.with_values(start + v * linear.scale)
+            predicted, derivative = at.predict_with_sensitivities(problem.situation)
+            X = problem.whitener.apply(derivative * linear.scale)
+            y = problem.whitener.apply(problem.measured - predicted) + X @ v
+            found = Belief(linear, Sums.none(size).plus(X, y), self.given)
+            leader = found.leader
+            v = np.zeros(size)
+            v[leader.columns] = leader.mean
+            least = np.where(linear.positive, 0.0, -np.inf)
+            base = start / linear.scale
+            v = np.maximum(base + v, np.where(base > 0.0, 0.2 * base, least)) - base
+        return found
+
+    def state(self, readings: Measurements | None) -> State:
+        """What is known, what comes next, or why to stop."""
+        belief = self.belief(readings)
+        count = 0 if readings is None else readings.masked().n_readings
+        taken = self._taken(readings)
+        springs = self._springs(belief)
+        row, found = best(belief, self.X, ~taken)
+        decides = self._decides(belief, row)
+        stop = None if count < FIRST else self._stop(belief, count, springs, found.names[~taken])
+        return State(count, belief, springs, None if taken.all() else row, decides, stop)
+
+    def situation(self, row: int) -> Situation:
+        """A reading of the pool."""
+        return self.pool.situation.rows(np.array([row], dtype=np.intp))
+
+    def _taken(self, readings: Measurements | None) -> Mask:
+        """Readings of the pool that were taken already."""
+        pool = self.pool.situation
+        taken = np.zeros(pool.count, dtype=bool)
+        if readings is None:
+            return taken
+        done = situation_of(self.model.robot, readings)
+        for a, wrench in zip(done.a, done.wrench, strict=True):
+            near = np.abs(pool.a - a).max(axis=1) < 1e-4
+            load = np.linalg.norm(pool.wrench - wrench, axis=1)
+            taken |= near & (load < 0.02 * np.linalg.norm(wrench))
+        return taken
+
+    def _springs(self, belief: Belief) -> tuple[tuple[str, float, float, str], ...]:
+        linear, leader = belief.linear, belief.leader
+        errors = belief.spring_errors()
+        out = []
+        for k, column in enumerate(linear.base):
+            p = linear.model.parameters[column]
+            value = p.internal + float(leader.mean[k]) * linear.scale[column]
+            std = float(errors[k]) * linear.scale[column]
+            if p.spec.lower == 0.0:
+                value = max(value, 1e-3 * p.internal)
+            out.append((p.name, p.spec.public(value), p.spec.public_std(value, std), p.spec.unit))
+        return tuple(out)
+
+    def _decides(self, belief: Belief, row: int) -> str:
+        rows = [h for w, h in zip(belief.weights, belief.hypotheses, strict=True) if w > 0.02][:2]
+        one = self.X[row : row + 1]
+        about = expected(belief, one)
+        if len(rows) == 2 and float(about.names[0]) > LITTLE:
+            first, second = (_said(belief, h.members) for h in rows)
+            return (
+                f"whether it is {first} or {second} ({about.names[0]:.2f} nat about names, "
+                f"{about.sizes[0]:.2f} about sizes)"
+            )
+        return f"sizes ({about.sizes[0]:.2f} nat), names hardly ({about.names[0]:.3f})"
+
+    def _stop(
+        self, belief: Belief, count: int, springs: tuple[tuple[str, float, float, str], ...],
+        names: Array,
+    ) -> Stop | None:  # fmt: skip
+        if belief.unexplained:
+            return None if count < self.most else self._enough(count)
+        probabilities = belief.probabilities
+        sure = tuple(n for n, p in probabilities.items() if p >= SURE and n != "none")
+        open_ = [n for n, p in probabilities.items() if OPEN < p < SURE and n != "none"]
+        if sure and not open_:
+            return Stop("named", sure, f"{' and '.join(sure)}: P = {probabilities[sure[-1]]:.3f}.")
+        left = max(self.most - count, 1)
+        alike = self._inseparable(belief, left)
+        if len(alike) > 1:
+            names_ = tuple(_said(belief, h.members) for h in alike)
+            return Stop(
+                "class", names_,
+                f"hopeless: no reading of this rig separates {' from '.join(names_)}; "
+                f"{_help(belief, alike)} would.",
+            )  # fmt: skip
+        if probabilities["none"] >= SURE:
+            return Stop("none", (), "Nothing is missing that these readings could show.")
+        known = all(std <= (self.target or 0.0) * abs(value) for _, value, std, _ in springs)
+        if self.target is not None and known:
+            return Stop("target", (), f"Every spring is known to {100 * self.target:g} %.")
+        if not len(names) or float(names.max()) < LITTLE:
+            if probabilities["none"] >= QUIET and count >= ENOUGH:
+                return Stop(
+                    "none", (),
+                    "Nothing missing shows, and no reading of this rig is expected to tell more.",
+                )  # fmt: skip
+            if count >= ENOUGH and float(np.sort(names)[-left:].sum()) < LITTLE:
+                return Stop("hopeless", (), "No reading of this rig would tell more about names.")
+        return None if count < self.most else self._enough(count)
+
+    def _enough(self, count: int) -> Stop:
+        return Stop("most", (), f"{count} readings were the most that were asked for.")
+
+    def _inseparable(self, belief: Belief, left: int) -> list[Hypothesis]:
+        """Hypotheses that make up nearly everything and that no readings to come tell apart."""
+        rows = [(w, h) for w, h in zip(belief.weights, belief.hypotheses, strict=True) if w > OPEN]
+        if len(rows) < 2 or any(not h.members for _, h in rows):
+            return []
+        if sum(w for w, _ in rows) < SURE:
+            return []
+        leader = rows[0][1]
+        for _, h in rows[1:]:
+            both = max(
+                separation(belief, leader, h, self.X, left),
+                separation(belief, h, leader, self.X, left),
+            )
+            if both > APART:
+                return []
+        return [h for _, h in rows]
+
+
+def _said(belief: Belief, members: tuple[int, ...]) -> str:
+    return " with ".join(belief.linear.effects[e].id for e in members) or "nothing"
+
+
+def _help(belief: Belief, alike: list[Hypothesis]) -> str:
+    """What kind of reading the rig lacks."""
+    effects = [belief.linear.effects[e] for h in alike for e in h.members]
+    if any("rotation" in p.name or "N*m" in p.unit for e in effects for p in e.parameters):
+        return "a reading of the tool's rotation, or a moment,"
+    return "another measured point, or another direction of load,"

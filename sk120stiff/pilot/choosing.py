@@ -1,0 +1,91 @@
+"""Which reading to take next: the one of which most is expected, about names and sizes.
+
+The information that a reading brings is that about which hypothesis is true plus, under each, that
+about its parameters. The first is bounded from below by pairwise distances of the predictions
+(Kolchinsky & Tracey 2017, with Bhattacharyya's), the second is ½ ln det S in units of the noise,
+exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.pilot.belief import Belief, Hypothesis
+
+WEIGHED = 14  # hypotheses whose predictions are held against each other
+SIZE_SHARE = 0.3  # of information about sizes, against that about names
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """What each of M readings is expected to bring [nat].
+
+    Attributes:
+        names: (M,) about which name is true.
+        sizes: (M,) about the sizes, on average over the names.
+    """
+
+    names: Array
+    sizes: Array
+
+    @property
+    def worth(self) -> Array:
+        """(M,) what counts."""
+        return self.names + SIZE_SHARE * self.sizes
+
+
+def expected(belief: Belief, X: Array) -> Expected:
+    """Expected information of readings with whitened columns X (M, 3, P)."""
+    rows = belief.likely(WEIGHED)
+    means, covariances = [], []
+    for _, h in rows:
+        own = X[:, :, h.columns]
+        means.append(own @ h.mean)
+        covariances.append(np.eye(3) + own @ h.covariance @ own.transpose(0, 2, 1))
+    p = np.array([weight for weight, _ in rows])
+    mu, S = np.array(means), np.array(covariances)  # (K, M, 3), (K, M, 3, 3)
+    logdet = np.linalg.slogdet(S)[1]
+    sizes = 0.5 * p @ logdet
+    K = len(rows)
+    overlap = np.ones((K, K, len(X)))
+    for i in range(K):
+        for j in range(i):
+            both = 0.5 * (S[i] + S[j])
+            off = mu[i] - mu[j]
+            far = 0.125 * np.einsum("mi,mi->m", off, np.linalg.solve(both, off[..., None])[..., 0])
+            far += 0.5 * (np.linalg.slogdet(both)[1] - 0.5 * (logdet[i] + logdet[j]))
+            overlap[i, j] = overlap[j, i] = np.exp(-far)
+    names = -p @ np.log(np.einsum("j,ijm->im", p, overlap))
+    return Expected(np.maximum(names, 0.0), sizes)
+
+
+def separation(
+    belief: Belief, first: Hypothesis, second: Hypothesis, X: Array, count: int
+) -> float:
+    """√λ that `count` more readings could bring between two hypotheses, at best.
+
+    If the first is true with the size that was found, what of it cannot the second imitate? Asked
+    of all the pool's readings together, of which the `count` best then count.
+    """
+    k = len(belief.linear.base)
+    own = np.setdiff1d(first.columns[k:], second.columns[k:])
+    if not len(own):
+        return np.inf
+    signature = X[:, :, own] @ first.mean[np.isin(first.columns, own)]
+    other = X[:, :, second.columns].reshape(-1, len(second.columns))
+    flat = signature.reshape(-1)
+    ridge = np.concatenate([belief.linear.spread**-1.0, np.full(len(second.columns) - k, 0.1)])
+    A = np.vstack([other, np.diag(ridge)])
+    b = np.concatenate([flat, np.zeros(len(ridge))])
+    left = flat - other @ np.linalg.lstsq(A, b, rcond=None)[0]
+    each = np.sort((left.reshape(-1, 3) ** 2).sum(axis=1))[::-1]
+    return float(np.sqrt(each[:count].sum()))
+
+
+def best(belief: Belief, X: Array, open_: Mask) -> tuple[int, Expected]:
+    """The reading of the pool that is worth most among those that are open."""
+    found = expected(belief, X)
+    return int(np.argmax(np.where(open_, found.worth, -np.inf))), found

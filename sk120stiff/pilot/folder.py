@@ -1,0 +1,213 @@
+"""The folder of a campaign: its settings, its readings so far, and the reading to take next.
+
+The folder is the state. `pilot.yaml` says what does not change, `readings.csv` grows, `next.csv`
+holds what comes next; everything else follows from these.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sk120stiff import units
+from sk120stiff.arrays import Array
+from sk120stiff.errors import InputError
+from sk120stiff.files import read_text, read_yaml, running, write_atomically
+from sk120stiff.measurements import Measurements, read_measurements, write_measurements
+from sk120stiff.measurements.data import NoiseStatement
+from sk120stiff.model import Model
+from sk120stiff.pilot.campaign import Campaign
+from sk120stiff.plan import Cell, feasible_pool
+from sk120stiff.plan.planned import to_be_taken
+
+SETTINGS, READINGS, NEXT = "pilot.yaml", "readings.csv", "next.csv"
+
+
+class Settings(BaseModel):
+    """The keys of `pilot.yaml`."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    model: str
+    cell: str | None = None
+    point: str = "0, 0, 0 mm"
+    force: str = "400 N"
+    noise: str = "10 um"
+    zero: Literal["separate", "shared"] = "separate"
+    target: str | None = None
+    most: Annotated[int, Field(ge=1, le=1000)] = 60
+    poses: Annotated[int, Field(ge=10, le=5000)] = 150
+    directions: Annotated[int, Field(ge=1, le=100)] = 6
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    @property
+    def sigma(self) -> float:
+        """Standard uncertainty of one reading per axis [m]."""
+        return units.parse_size(self.noise, "length", where="noise", like="10 um")
+
+    @property
+    def share(self) -> float | None:
+        """Relative standard error of the springs that is enough."""
+        if self.target is None:
+            return None
+        return units.parse_size(self.target, "dimensionless", where="target", like="2 %")
+
+    @property
+    def at(self) -> Array:
+        """(3,) measured and loaded point, tool frame [m]."""
+        return units.parse_values(self.point, "length", where="point", like="0,50,120 mm")
+
+    def campaign(self, model: Model, cell: Cell) -> Campaign:
+        """What they describe.
+
+        Raises:
+            InputError: A number without a unit, or none at all.
+            Refusal: Next to no pose can be had.
+        """
+        pool = feasible_pool(
+            model.robot,
+            poses=self.poses,
+            directions=self.directions,
+            force=units.parse_size(self.force, "force", where="force", like="400 N"),
+            point=self.at,
+            seed=self.seed,
+            cell=cell,
+        )
+        return Campaign.of(model, pool, self.sigma, target=self.share, most=self.most)
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A campaign's folder."""
+
+    path: Path
+
+    @property
+    def readings_file(self) -> Path:
+        """The file that grows."""
+        return self.path / READINGS
+
+    def settings(self) -> Settings:
+        """What `pilot.yaml` says.
+
+        Raises:
+            InputError: There is none, or it holds what it may not.
+        """
+        file = self.path / SETTINGS
+        if not file.is_file():
+            raise InputError(
+                "no campaign was begun here", where=str(self.path),
+                remedy=f"Begin one: sk120stiff pilot {self.path} --model model.yaml",
+            )  # fmt: skip
+        try:
+            return Settings.model_validate(read_yaml(file).content or {})
+        except ValidationError as error:
+            first = error.errors()[0]
+            raise InputError(
+                f"key {'.'.join(map(str, first['loc']))!r}: {first['msg'].lower()}",
+                where=str(file),
+                remedy=f"Keys are: {', '.join(Settings.model_fields)}.",
+            ) from error
+
+    def begin(self, settings: Settings) -> None:
+        """Write the settings of a new campaign.
+
+        Raises:
+            InputError: Another one is under way here.
+        """
+        file = self.path / SETTINGS
+        if file.is_file() and self.settings() != settings:
+            raise InputError(
+                "a campaign with other settings is under way here", where=str(file),
+                remedy="Leave the options out to go on with it, edit the file, or take another "
+                "folder.",
+            )  # fmt: skip
+        self.path.mkdir(parents=True, exist_ok=True)
+        said = settings.model_dump(exclude_none=True)
+        write_atomically(file, str(yaml.safe_dump(said, sort_keys=False, allow_unicode=True)))
+
+    def beside(self, named: str) -> Path:
+        """A file that the settings name, seen from the folder."""
+        return Path(os.path.normpath(self.path / named))
+
+    def readings(self) -> Measurements | None:
+        """The readings so far; None before the first.
+
+        Raises:
+            InputError: The file cannot be read.
+        """
+        if not self.readings_file.is_file() or not self._rows():
+            return None
+        return read_measurements(self.readings_file)
+
+    def propose(self, campaign: Campaign, settings: Settings, row: int, label: str) -> Measurements:
+        """Write the reading to take next, and on the first call an empty file for the readings."""
+        plan = to_be_taken(campaign.model.robot, campaign.pool, [row], zero=settings.zero)
+        file = self.path / NEXT
+        plan = replace(
+            plan, pose=(label,), noise=NoiseStatement(settings.sigma),
+            source="the reading that 'sk120stiff pilot' proposes",
+        )  # fmt: skip
+        with running():  # the campaign's own files, again and again
+            write_measurements(plan, file)
+            if not self.readings_file.is_file():
+                first = replace(plan, displacement=np.zeros((1, 3)), source="read for the pilot")
+                write_measurements(first, self.readings_file)
+                header = self.readings_file.read_text(encoding="utf-8").splitlines()[0]
+                write_atomically(self.readings_file, header + "\n")
+        return plan
+
+    def append(self, taken: Measurements, displacement: Array) -> None:
+        """Add one reading (3,) [m] to the file, under the headers that it has.
+
+        Raises:
+            InputError: A header without a unit, or a column that a reading needs is missing.
+        """
+        cells: dict[str, tuple[float, str]] = dict(
+            zip(
+                taken.joint_names,
+                zip(taken.joints[0].tolist(), taken.joint_kinds, strict=True),
+                strict=True,
+            )
+        )
+        for k, axis in enumerate("xyz"):
+            cells[f"f{axis}"] = (float(taken.wrench[0, k]), "force")
+            cells[f"m{axis}"] = (float(taken.wrench[0, 3 + k]), "moment")
+            cells[f"d{axis}"] = (float(displacement[k]), "length")
+        text = read_text(self.readings_file)
+        row = self._row(text.splitlines()[0], cells, taken.pose[0])
+        end = "" if text.endswith("\n") else "\n"
+        with running():  # what was read here is what grows
+            write_atomically(self.readings_file, f"{text}{end}{row}\n")
+
+    def _row(self, header: str, cells: Mapping[str, tuple[float, str]], label: str) -> str:
+        where = str(self.readings_file)
+        names = next(csv.reader([header]))
+        out: list[str] = []
+        for name in names:
+            key, unit = units.split_header(name, where=where)
+            if key in cells:
+                value, kind = cells[key]
+                out.append(repr(float(units.from_si(value, unit, kind, where=where))))
+            else:
+                out.append(label if key == "pose" else "")
+        known = {units.split_header(name)[0] for name in names}
+        lacking = [key for key in cells if key not in known and not key.startswith("m")]
+        if lacking:
+            raise InputError(f"the column {lacking[0]!r} is missing", where=where)
+        made = io.StringIO()
+        csv.writer(made, lineterminator="").writerow(out)
+        return made.getvalue()
+
+    def _rows(self) -> int:
+        lines = read_text(self.readings_file).splitlines()
+        return len([line for line in lines if line.strip() and not line.startswith("#")]) - 1

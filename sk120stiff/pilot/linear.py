@@ -1,0 +1,131 @@
+"""All effects of the catalogue as one linear map: what each would do to a reading.
+
+Around the base model a reading is linear in the parameters to very good accuracy: y ≈ y₀ + X v, X
+the exact sensitivities, v internal values in typical sizes. Everything that the pilot weighs works
+on sums XᵀX and Xᵀy, so a reading is taken in within milliseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Index
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Situation, all_effects
+from sk120stiff.model import Model
+
+FAINT = 0.5  # of the noise: an effect whose usual size shows less at every reading is not weighed
+SPREAD = 3.0  # typical sizes by which springs may be off; at least what is plausible
+
+
+@dataclass(frozen=True, eq=False)
+class LinearMap:
+    """Base model and candidates, linearised.
+
+    Attributes:
+        model: Base model with all candidates in it, those at zero.
+        scale: (P,) typical sizes of the parameters.
+        base: Columns of the base model's free parameters.
+        spread: (len(base),) standard deviations that they are given beforehand, typical sizes.
+        effects: The candidates.
+        columns: For each candidate its columns.
+        positive: (P,) parameters that cannot be negative.
+    """
+
+    model: Model
+    scale: Array
+    base: Index
+    spread: Array
+    effects: tuple[Effect, ...]
+    columns: tuple[Index, ...]
+    positive: Array
+
+    @classmethod
+    def of(
+        cls, model: Model, situation: Situation, sigma: float, catalogue: Catalogue = CATALOGUE
+    ) -> tuple[Self, Array]:
+        """The map of what readings at a pool could show, and its columns there (M, 3, P).
+
+        Args:
+            model: Base model.
+            situation: The pool.
+            sigma: Standard uncertainty of one displacement per axis [m].
+            catalogue: What may be missing.
+        """
+        present = {effect.id for effect in model.effects}
+        soft = np.isfinite(model.joint_stiffness())
+        soft_joints = {
+            joint for joint, yields in zip(model.robot.actuated, soft, strict=True) if yields
+        }
+        everything = all_effects(model.robot, poses=(), timed=False, catalogue=catalogue)
+        fit_for = [
+            effect
+            for effect in everything
+            if effect.id not in present
+            and not effect.exchangeable
+            and not effect.only_absolute
+            and effect.applies_to(situation)
+            and (not effect.bends_a_spring or effect.where in soft_joints)
+        ]
+        full = model
+        for effect in fit_for:
+            full = full + effect
+        scale = np.array([p.spec.typical for p in full.parameters])
+        owner: dict[str, list[int]] = {}
+        for k, p in enumerate(full.parameters):
+            if p.free:
+                owner.setdefault(p.effect.id, []).append(k)
+        base = np.array([k for i in present for k in owner.get(i, [])], dtype=np.intp)
+        base.sort()
+        plausible = np.array([p.spec.plausible for p in full.parameters]) / scale
+        found = cls(
+            model=full,
+            scale=scale,
+            base=base,
+            spread=np.maximum(plausible[base], SPREAD),
+            effects=tuple(fit_for),
+            columns=tuple(np.array(owner[e.id], dtype=np.intp) for e in fit_for),
+            positive=np.array([p.spec.lower == 0.0 for p in full.parameters]),
+        )
+        X = found.rows(situation)[1] / sigma
+        shown = [k for k, own in enumerate(found.columns) if np.abs(X[:, :, own]).max() > FAINT]
+        return replace(
+            found,
+            effects=tuple(found.effects[k] for k in shown),
+            columns=tuple(found.columns[k] for k in shown),
+        ), X
+
+    def rows(self, situation: Situation) -> tuple[Array, Array]:
+        """(N, 3) displacements of the base model, and (N, 3, P) change per typical size [m]."""
+        predicted, derivative = self.model.predict_with_sensitivities(situation)
+        return predicted, derivative * self.scale
+
+    def index(self, ids: Iterable[str]) -> list[int]:
+        """Positions of candidates by ``name:where``."""
+        place = {effect.id: k for k, effect in enumerate(self.effects)}
+        return [place[each] for each in ids if each in place]
+
+
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """XᵀX, Xᵀy, yᵀy and the number of whitened rows, of all readings so far."""
+
+    gram: Array
+    moment: Array
+    square: float
+    count: int
+
+    @classmethod
+    def none(cls, size: int) -> Self:
+        """Before the first reading."""
+        return cls(np.zeros((size, size)), np.zeros(size), 0.0, 0)
+
+    def plus(self, X: Array, y: Array) -> Sums:
+        """With more whitened rows X (R, P), y (R,)."""
+        return Sums(
+            self.gram + X.T @ X, self.moment + X.T @ y, self.square + float(y @ y),
+            self.count + len(y),
+        )  # fmt: skip

@@ -1,0 +1,100 @@
+"""`sk120stiff pilot`: a folder that is begun, left, taken up and ended."""
+
+import io
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sk120stiff.effects import effect, situation_of
+from sk120stiff.measurements import read_measurements
+from sk120stiff.model import read_model
+from sk120stiff.plan import feasible
+
+MODEL = "robots/motoman_sk120/model.yaml"
+POINT = "-60,40,150 mm"
+
+
+class Arm(io.StringIO):
+    """Standard input that reads what a rocking arm would show at the pose that is proposed."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self.folder, self.asked = folder, 0
+        base = read_model(MODEL)
+        rocking = base + effect(base.robot, "base_rocking")
+        values = rocking.values.copy()
+        values[-2:] = 1 / 6e5, 1 / 2e6
+        self.truth, self.rng = rocking.with_values(values), np.random.default_rng(0)
+
+    def readline(self, *_: object) -> str:
+        self.asked += 1
+        plan = read_measurements(self.folder / "next.csv")
+        exact = self.truth.predict(situation_of(self.truth.robot, plan))[0]
+        read = 1e3 * (exact + self.rng.normal(size=3) * 1.4e-5)
+        return ",".join(f"{x:.5f}" for x in read) + " mm\n"
+
+
+def begin(run, folder: Path):
+    outcome = run("pilot", str(folder), "--model", MODEL, "--point", POINT, "--json")
+    text = (folder / "pilot.yaml").read_text(encoding="utf-8")
+    few = text.replace("poses: 150", "poses: 40").replace("directions: 6", "directions: 4")
+    (folder / "pilot.yaml").write_text(few, encoding="utf-8")
+    return outcome
+
+
+def test_a_campaign_from_begin_to_end(run, tmp_path: Path, monkeypatch) -> None:
+    folder = tmp_path / "campaign"
+    first = begin(run, folder)
+    assert first.code == 0, first.stderr
+    assert first.document["readings"] == 0 and first.document["stop"] is None
+    plan = read_measurements(folder / "next.csv")
+    assert plan.displacement is None and plan.n_readings == 1
+    arm = Arm(folder)
+    robot = arm.truth.robot
+    assert feasible(robot, _cell(), plan.joints, plan.wrench, point=plan.point).ok.all()
+    monkeypatch.setattr(sys, "stdin", arm)
+    ended = run("pilot", str(folder), "--type")
+    assert ended.code == 0, ended.stderr
+    assert "base_rocking" in ended.stdout and "Stop" in ended.stdout
+    assert arm.asked < 30
+    readings = read_measurements(folder / "readings.csv")
+    assert readings.n_readings == arm.asked and readings.zero == "separate"
+    again = run("pilot", str(folder), "--json")  # the folder is the state
+    assert again.document["readings"] == arm.asked
+    assert again.document["stop"]["final"]
+    assert any("base_rocking" in name for name in again.document["stop"]["names"])
+
+
+def _cell():
+    from sk120stiff.plan import Cell
+
+    return Cell()
+
+
+def test_what_cannot_be_begun_or_read(run, tmp_path: Path, monkeypatch) -> None:
+    folder = tmp_path / "campaign"
+    assert "no campaign was begun" in run("pilot", str(folder)).stderr
+    outcome = run("pilot", str(folder), "--model", MODEL, "--noise", "10")
+    assert outcome.code == 2 and "unit" in outcome.stderr and not folder.exists()
+    outcome = run("pilot", str(folder), "--model", MODEL, "--zero", "often")
+    assert outcome.code == 2 and "zero" in outcome.stderr
+    assert begin(run, folder).code == 0
+    other = run("pilot", str(folder), "--model", MODEL, "--force", "100 N")
+    assert other.code == 2 and "other settings" in other.stderr
+    assert run("pilot", str(folder), "--force", "100 N").code == 2
+    before = (folder / "readings.csv").read_text(encoding="utf-8")
+    monkeypatch.setattr(sys, "stdin", io.StringIO("0.1,0.2\n0.1,0.2,0.3\n\n"))
+    outcome = run("pilot", str(folder), "--type")
+    assert outcome.code == 0 and outcome.stderr.count("Error:") == 2
+    assert (folder / "readings.csv").read_text(encoding="utf-8") == before
+    (folder / "pilot.yaml").write_text("modell: x\n", encoding="utf-8")
+    assert run("pilot", str(folder)).code == 2
+
+
+@pytest.mark.parametrize("words", [("--most", "0"), ("--target", "2 mm"), ("--point", "1 mm")])
+def test_bad_settings(run, tmp_path: Path, words) -> None:
+    folder = tmp_path / "campaign"
+    assert run("pilot", str(folder), "--model", MODEL, *words).code == 2
+    assert not folder.exists()

@@ -1,0 +1,120 @@
+"""Evidence against densities, expected information against Monte Carlo, and campaigns that end."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from sk120stiff.pilot.belief import NOTHING, SIZES, TWO, Belief
+from sk120stiff.pilot.campaign import Campaign
+from sk120stiff.pilot.choosing import expected
+from sk120stiff.pilot.linear import Sums
+from sk120stiff.plan import Cell, Rig, feasible_pool
+from tests.pilot.simulated import SIGMA, Bench, campaigns
+
+
+@cache
+def bench() -> Bench:
+    return Bench.of("motoman_sk120", poses=40, directions=4)
+
+
+def belief_after(rows: int, seed: int = 0, truth: str = "link_bending:link_2_l") -> Belief:
+    """Readings drawn from the linear map itself, whitened."""
+    made = bench().campaign
+    rng = np.random.default_rng(seed)
+    X = made.X[rng.choice(len(made.X), rows, replace=False)].reshape(-1, made.X.shape[2])
+    own = made.linear.columns[made.linear.index([truth])[0]]
+    y = X[:, own] @ np.full(len(own), 2.0) + rng.normal(size=len(X))
+    return Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
+
+
+def test_the_evidence_is_the_density_of_the_readings() -> None:
+    """Of hypotheses without compliances, whose densities are Gaussian mixtures."""
+    made = bench().campaign
+    rng = np.random.default_rng(3)
+    X = made.X[rng.choice(len(made.X), 6, replace=False)].reshape(-1, made.X.shape[2])
+    y = rng.normal(size=len(X))
+    belief = Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
+    B = X[:, made.linear.base] * made.linear.spread
+    springs = B @ B.T + np.eye(len(y))
+
+    def normal(S: np.ndarray) -> float:
+        return -0.5 * float(y @ np.linalg.solve(S, y) + np.linalg.slogdet(S)[1])
+
+    def density(columns: np.ndarray) -> float:
+        S = X[:, columns]
+        each = [normal(springs + size**2 * S @ S.T) for size in SIZES]
+        return float(np.logaddexp.reduce(each) - np.log(len(SIZES)))
+
+    nothing = normal(springs) + np.log(NOTHING)
+    found = {h.members: h.log_weight for h in belief.hypotheses}
+    count = len(made.linear.effects)
+    for name in ("force_rotation:sensor", "force_crosstalk:sensor"):
+        (e,) = made.linear.index([name])
+        prior = np.log((1 - NOTHING) * (1 - TWO))
+        share = prior - np.log(count)  # but for effects that are met less often
+        ours = found[(e,)] - found[()]
+        theirs = density(made.linear.columns[e]) + share - nothing
+        assert ours == pytest.approx(theirs, abs=0.2)  # what joint_tilt leaves to the others
+    pair = [made.linear.index([n])[0] for n in ("force_rotation:sensor", "force_crosstalk:sensor")]
+    difference = found[(pair[0],)] - found[(pair[1],)]
+    exact = density(made.linear.columns[pair[0]]) - density(made.linear.columns[pair[1]])
+    assert difference == pytest.approx(exact, abs=1e-4)
+
+
+def test_expected_information_is_a_lower_bound_that_comes_near() -> None:
+    """Of what a reading says about names, against draws from the predictions."""
+    belief = belief_after(5)
+    made = bench().campaign
+    X = made.X[::37]
+    bound = expected(belief, X).names
+    rows = belief.likely(14)
+    rng = np.random.default_rng(0)
+    p = np.array([w for w, _ in rows])
+    for k in np.argsort(bound)[-3:]:
+        densities = []
+        for _, h in rows:
+            own = X[k][:, h.columns]
+            S = np.eye(3) + own @ h.covariance @ own.T
+            densities.append(multivariate_normal(own @ h.mean, S))
+        information = 0.0
+        for weight, own in zip(p, densities, strict=True):
+            y = own.rvs(4000, random_state=rng)
+            mixture = sum(w * d.pdf(y) for w, d in zip(p, densities, strict=True))
+            information += weight * float(np.mean(np.log(own.pdf(y) / mixture)))
+        assert 0.2 * information < bound[k] < information + 0.02
+
+
+def test_probabilities_gather_on_the_truth() -> None:
+    before, after = belief_after(3).probabilities, belief_after(25).probabilities
+    assert after["link_bending:link_2_l"] > 0.95 > before.get("link_bending:link_2_l", 0.0)
+    assert after["none"] < 0.01
+
+
+def test_a_campaign_finds_a_hidden_cause_sooner_than_chance() -> None:
+    """The truth is the exact nonlinear model."""
+    pilot, random = campaigns(bench(), 2, ask=False, policies=("pilot", "random"))
+    assert pilot.truth != "none" and pilot.right and pilot.reason == "named"
+    assert pilot.count <= random.count
+
+
+def test_what_no_reading_separates_is_called_hopeless() -> None:
+    """Loaded straight down alone, a base that rocks is not told from what sags like it."""
+    made = bench().campaign
+    robot, point = made.model.robot, made.pool.situation.point
+    down = Cell(rig=Rig("a weight", directions=np.array([[0.0, 0.0, -1.0]])))
+    pool = feasible_pool(robot, poses=30, directions=1, force=400.0, point=point, cell=down)
+    campaign = Campaign.of(made.model, pool, SIGMA, most=40)
+    names = [effect.id for effect in campaign.linear.effects]
+    e = names.index("base_rocking:base_link")
+    X = campaign.X.reshape(-1, campaign.X.shape[2])
+    own = campaign.linear.columns[e]
+    y = X[:, own] @ np.full(len(own), 3.0) + np.random.default_rng(0).normal(size=len(X))
+    belief = Belief(campaign.linear, Sums.none(X.shape[1]).plus(X, y))
+    stop = campaign._stop(belief, 30, (), np.zeros(0))
+    assert stop is not None
+    meant = {part for name in stop.names for part in name.split(" with ")}
+    assert "base_rocking:base_link" in meant
+    if stop.reason == "class":
+        assert "would" in stop.sentence
