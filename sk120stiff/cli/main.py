@@ -31,7 +31,7 @@ COMMANDS = {
     "explain": "What is missing when simulation and measurement disagree.",
     "effects": "What every effect and its numbers mean: law, axes, sign, unit.",
     "plan": "The poses and loads to measure next.",
-    "pilot": "Which reading to take next, while measuring; and when to stop.",
+    "pilot": "Which reading comes next, what is known, and when to stop.",
     "simulate": "Synthetic measurements from a model: loads, noise, zeros.",
     "import": "Readings of trackers and calibration programs as measurements.",
     "compensate": "Joint commands that cancel the deflection along a loaded path.",

@@ -65,7 +65,7 @@ def command(
         bool, typer.Option("--watch", help="Look again whenever readings.csv grows.")
     ] = False,
 ) -> Answer:
-    """Which reading to take next, what is known by now, and when to stop.
+    """Which reading comes next, what is known, and when to stop.
 
     The folder is the state: pilot.yaml holds the settings, readings.csv grows by your hand (or by
     --type), next.csv holds the pose and load to measure next. It can be left and taken up at any
