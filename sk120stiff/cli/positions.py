@@ -14,6 +14,7 @@ from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import InputError
 from sk120stiff.explain import Options
 from sk120stiff.explain.absolute.document import gaps_table, save_positions
+from sk120stiff.explain.absolute.next_step import next_step_of_positions
 from sk120stiff.explain.absolute.run import Explained, explain_positions, heldout_on
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.identify.absolute.calibrate import in_gravity
@@ -154,10 +155,6 @@ def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]
     shown += findings(answer.final, readings)
     shown += answer.dropped
     shown += answer.left_over()
-    if answer.following is not None:
-        one, other = answer.following.between
-        shown.append(
-            f"Measure next what stands in {out / 'next_poses.csv'}: it tells {one} from {other}."
-        )
+    shown.append(f"What to do now: {next_step_of_positions(answer)}")
     shown.append(f"Results are in {out}.")
     return shown

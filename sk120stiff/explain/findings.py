@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from sk120stiff.effects import Effect
 
@@ -65,6 +65,7 @@ class Evidence:
         confirmation: Cross-validation and resampling of the poses.
         odds: Probability of each candidate (``name:where``) in this effect's place beside the other
             effects, as far as the catalogue goes; what is missing to one is that of none.
+        rivals: By how much the extended BIC is worse with each rival (``name:where``) in its place.
     """
 
     score_gain: float
@@ -73,6 +74,7 @@ class Evidence:
     runner_up_gap: float
     confirmation: Confirmation
     odds: Mapping[str, float]
+    rivals: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -46,6 +46,35 @@ def with_error(value: float, std: float | None, unit: str = "") -> str:
     return f"({text})·10{raised(exponent)}{tail}" if exponent else f"{text}{tail}"
 
 
+def said_in(unit: str, size: float) -> tuple[float, str]:
+    """The unit in which people say a size, and the factor to it from the unit of a file.
+
+    Examples:
+        >>> said_in("N*m/rad", 1.4e6)
+        (0.001, 'kN·m/rad')
+        >>> said_in("rad", 2e-4)
+        (1000000.0, 'µrad')
+    """
+    known = {
+        "N*m/rad": [(math.inf, 1e-3, "kN·m/rad")],
+        "N/m": [(math.inf, 1e-6, "N/µm")],
+        "rad": [(1e-3, 1e6, "µrad"), (2e-2, 1e3, "mrad"), (math.inf, 180.0 / math.pi, "°")],
+        "m": [(1e-3, 1e6, "µm"), (math.inf, 1e3, "mm")],
+        "rad/(N*m)": [(math.inf, 1e6, "µrad/(N·m)")],
+        "m/N": [(math.inf, 1e6, "µm/N")],
+    }
+    for below, factor, name in known.get(unit.replace("·", "*"), []):
+        if not abs(size) >= below or not math.isfinite(below):
+            return factor, name
+    return 1.0, unit_of(unit)
+
+
+def said_as(value: float, std: float | None, unit: str) -> str:
+    """A value with its error in the unit in which people say it: ``1357 ± 15 kN·m/rad``."""
+    factor, name = said_in(unit, value)
+    return with_error(factor * value, None if std is None else factor * std, name)
+
+
 def number(value: float, digits: int = 4) -> str:
     """A number with a true minus sign and, where it helps, a power of ten."""
     if not math.isfinite(value):

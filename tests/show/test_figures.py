@@ -7,11 +7,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
 
 from sk120stiff.errors import InputError
 from sk120stiff.show import figures as f
 from sk120stiff.show import inline_svg, palette, save_figure
+from sk120stiff.show.figures.scores import score_bars
+from sk120stiff.show.stories.pictures import ArmView, gap_vectors
 
 X, Y = np.linspace(-1.2, 1.2, 9), np.linspace(-2.0, 0.6, 7)
 GRID = np.add.outer(Y, X)
@@ -222,3 +226,31 @@ def test_a_value_that_cannot_be_seen_spoils_no_picture(value, std, words) -> Non
         assert any(words in text.get_text() for text in panel.texts)
     low, high = f.parameter_forest([known, hidden]).axes[0].get_xlim()
     assert high - low < 0.5  # what is hardly known does not squeeze what is known
+
+
+def test_candidates_stand_in_the_order_of_their_scores() -> None:
+    figure = score_bars({"b": 4.0, "none of them": 250.0, "a": 0.0}, named=["a"])
+    (panel,) = figure.axes
+    assert [text.get_text() for text in panel.get_yticklabels()] == ["a", "b", "none of them"]
+    assert [bar.get_width() for bar in panel.patches] == [0.0, 4.0, 250.0]
+    assert [text.get_text() for text in panel.texts] == ["best", "+4.0", "+250"]
+    with pytest.raises(InputError, match="no candidate"):
+        score_bars({})
+
+
+def test_a_colour_means_one_thing_in_every_figure() -> None:
+    """The gap at hand is vermilion and earlier ones grey, in bars and arrows alike."""
+    bars = f.gap_per_pose(["1"], {"before": [2e-5], "after": [1e-5]})
+    arm = ArmView(np.array([[0.0, 0, 0], [1.0, 0, 1]]), {"before": np.ones(3), "after": np.ones(3)})
+    arrows = gap_vectors([arm])
+    wanted = [to_rgba(palette.BEFORE), to_rgba(palette.GAP)]
+    assert [bar.get_facecolor() for bar in bars.axes[0].patches] == wanted
+    drawn = [each for each in arrows.axes[0].collections if isinstance(each, Quiver)]
+    assert [tuple(each.get_facecolor()[0]) for each in drawn] == wanted
+    loads = np.array([100.0, 200.0])
+    curve = f.LoadCurve(
+        "p", loads, np.ones((2, 3)), models={"a": np.ones((2, 3)), "b": np.eye(3)[:2]}
+    )
+    lines = {line.get_color() for line in f.force_deflection([curve]).axes[0].lines}
+    assert {palette.MEASURED, palette.PREDICTED, palette.BEFORE} <= lines
+    assert not lines & {palette.GAP, palette.GREEN}

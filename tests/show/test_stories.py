@@ -20,7 +20,7 @@ from sk120stiff.show import scene_html
 from sk120stiff.show.stories import explain_report, explain_scene
 from sk120stiff.show.stories.pictures import ArmView, exaggeration, gap_vectors, suspect_panels
 from sk120stiff.show.stories.verdicts import lead_of
-from sk120stiff.show.wording import number, percent, um, unit_of, with_error
+from sk120stiff.show.wording import number, percent, said_as, um, unit_of, with_error
 from tests.explain.readings import base_fit, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.show.test_report import Outline
@@ -118,7 +118,7 @@ def test_a_named_cause_is_told_with_its_size_and_evidence() -> None:
     assert finding.effect.sentence() in text
     for p in found.final.model.parameters:
         if p.effect == finding.effect:
-            assert with_error(p.value, p.std) in text
+            assert said_as(p.value, p.std, p.spec.unit).rpartition(" ")[0] in text
     first, last = found.steps[0], found.steps[-1]
     assert f"falls from {um(first.heldout_rms)} to {um(last.heldout_rms)} µm" in text
     confirmation = finding.evidence.confirmation
@@ -138,8 +138,8 @@ def test_springs_before_and_after_are_told() -> None:
     for p in found.final.parameters:
         if p.name in before:
             old = before[p.name]
-            assert with_error(old.value, old.std) in text
-            assert with_error(p.value, p.std) in text
+            assert said_as(old.value, old.std, p.spec.unit).rpartition(" ")[0] in text
+            assert said_as(p.value, p.std, p.spec.unit).rpartition(" ")[0] in text
     assert "Springs fitted alone cover up for what is missing" in text
 
 
@@ -241,6 +241,9 @@ def test_numbers_are_written_as_people_do() -> None:
     assert with_error(float("inf"), None, "N/m") == "rigid"
     assert with_error(0.0248, 0.001, "1") == "0.0248 ± 0.0010"
     assert with_error(62604.0, 7756.0) == "62604 ± 7756"
+    assert said_as(1.357e6, 1.5e4, "N*m/rad") == "1357 ± 15 kN·m/rad"
+    assert said_as(-2.1e-4, 3e-6, "rad") == "−210.0 ± 3.0 µrad"
+    assert said_as(0.0121, None, "m") == "12.1 mm"
     assert number(1105.2, 3) == "1105"
     assert number(0.0, 3) == "0"
     assert number(-3.2e-11, 2) == "−3.2·10⁻¹¹"

@@ -333,6 +333,7 @@ def _finding(found: Attempt, effect: int) -> Finding:
                 | {regression.candidates[e].id: model.score for e, model in rivals},
                 none=without.score,
             ),
+            rivals={regression.candidates[e].id: m.score - with_it.score for e, m in rivals},
         ),
     )
 

@@ -73,7 +73,11 @@ def gap_per_pose(
 
 
 def gap_waterfall(
-    steps: Sequence[GapStep], *, noise_floor: float | None = None, title: str | None = None
+    steps: Sequence[GapStep],
+    *,
+    noise_floor: float | None = None,
+    title: str | None = None,
+    unit: str = "µm",
 ) -> Figure:
     """How the gap falls as effects are added; points are poses that the fit never saw."""
     if not steps:
@@ -99,18 +103,18 @@ def gap_waterfall(
             inside = fit[k] > 0.3 * farthest
             edge = fit[k] if inside else np.nanmax([fit[k], start, held[k]])
             panel.annotate(
-                f"{_short(fit[k])} µm{saved}", (edge, k), (-7 if inside else 8, 0),
+                f"{_short(fit[k])} {unit}{saved}", (edge, k), (-7 if inside else 8, 0),
                 textcoords="offset points", ha="right" if inside else "left", va="center",
                 fontsize=8.5, color=palette.PAPER if inside and last else palette.INK, zorder=5,
             )  # fmt: skip
         if np.isfinite(held).any():
             panel.plot(held, rows, "D", color=palette.PAPER, markeredgecolor=palette.INK,
                        markersize=7, label="held-out poses", zorder=4)  # fmt: skip
-        _floor(panel, noise_floor, vertical=True)
+        _floor(panel, noise_floor, vertical=True, unit=unit)
         panel.set_yticks(rows, [step.model for step in steps])
         panel.invert_yaxis()
         panel.set_xlim(0.0, farthest)
-        panel.set_xlabel("rms gap [µm]")
+        panel.set_xlabel(f"rms gap [{unit}]")
         panel.grid(visible=False, axis="y")
         panel.tick_params(axis="y", length=0)
         if panel.get_legend_handles_labels()[0]:
@@ -120,13 +124,15 @@ def gap_waterfall(
     return figure
 
 
-def _floor(panel: Axes, noise_floor: float | None, *, vertical: bool = False) -> None:
+def _floor(
+    panel: Axes, noise_floor: float | None, *, vertical: bool = False, unit: str = "µm"
+) -> None:
     if noise_floor is None:
         return
     draw = panel.axvline if vertical else panel.axhline
     draw(
         1e6 * noise_floor, color=palette.INK, linestyle="--", linewidth=1.3, zorder=3,
-        label=f"noise floor {_short(1e6 * noise_floor)} µm",
+        label=f"noise floor {_short(1e6 * noise_floor)} {unit}",
     )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import new_figure, styled
-from sk120stiff.show.wording import with_error
+from sk120stiff.show.wording import said_as
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -105,4 +105,4 @@ def _written(e: Estimate) -> str:
     note = f"  {e.note}" if e.note else ""
     if not e.shown:
         return f"{'rigid' if math.isinf(e.value) else 'cannot be seen'}{note}"
-    return f"{with_error(e.value, e.std, e.unit)}{note}"
+    return f"{said_as(e.value, e.std, e.unit)}{note}"

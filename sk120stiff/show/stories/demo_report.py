@@ -197,10 +197,11 @@ def _second_act(demo: Demo) -> Section:
     for p, (low, high) in zip(found.parameters, found.intervals(), strict=True):
         given = paper[p.name].value
         change = percent(p.value / given - 1.0).replace("-", "−")
-        rows.append((p.effect.where, number(given, 5), with_error(p.value, p.std),
-                     number(low), number(high), change))  # fmt: skip
+        rows.append((p.effect.where, number(1e-3 * given, 5),
+                     with_error(1e-3 * p.value, 1e-3 * (p.std or 0.0)),
+                     number(1e-3 * low), number(1e-3 * high), change))  # fmt: skip
     estimates = [
-        Estimate(p.effect.where, p.value, p.std, "N·m/rad",
+        Estimate(p.effect.where, p.value, p.std, p.spec.unit,
                  paper[p.name].value)
         for p in found.parameters
     ]  # fmt: skip
@@ -219,7 +220,7 @@ def _second_act(demo: Demo) -> Section:
             Table(
                 ["spring", "paper", "identified ± standard error", "95 % from", "to", "change"],
                 rows,
-                "Joint springs in N·m/rad.",
+                "Joint springs in kN·m/rad.",
             ),
             Note(alike, "caution", "Springs or force sensor"),
             Picture(

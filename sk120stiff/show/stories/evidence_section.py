@@ -10,12 +10,25 @@ import numpy as np
 from sk120stiff.effects import comment_lines
 from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
+from sk120stiff.explain.judge.posterior import NONE
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
-from sk120stiff.show.report import Block, Items, Note, Section, Table
+from sk120stiff.show.figures.scores import score_bars
+from sk120stiff.show.report import Block, Items, Note, Picture, Section, Table
 from sk120stiff.show.stories.verdicts import near, sentence_of
-from sk120stiff.show.wording import chance, counted, number, percent, unit_of, with_error
+from sk120stiff.show.wording import (
+    chance,
+    counted,
+    number,
+    percent,
+    said_as,
+    said_in,
+    unit_of,
+    with_error,
+)
 
+CANDIDATES = 7  # rivals that are drawn
+NOTHING = "none of them"
 MANY = 12  # parameters of one effect beyond which a table helps nobody
 
 
@@ -57,8 +70,22 @@ def _finding(answer: Explanation, finding: Finding) -> list[Block]:
                 "Not settled",
             )
         )
-    blocks.append(_evidence(finding))
+    blocks += [_scores(finding), _evidence(finding)]
     return blocks
+
+
+def _scores(finding: Finding) -> Picture:
+    """The candidates in the effect's place, the nearest and the model without any of them."""
+    evidence, own = finding.evidence, finding.effect.id
+    near_by = sorted(evidence.rivals.items(), key=lambda item: item[1])[:CANDIDATES]
+    behind = {own: 0.0, **dict(near_by), NOTHING: evidence.score_gain}
+    told = "; ".join(f"{name} {number(value, 3)}" for name, value in behind.items())
+    return Picture(
+        lambda: score_bars(behind, named=[own, *finding.alternatives]),
+        alt=f"Bars of the extended BIC behind the best of {len(behind)} candidates: {told}.",
+        caption="How far each candidate stands behind in extended BIC, all else refitted. Violet: "
+        "the name, and what these readings cannot tell from it.",
+    )
 
 
 def _sizes(answer: Explanation, finding: Finding) -> Table | str:
@@ -78,11 +105,11 @@ def many_values(parameters: Sequence[Parameter]) -> str:
     """Parameters of one kind that are too many for a table, told by their size."""
     values = np.array([p.value for p in parameters])
     largest = parameters[int(np.argmax(np.abs(values)))]
-    rms = number(float(np.sqrt(np.mean(values**2))), 3)
+    rms = said_as(float(np.sqrt(np.mean(values**2))), None, largest.spec.unit)
     return (
-        f"It has {len(values)} values; their rms is {rms} {unit_of(largest.spec.unit)}, the "
+        f"It has {len(values)} values; their rms is {rms}, the "
         f"largest is {largest.spec.name} with "
-        f"{with_error(largest.value, largest.std, largest.spec.unit)}. All stand in "
+        f"{said_as(largest.value, largest.std, largest.spec.unit)}. All stand in "
         "the model file."
     )
 
@@ -97,8 +124,9 @@ def parameter_rows(fit: Fit, parameters: list[Parameter]) -> list[tuple[object, 
             rows.append((p.spec.name, "cannot be seen", None, None, unit_of(p.spec.unit)))
             continue
         low, high = ends.get(p.name, (math.nan, math.nan))
-        value = with_error(p.value, p.std)
-        rows.append((p.spec.name, value, number(low), number(high), unit_of(p.spec.unit)))
+        factor, unit = said_in(p.spec.unit, p.value)
+        value = with_error(factor * p.value, None if p.std is None else factor * p.std)
+        rows.append((p.spec.name, value, number(factor * low), number(factor * high), unit))
     return rows
 
 
@@ -142,11 +170,27 @@ def _evidence(finding: Finding) -> Table:
 def _nothing(answer: Explanation) -> list[Block]:
     looked = len({item.name.rpartition(".")[0] for item in answer.smallest_detectable})
     left = answer.adequacy
+    odds = answer.odds
+    behind = {
+        NOTHING if name == NONE else name: -2.0 * math.log(share / max(odds.values()))
+        for name, share in odds.items()
+        if share > 0.0
+    }
     blocks: list[Block] = [
         f"All effects of the catalogue at all places where they can act ({looked}) were tried, "
         "alone and together, with the springs refitted beside them. None improves the model by "
         "more than chance, on the fitted poses and on poses left out.",
     ]
+    if len(behind) > 1:
+        told = "; ".join(f"{name} {number(value, 3)}" for name, value in behind.items())
+        blocks.append(
+            Picture(
+                lambda: score_bars(behind, named=[NOTHING]),
+                alt=f"Bars of the extended BIC behind the best, one effect more: {told}.",
+                caption="One effect more, each tried alone: how far it stands behind in extended "
+                "BIC. Violet: the model as it is.",
+            )
+        )
     if left.chance is not None and left.understated is None and left.chance < DOUBTFUL:
         blocks.append(
             Note(

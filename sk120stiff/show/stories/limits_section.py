@@ -13,7 +13,7 @@ from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import Block, Items, Note, Section, Table
 from sk120stiff.show.stories.verdicts import noise_makes
-from sk120stiff.show.wording import counted, number, um, unit_of
+from sk120stiff.show.wording import counted, number, said_in, um
 
 
 def left_section(answer: Explanation, readings: Measurements) -> Section:
@@ -106,11 +106,14 @@ def _sizes(answer: Explanation, visible: Sequence[Detectable]) -> list[tuple[str
 def _written(items: Sequence[Detectable]) -> str:
     if len(items) > 6:  # a constant for every pose, say: the range tells enough
         values = [float(item.value or 0.0) for item in items]
-        return f"{number(min(values), 3)} to {number(max(values), 3)} {unit_of(items[0].unit)}"
-    return ", ".join(
-        f"{item.name.rpartition('.')[2]} {number(float(item.value or 0.0), 3)} {unit_of(item.unit)}"
-        for item in items
-    )
+        factor, unit = said_in(items[0].unit, max(values))
+        return f"{number(factor * min(values), 3)} to {number(factor * max(values), 3)} {unit}"
+    return ", ".join(f"{item.name.rpartition('.')[2]} {_said(item)}" for item in items)
+
+
+def _said(item: Detectable) -> str:
+    factor, unit = said_in(item.unit, float(item.value or 0.0))
+    return f"{number(factor * float(item.value or 0.0), 3)} {unit}"
 
 
 def next_section(answer: Explanation, link: str) -> Section | None:

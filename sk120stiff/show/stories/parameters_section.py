@@ -12,7 +12,7 @@ from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.figures import Estimate, parameter_forest
 from sk120stiff.show.report import Block, Note, Picture, Section, Table
-from sk120stiff.show.wording import number, percent, unit_of, with_error
+from sk120stiff.show.wording import number, percent, said_in, unit_of, with_error
 
 WORTH_TELLING = 0.01
 UNSEEN = "cannot be seen"
@@ -28,8 +28,7 @@ def parameters_section(answer: Explanation) -> Section:
     seen = [p for p in after if p.name not in unseen]
     blocks: list[Block] = [_told(before, seen), _table(before, after, unseen), *_blind(unseen)]
     drawn = [
-        Estimate(_short(p), p.value, p.std, unit_of(p.spec.unit),
-                 before[p.name].value)
+        Estimate(_short(p), p.value, p.std, p.spec.unit, before[p.name].value)
         for p in seen
         if np.isfinite(p.value) and np.isfinite(before[p.name].value)
     ]  # fmt: skip
@@ -48,15 +47,13 @@ def parameters_section(answer: Explanation) -> Section:
 def springs_table(fit: Fit) -> Table:
     """Estimates with error and 95 % interval."""
     unseen = unseen_reasons(fit)
-    rows = [
-        (
-            _short(p),
-            *((UNSEEN, None, None) if p.name in unseen
-              else (with_error(p.value, p.std), number(low), number(high))),
-            unit_of(p.spec.unit),
-        )
-        for p, (low, high) in zip(fit.parameters, fit.intervals(), strict=True)
-    ]  # fmt: skip
+    rows: list[tuple[object, ...]] = []
+    for p, (low, high) in zip(fit.parameters, fit.intervals(), strict=True):
+        factor, unit = said_in(p.spec.unit, p.value)
+        told: tuple[object, ...] = (UNSEEN, None, None)
+        if p.name not in unseen:
+            told = (_valued(p, factor), number(factor * low), number(factor * high))
+        rows.append((_short(p), *told, unit))
     return Table(["parameter", "value ± standard error", "95 % from", "to", "unit"], rows,
                  "Estimated parameters.")  # fmt: skip
 
@@ -97,18 +94,23 @@ def _table(
         if p.name in unseen:
             rows.append((_short(p), UNSEEN, UNSEEN, None, unit_of(p.spec.unit)))
             continue
+        factor, unit = said_in(p.spec.unit, p.value)
         change = p.value / old.value - 1.0
         rows.append(
             (
                 _short(p),
-                with_error(old.value, old.std),
-                with_error(p.value, p.std),
+                _valued(old, factor),
+                _valued(p, factor),
                 percent(change).replace("-", "−") if np.isfinite(change) else None,
-                unit_of(p.spec.unit),
+                unit,
             )
         )
     return Table(["parameter", "before", "after", "change", "unit"], rows,
                  "Value ± standard error, without and with what was added.")  # fmt: skip
+
+
+def _valued(p: Parameter, factor: float) -> str:
+    return with_error(factor * p.value, None if p.std is None else factor * p.std)
 
 
 def _short(p: Parameter) -> str:

@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sk120stiff.explain.absolute.next_step import next_step_of_positions
 from sk120stiff.explain.absolute.run import Explained
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.measurements import Measurements
-from sk120stiff.show.figures.style import new_figure, styled
+from sk120stiff.show.figures import GapStep, gap_waterfall
+from sk120stiff.show.figures.budget import budget_bars
 from sk120stiff.show.report import (
     Items,
     KeyFigure,
     KeyFigures,
+    Note,
     Picture,
     Report,
     Section,
     Table,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from sk120stiff.show.wording import said_in
 
 VERDICTS = {
     "none": "The registered arm agrees with the positions: nothing is missing that they show.",
@@ -66,7 +66,7 @@ def positions_report(
         units=("", unit),
     )
     named = [
-        f"**{item.effect.id}** {item.effect.sentence()} P = {item.probability:.3f}; takes off "
+        f"{item.effect.sentence()} (`{item.effect.id}`) P = {item.probability:.3f}; takes off "
         f"{100 * item.gain.share:.1f} % of the held-out gap beside the others."
         + (f" Not told from: {', '.join(item.alternatives)}." if item.alternatives else "")
         for item in answer.named
@@ -75,15 +75,15 @@ def positions_report(
         f"Positions explained: {data}",
         [
             Section(
-                "Verdict",
+                "The answer",
                 [
                     figures,
-                    Picture(lambda: _bars(answer), "Held-out gap after each cause"),
-                    steps,
-                    *([families] if answer.families else []),
+                    Items(named or ["No cause is named."], ordered=bool(named)),
+                    Note(next_step_of_positions(answer), "note", "What to do now"),
                 ],
             ),
-            Section("Named", [Items(named or ["Nothing."])]),
+            Section("The gap, step by step", [_steps(answer), steps]),
+            *([_budget(answer, families)] if answer.families else []),
             Section("Values", [_values(answer)]),
             Section(
                 "What else was found",
@@ -108,23 +108,47 @@ def _values(answer: Explained) -> Table:
     reasons = unseen(answer.final)
     rows: list[tuple[object, ...]] = []
     for p in answer.final.fit.parameters:
+        factor, unit = said_in(p.spec.unit, p.value)
         if p.name in reasons:
-            rows.append((p.name, None, None, p.spec.unit, reasons[p.name]))
+            rows.append((p.name, None, None, unit, reasons[p.name]))
         else:
             far = (
                 "" if abs(p.internal) <= answer.final.problem.reach(p) else "more than is plausible"
             )
-            rows.append((p.name, p.value, p.std, p.spec.unit, p.note or far))
+            std = None if p.std is None else factor * p.std
+            rows.append((p.name, factor * p.value, std, unit, p.note or far))
     return Table(("parameter", "value", "±", "unit", "note"), rows, "Fitted exactly, together.")
 
 
-def _bars(answer: Explained) -> Figure:
-    with styled():
-        figure = new_figure(0.32 * len(answer.steps) + 0.8)
-        axes = figure.add_subplot()
-        place = np.arange(len(answer.steps))
-        axes.barh(place, [1e6 * step.heldout_rms for step in answer.steps], color="#4477aa")
-        axes.set_yticks(place, [step.label for step in answer.steps], fontsize=7)
-        axes.invert_yaxis()
-        axes.set_xlabel(f"rms per axis at poses left out [{answer.final.problem.unit}]")
-    return figure
+def _steps(answer: Explained) -> Picture:
+    """The gap falling from cause to cause, as in every report."""
+    first, end, unit = answer.steps[0], answer.steps[-1], answer.final.problem.unit
+    stated = answer.final.problem.stated_sigma
+    steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
+    return Picture(
+        lambda: gap_waterfall(steps, noise_floor=stated, unit=unit),
+        alt=f"Bars of the gap of {len(steps)} models; held out from {1e6 * first.heldout_rms:.3g} "
+        f"to {1e6 * end.heldout_rms:.3g} {unit} rms per axis.",
+        caption="Bars: positions that were fitted. Diamonds: poses left out."
+        + ("" if stated is None else " Dashed: the stated noise."),
+    )
+
+
+def _budget(answer: Explained, table: Table) -> Section:
+    """What every family brings, as a picture and a table."""
+    unit = answer.final.problem.unit
+    sizes = {name: 1e6 * share for name, share in answer.families.items()}
+    return Section(
+        "What takes the gap off",
+        [
+            Picture(
+                lambda: budget_bars(
+                    list(sizes), np.array(list(sizes.values())), np.zeros(len(sizes)),
+                    label=f"{unit} rms per axis at poses left out", named=list(sizes),
+                ),
+                alt="Bars: " + "; ".join(f"{n} {size:.3g} {unit}" for n, size in sizes.items()),
+                caption="What each family of causes takes off beside the others.",
+            ),
+            table,
+        ],
+    )  # fmt: skip

@@ -1,0 +1,45 @@
+"""What to do now that positions are explained: one paragraph for every verdict."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sk120stiff.explain.absolute.run import Explained
+
+
+def next_step_of_positions(answer: Explained) -> str:
+    """Plain sentences: what the model may be used for, and what to measure or to mend."""
+    first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
+    unit = answer.final.problem.unit
+    use = f"Use model.yaml: at poses that no fit saw it is off by {last:.3g} {unit} rms per axis"
+    if last < first:
+        use += f" where the registered arm alone is off by {first:.3g} {unit}"
+    said = [f"{use}."]
+    if answer.families:
+        largest = max(answer.families, key=lambda name: answer.families[name])
+        share = f"{1e6 * answer.families[largest]:.3g} {unit}"
+        said.append(f"Most of it is {largest}, {share}: look there first if the arm is to mend.")
+    if answer.verdict == "ambiguous":
+        if answer.following is not None:
+            one, other = answer.following.between
+            said.append(
+                f"Measure the readings of next_poses.csv, append them to the file and run this "
+                f"again: they tell {one} from {other}. Until then either name foretells alike."
+            )
+        else:
+            said.append("Take each open name as one of its class; readings of other kinds tell it.")
+    if answer.verdict == "outside":
+        said.append(
+            "Trust it no farther than poses like those measured: more is left than the noise makes."
+        )
+    if answer.remainder is None:
+        said.append(
+            "Repeat a few poses, or state the noise, so that what is left can be told from it."
+        )
+    elif answer.verdict == "outside":
+        said.append(
+            "To learn what the rest is: repeat a few poses, approach them from both sides, and "
+            "note the temperature."
+        )
+    return " ".join(said)
