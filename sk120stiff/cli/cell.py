@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -42,6 +43,15 @@ def opened_cell(robot: Robot, given: Path | None, *beside: Path | None) -> Cell:
         if (folder / NAME).is_file():
             return read_cell(folder / NAME, robot)
     return Cell()
+
+
+def bare(cell: Cell) -> Cell:
+    """Without a file: what the URDF says alone, and nothing kept clear of what is only guessed."""
+    if cell.source:
+        return cell
+    return replace(
+        cell, clearance=0.0, angle_margin=0.0, slide_margin=0.0, effort_share=1.0, pedestal=0.0
+    )
 
 
 def as_measured(robot: Robot, cell: Cell, known: Measurements | None) -> Cell:

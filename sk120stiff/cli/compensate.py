@@ -8,6 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from sk120stiff.cli.cell import CellOption, bare, opened_cell
 from sk120stiff.cli.compensate_path import (
     CHORD,
     LoadAxes,
@@ -30,6 +31,7 @@ from sk120stiff.cli.compensate_words import (
     doubt_notes,
     doubt_words,
     floor_of,
+    infeasible,
     largest,
     movable_joints,
     notes,
@@ -205,6 +207,7 @@ def command(
             show_default="none",
         ),
     ] = None,
+    cell: CellOption = None,
     feed: Annotated[
         str, typer.Option(metavar="SPEED", help="Feed where the path states none.")
     ] = FEED,
@@ -264,6 +267,9 @@ def command(
         )
     given, part, facts, _ = opened
     given = with_load_in_base(given, robot, nominal, load_axes, at)
+    around = bare(opened_cell(robot, cell, path))
+    held_at = given.wrench if at in (None, robot.tool_frame) else None
+    wrong = infeasible(robot, around, nominal, given, held_at)
     branch = branch_of(robot, nominal, ground)
     warn_of_branch(branch, given)
     with progress_bar("Compensating") as report:
@@ -317,6 +323,8 @@ def command(
             if reason
         ],
         "branch": branch_keys(branch, given, robot),
+        "cell": around.source or None,
+        "infeasible": wrong,
         "judged_by": str(against or model),
         "uncertainty": uncertainty_keys(judge) | doubt_keys(doubt),
         "assumed": facts,

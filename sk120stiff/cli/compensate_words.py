@@ -12,6 +12,7 @@ from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import Model
 from sk120stiff.model.prediction_table import blame_reason
+from sk120stiff.plan import Cell, feasible
 from sk120stiff.robot import Robot
 from sk120stiff.show.wording import um_or_less
 from sk120stiff.units import parse_values
@@ -24,7 +25,36 @@ from sk120stiff.workspace import (
     lowest_floor,
 )
 
+ASKED = 2000  # points of a path that are asked whether the arm can take them up
 LISTED = 10  # points that people are shown
+
+
+def infeasible(
+    robot: Robot, cell: Cell, a: Array, given: LoadedPath, wrench: Array | None
+) -> list[dict[str, object]]:
+    """Points of the path that the arm cannot take up or hold, with their lines; warns of them.
+
+    Of a long path `ASKED` points are asked, evenly spread.
+    """
+    rows = np.unique(np.linspace(0, len(a) - 1, min(len(a), ASKED)).astype(int))
+    rows = rows[np.isfinite(a[rows]).all(axis=1)]
+    if not len(rows):
+        return []
+    verdict = feasible(robot, cell, a[rows], None if wrench is None else wrench[rows])
+    wrong: list[dict[str, object]] = [
+        {"line": given.table.lines[k], "faults": list(faults)}
+        for k, faults in zip(rows, verdict.faults, strict=True)
+        if faults
+    ]
+    if wrong:
+        first = verdict.faults[int(np.argmin(verdict.ok))][0]
+        warnings.warn(
+            f"at {len(wrong)} of {len(rows)} points asked the arm cannot stand so or hold the "
+            f"load, first in line {wrong[0]['line']}: {first}",
+            ToolkitWarning,
+            stacklevel=2,
+        )
+    return wrong
 
 
 def doubt_notes(doubt: StandingUncertainty | None) -> dict[str, list[str]]:

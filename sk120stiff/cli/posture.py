@@ -10,7 +10,8 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.cli.cell import CellOption, bare, opened_cell
 from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
@@ -19,6 +20,7 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, seen_from
+from sk120stiff.plan import feasible
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     BestPosture,
@@ -113,13 +115,15 @@ def command(
             show_default="none",
         ),
     ] = None,
+    cell: CellOption = None,
     at: AtOption = None,
     seed: SeedOption = 0,
 ) -> Answer:
     """The stiffest or least deflected posture for a tool path.
 
     Searches through what the task leaves free: other branches of the arm, rotation about the tool's
-    axis, the place of the part. The worst point of the path counts.
+    axis, the place of the part. The worst point of the path counts. The arm does not run into
+    itself or what --cell says stands around it, and its motors hold the load.
 
     Example: sk120stiff posture model.yaml path.csv --tool-axis 0,0,-1 --minimise deflection
     --out best.csv --picture best.svg
@@ -155,6 +159,14 @@ def command(
         (margin,) = parse_values(limit_margin, "angle", where="--limit-margin", like="5 deg")
     arm = elastic_arm(believed, frame=at)
     freedom = None if place is None else _placement(place, given.position)
+    around = bare(opened_cell(robot, cell, path))
+
+    turned_with_it = freedom is not None and bool((freedom.upper > freedom.lower)[3:].any())
+    load = given.wrench if at in (None, robot.tool_frame) and not turned_with_it else None
+
+    def admits(a: Array) -> Mask:
+        return feasible(robot, around, a, load).ok
+
     with progress_bar("Searching") as report:
         found = best_posture(
             arm,
@@ -164,6 +176,7 @@ def command(
             limit_margin=float(margin),
             singularity_margin=singularity_margin,
             seed=seed,
+            admits=admits,
             progress=report,
         )
     notes = {
@@ -209,6 +222,7 @@ def command(
             "worst": float(found.admissible[-1]),
         },
         "out": str(out),
+        "cell": around.source or None,
         "picture": picture,
         "page": page,
     }

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -119,6 +120,7 @@ def best_posture(
     children: int = 8,
     rounds: int = 60,
     seed: int = 0,
+    admits: Callable[[Array], Mask] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> BestPosture:
     """Search the posture that serves a path best; the worst point of the path counts.
@@ -137,6 +139,7 @@ def best_posture(
         starts, kept, children, rounds: Effort: random postures in the beginning, those that go on,
             steps of each in a round.
         seed: Of the random numbers.
+        admits: Which of the poses (N, n) can be, as `plan.feasible` says; all by default.
 
     Raises:
         InputError: Nothing to minimise, or shapes that do not fit.
@@ -166,7 +169,13 @@ def best_posture(
             remedy="Check that the points are reachable (sk120stiff map), lower the margins, or "
             "leave more freedom.",
         )
-    pool = first.best(kept)
+    pool = first.best(kept, admits)
+    if not len(pool.objective):
+        raise Refusal(
+            f"each of {int(np.isfinite(first.objective).sum())} postures that pass the path runs "
+            "into the arm itself or something else, or asks too much of a motor",
+            remedy="Check the cell (sk120stiff plan --check), or leave more freedom.",
+        )
     passing = first.best(len(first.objective)).path
     admissible = np.sort(first.objective[np.isfinite(first.objective)])
     radius = np.full(len(pool.objective), FIRST_STEP)
@@ -176,7 +185,7 @@ def best_posture(
             (pool.path[:, 0] + noise[..., : arm.n]).reshape(-1, arm.n),
             judge.inside(pool.placement + noise[..., arm.n :] * judge.span).reshape(-1, 6),
         )
-        better = pool.improve(trial, children)
+        better = pool.improve(trial, children, admits)
         pool = better.pool
         radius = np.clip(radius * np.where(better.improved, GROW, SHRINK), LAST_STEP, FIRST_STEP)
         if progress:
@@ -192,19 +201,28 @@ class Pool:
     placement: Array
     objective: Array
 
-    def best(self, count: int) -> Pool:
+    def best(self, count: int, admits: Callable[[Array], Mask] | None = None) -> Pool:
         """The first `count` that pass, the best first."""
-        order = np.argsort(self.objective)[:count]
+        order = np.argsort(self.objective)
         order = order[np.isfinite(self.objective[order])]
+        if admits is not None:
+            fair = (int(k) for k in order if admits(self.path[k]).all())
+            order = np.fromiter(islice(fair, count), dtype=np.intp)
+        order = order[:count]
         return Pool(self.path[order], self.placement[order], self.objective[order])
 
-    def improve(self, trial: Pool, children: int) -> _Improved:
+    def improve(
+        self, trial: Pool, children: int, admits: Callable[[Array], Mask] | None = None
+    ) -> _Improved:
         """Each posture or the best of its children, which stand one after the other in `trial`."""
         k = len(self.objective)
         objectives = trial.objective.reshape(children, k)
         best = np.argmin(objectives, axis=0)
         pick = best * k + np.arange(k)
         improved = trial.objective[pick] < self.objective
+        if admits is not None:  # dear, so asked of those alone that would be kept
+            for row in np.flatnonzero(improved):
+                improved[row] = admits(trial.path[pick[row]]).all()
         return _Improved(
             Pool(
                 np.where(improved[:, None, None], trial.path[pick], self.path),

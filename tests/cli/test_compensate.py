@@ -160,3 +160,25 @@ def test_the_branch_is_printed_and_what_goes_below_is_warned_of(run: Run, tmp_pa
     refused = run("compensate", str(model), str(path), *out, "--start", "1,2 deg")
     assert refused.code == 2
     assert "--start" in refused.stderr
+
+
+def test_points_that_run_into_the_cell_are_told(run, tmp_path: Path) -> None:
+    """A table where the path goes: every line that touches it is named."""
+    cell = tmp_path / "cell.yaml"
+    cell.write_text(
+        "pedestal: none\nobstacles:\n- {name: table, box: [1, 3, 0.4], xyz: [1.6, 0, -0.6]}\n",
+        encoding="utf-8",
+    )
+    path = tmp_path / "path.csv"
+    path.write_text(
+        "point,x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n1,1600,-200,600,0,0,-490\n"
+        "2,1600,0,-500,0,0,-490\n",
+        encoding="utf-8",
+    )
+    model = "robots/motoman_sk120/model.yaml"
+    out = str(tmp_path / "out.csv")
+    found = run("compensate", model, str(path), "--cell", str(cell), "--out", out, "--json")
+    assert found.code == 0, found.stderr
+    (wrong,) = found.document["infeasible"]
+    assert wrong["line"] == 3 and any("table" in fault for fault in wrong["faults"])
+    assert "cannot stand so" in found.stderr

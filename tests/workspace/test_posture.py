@@ -176,3 +176,16 @@ def test_what_cannot_be_is_refused() -> None:
         best_posture(arm, PathTask(np.array([[1.5, 0.0, 0.2]])), minimise="deflection")
     with pytest.raises(InputError, match="cannot be minimised"):
         best_posture(arm, PathTask(np.array([[1.5, 0.0, 0.2]])), minimise="weight")
+
+
+def test_a_posture_that_is_not_admitted_is_not_chosen() -> None:
+    """What cannot stand is left, whatever it would gain; where nothing can, that is said."""
+    arm, path = soft_wrist(), PathTask(np.array([[1.5, 0.3, 0.2]]), axis=DOWN)
+    free = best_posture(arm, path, rounds=5, starts=64)
+    first = float(free.a[0, 5])
+    kept = best_posture(
+        arm, path, rounds=5, starts=64, admits=lambda a: np.abs(a[:, 5] - first) > 0.3
+    )
+    assert np.abs(kept.a[:, 5] - first).min() > 0.3 and kept.objective >= 0.999 * free.objective
+    with pytest.raises(Refusal, match="runs into"):
+        best_posture(arm, path, starts=32, admits=lambda a: np.zeros(len(a), dtype=bool))
