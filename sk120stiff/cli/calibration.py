@@ -6,13 +6,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
-from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
+from sk120stiff.identify.absolute.words import (
+    angle_gap,
+    findings,
+    gap_sentence,
+    known_calibration,
+    unseen,
+)
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, write_model
 
@@ -47,12 +55,13 @@ def calibration_answer(
     fit = found.fit
     if out is not None:
         write_model(replace(known_calibration(found), provenance=provenance(data, readings)), out)
-    reasons = unseen(found)
+    reasons, angles = unseen(found), angle_gap(found)
     stated = found.problem.stated_sigma if len(found.problem.lengths) else None
     document = {
         "robot": model.robot.name,
         "parameters": parameter_rows(fit, unseen=reasons),
-        "rms_um": fit.rms * 1e6,
+        "rms_um": fit.rms * 1e6 if len(found.problem.lengths) else None,
+        "rms_urad": float(np.sqrt(np.mean(angles**2)) * 1e6) if len(angles) else None,
         "mean_distance_um": _mean(found),
         "placed_rms_um": None if found.placed is None else found.placed.rms * 1e6,
         "sigma_um": None if stated is None else stated * 1e6,

@@ -17,7 +17,7 @@ from sk120stiff.explain.absolute.document import gaps_table, save_positions
 from sk120stiff.explain.absolute.next_step import next_step_of_positions
 from sk120stiff.explain.absolute.run import Explained, explain_positions, heldout_on
 from sk120stiff.files import csv_text, write_atomically
-from sk120stiff.identify.absolute.calibrate import in_gravity
+from sk120stiff.identify.absolute.start import in_gravity
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model
@@ -57,14 +57,17 @@ def positions_answer(
         pages = _pages(answer, readings, data, out) if report else {}
         tell(100, 100)
     parts = _parts(answer, readings, out)
-    held: dict[str, float] | None = None
+    held: dict[str, float | None] | None = None
     if others is not None:
         rms, distance = heldout_on(answer.final, others)
-        held = {"rms_um": rms * 1e6, "mean_distance_um": distance * 1e6}
-        parts.append(
-            f"Held-out file: {1e6 * rms:.3g} µm rms per axis, {1e6 * distance:.3g} µm mean "
-            "distance."
-        )
+        unit = answer.final.problem.unit
+        whole = np.isfinite(distance)
+        held = {
+            f"rms_{'um' if unit == 'µm' else 'urad'}": rms * 1e6,
+            "mean_distance_um": distance * 1e6 if whole else None,
+        }
+        mean = f", {1e6 * distance:.3g} µm mean distance" if whole else ""
+        parts.append(f"Held-out file: {1e6 * rms:.3g} {unit} rms per axis{mean}.")
     document = {**document, "holdout": held, "out": out, "model": out / "model.yaml", **pages}
     return Answer(document, parts)
 
@@ -141,13 +144,15 @@ def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]
             f"{100 * item.gain.share:.1f} %)"
         )
         shown += [f"  or {other} (not told apart here)" for other in item.alternatives]
+    whole = np.isfinite(answer.steps[-1].heldout_distance)
     rows = [
-        (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)
+        (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)[: 3 + whole]
         for s in answer.steps
     ]
-    columns = ["model", "fitted", "held out", "mean distance"]
+    columns = ["model", "fitted", "held out", "mean distance"][: 3 + whole]
     unit = answer.final.problem.unit
-    shown.append(table(f"Gap [{unit}], rms per axis and mean distance held out", columns, rows))
+    title = f"Gap [{unit}], rms per axis" + (" and mean distance held out" if whole else "")
+    shown.append(table(title, columns, rows))
     if answer.families:
         told = ", ".join(f"{name} {1e6 * share:.3g}" for name, share in answer.families.items())
         shown.append(f"What each takes off beside the others [{unit}]: {told}.")

@@ -20,7 +20,7 @@ def uncertainty_keys(model: Model) -> dict[str, object]:
     return {
         "stored": True,
         "source": known.source,
-        "noise_um": known.noise * 1e6,
+        "noise_um": None if known.noise is None else known.noise * 1e6,
         "coverage_factor_95": known.reach(0.95),
         "remainder": {"reason": NO_REMAINDER}
         if left is None

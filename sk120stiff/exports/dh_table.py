@@ -95,7 +95,7 @@ def table_of(model: Model, geometry: Geometry) -> Table:
             slope = difference / (2.0 * _STEP)
             by_shift[..., k] = np.where(np.abs(slope) > _ROUNDING, slope, 0.0)
         by_parameter = by_shift @ geometry.by_parameter
-        floor = np.full(len(COLUMNS), model.uncertainty.noise)
+        floor = np.full(len(COLUMNS), model.uncertainty.floor)
         floor[list(ANGLES)] /= arm_length(robot)
         std = spread(by_parameter @ L, by_parameter @ B, floor)
         for free in (0, len(geometry.joints) + 1):

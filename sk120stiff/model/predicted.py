@@ -107,7 +107,7 @@ def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
         return Predicted(model.predict(situation))
     displacement, derivative = model.predict_with_sensitivities(situation)
     L, B = known.factors(model.names)
-    std = spread(derivative @ L, derivative @ B, known.noise)
+    std = spread(derivative @ L, derivative @ B, known.floor)
     return Predicted(
         displacement,
         std,

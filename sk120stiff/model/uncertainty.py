@@ -23,6 +23,7 @@ from scipy import stats
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 
+SMALL = 1e-6  # m; what nobody asks about where only angles were read
 HIDDEN = 0.1  # variance that an unseen change may bring, over what is known of it, before it counts
 ROUNDED = 1e-8  # least eigenvalue of a correlation matrix that rounding may have made of zero
 
@@ -86,7 +87,7 @@ class Uncertainty:
         values: (P,) internal values that this belongs to.
         covariance: (P, P) of the internal values, of what the readings show.
         unseen: (b, P) plausible changes of the internal values that the readings do not show.
-        noise: Standard uncertainty of one reading per axis [m].
+        noise: Standard uncertainty of one reading per axis [m]; None where no reading was a length.
         freedom: Degrees of freedom of the noise, where it was estimated; None: stated.
         remainder: What the model leaves unexplained; None where that could not be told from noise.
         source: Which readings all of this comes from, in words.
@@ -96,7 +97,7 @@ class Uncertainty:
     values: Array
     covariance: Array
     unseen: Array
-    noise: float
+    noise: float | None
     freedom: float | None = None
     remainder: Remainder | None = None
     source: str = field(default="")
@@ -116,8 +117,13 @@ class Uncertainty:
             raise InputError("the covariance is not symmetric")
         if (np.diag(self.covariance) < 0.0).any() or self._eigen[0].min(initial=0.0) < -ROUNDED * P:
             raise InputError("the covariance is not positive semi-definite: no such readings exist")
-        if not 0.0 < self.noise < np.inf:
+        if self.noise is not None and not 0.0 < self.noise < np.inf:
             raise InputError(f"a noise of {self.noise} m is not positive")
+
+    @property
+    def floor(self) -> float:
+        """Size of a displacement that nobody asks about [m]: the noise of a reading."""
+        return SMALL if self.noise is None else self.noise
 
     @cached_property
     def std(self) -> Array:

@@ -58,7 +58,7 @@ class UncertaintySection(_Strict):
     """The section as it stands in a file."""
 
     source: str = ""
-    noise_um: float
+    noise_um: float | None
     degrees_of_freedom: float | None = None
     parameters: list[_Parameter]
     correlation: list[list[float]]
@@ -113,7 +113,7 @@ def uncertainty_document(model: Model) -> dict[str, object] | None:
     left = known.remainder
     return {
         "source": known.source,
-        "noise_um": _short(known.noise * 1e6),
+        "noise_um": None if known.noise is None else _short(known.noise * 1e6),
         "degrees_of_freedom": known.freedom,
         "parameters": rows,
         "correlation": correlation,
@@ -213,7 +213,7 @@ def _read(section: UncertaintySection) -> Uncertainty:
         unseen=np.array([[row.get(n, 0.0) for n in names] for row in section.unseen]).reshape(
             -1, P
         ),
-        noise=section.noise_um * 1e-6,
+        noise=None if section.noise_um is None else section.noise_um * 1e-6,
         freedom=section.degrees_of_freedom,
         remainder=None
         if left is None

@@ -73,7 +73,7 @@ def doubt_of(model: Model, poses: Array) -> Doubt | None:
     if known is None:
         return None
     return Doubt(
-        *known.factors(model.names), _changes(model, poses[:1]), known.noise, known.remainder
+        *known.factors(model.names), _changes(model, poses[:1]), known.floor, known.remainder
     )
 
 

@@ -59,7 +59,7 @@ def standing_uncertainty(
     std = np.full(len(a), np.nan)
     blame: list[str] = []
     for rows, derivative in _derivatives(physical, a, load, at):
-        axes = spread(derivative @ L, derivative @ B, known.noise)
+        axes = spread(derivative @ L, derivative @ B, known.floor)
         std[rows] = np.linalg.norm(axes, axis=1)
         if np.isinf(axes).any():
             blame += blamed(known, physical.names, derivative[np.isinf(axes).any(axis=1)])

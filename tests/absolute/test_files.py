@@ -11,7 +11,8 @@ import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute.candidates import candidates_at
 from sk120stiff.explain.options import Options
-from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, options_of
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
+from sk120stiff.identify.absolute.start import options_of
 from tests.absolute.arm import ORIGINS, Arm, Array, errors, poses, tracked, write
 from tests.absolute.test_forms import FIT, NOISE, SIGMA
 

@@ -16,7 +16,7 @@ from sk120stiff.explain.absolute.document import verdict_of_positions
 from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.words import gap_sentence, known_calibration
-from sk120stiff.model import Model
+from sk120stiff.model import Model, write_model
 from tests.absolute.arm import NAMES, TURN, Arm, Array, G, errors, poses, tracked, write
 
 SIGMA = 2e-5
@@ -291,6 +291,10 @@ def test_angles_alone_have_their_own_unit(tmp_path: Path) -> None:
     assert told["gap"]["unit"] == "urad" and told["remainder"]["rms_um"] is None
     assert told["gap"]["steps"][0]["heldout_rms"] > 50.0
     assert "µm" not in " ".join(answer.left_over())
+    known = known_calibration(answer.final)
+    write_model(known, tmp_path / "model.yaml")
+    again = sk.read_model(tmp_path / "model.yaml").uncertainty
+    assert again is not None and again.noise is None and again.floor > 0.0
 
 
 def test_markers_of_which_no_place_is_known(tmp_path: Path) -> None:

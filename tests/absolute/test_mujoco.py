@@ -11,7 +11,7 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.effects import situation_of
-from sk120stiff.identify.absolute.calibrate import in_gravity
+from sk120stiff.identify.absolute.start import in_gravity
 from sk120stiff.model.pose_reading import read_poses
 from tests.absolute.arm import Array, urdf
 from tests.absolute.test_bad_input import PUBLIC

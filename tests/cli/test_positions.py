@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 import sk120stiff as sk
 from sk120stiff.cli.positions import yielding
 from sk120stiff.model import Model
 from sk120stiff.show.scene.building import scene_of_model
-from tests.absolute.arm import Arm, poses, tracked, write
+from tests.absolute.arm import Arm, errors, poses, tracked, write
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 NOISE = "noise: {sigma: 20, unit: um}\n"
@@ -80,3 +81,30 @@ def test_an_arm_of_which_play_alone_is_named_has_its_scene(tmp_path: Path) -> No
         assert scene_of_model(yielding(model), title="six").elastic is not None
     springs = sk.base_model(robot)
     assert yielding(springs) is springs
+
+
+def test_angles_alone_are_told_in_their_own_unit_everywhere(run, tmp_path: Path) -> None:
+    a, rng = poses(50, 3), np.random.default_rng(1)
+    up = errors(1).stands(a)[1][:, 2, 1]
+    read = np.degrees(np.arcsin(up) + 2e-5 * rng.normal(size=len(a)))
+    cells = [f"{v:.9f},0,1,0" for v in read[np.abs(read) < 80]]
+    a = a[np.abs(read) < 80]
+    nothing = np.full((len(a), 3), np.nan)
+    path = write(tmp_path, a, nothing, "massless", more=",inc[deg],vx,vy,vz", cells=cells)
+    told = run("identify", str(path), "--json").document
+    assert told["rms_um"] is None and 1.0 < told["rms_urad"] < 60.0
+    assert told["sigma_um"] is None and told["mean_distance_um"] is None
+    outcome = run("explain", str(path), "--holdout", str(path), "--out", str(tmp_path / "out"))
+    assert outcome.code == 0, outcome.stderr
+    text = outcome.stdout + (tmp_path / "out" / "report.html").read_text().split("<footer")[0]
+    assert "µrad" in text and "µm" not in text and " nan" not in text
+    assert "mean distance" not in text
+    known = yaml.safe_load((tmp_path / "out" / "model.yaml").read_text())["uncertainty"]
+    assert known["noise_um"] is None
+    again = run(
+        "explain", str(path), "--holdout", str(path), "--out", str(tmp_path / "o"), "--no-report",
+        "--json",
+    ).document  # fmt: skip
+    assert again["gap"]["unit"] == "urad" and set(again["holdout"]) == {
+        "rms_urad", "mean_distance_um"
+    }  # fmt: skip

@@ -26,8 +26,9 @@ from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.explain.absolute.linear import FAINT, Linear
 from sk120stiff.explain.options import Options
 from sk120stiff.identify import pose_parts
-from sk120stiff.identify.absolute.calibrate import Calibration, options_of
+from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import frames_off
+from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
 

@@ -11,13 +11,13 @@ from scipy.spatial.transform import Rotation
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
-from sk120stiff.effects.base import Options
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.gauge import Frozen, least_set
 from sk120stiff.identify.absolute.left_out import doubted
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.selection import waves_that_show
 from sk120stiff.identify.absolute.settle import settle
+from sk120stiff.identify.absolute.start import in_gravity, loaded, started
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -25,7 +25,7 @@ from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.measurements.placing_distances import EACH
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
 from sk120stiff.measurements.turned import refuse_other_turns
-from sk120stiff.model import Model, Parameter
+from sk120stiff.model import Model
 
 START = {  # m or rad
     "position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4, "inclination": 1e-4,
@@ -33,7 +33,6 @@ START = {  # m or rad
 SAME = 0.2  # change of the logarithm of a noise that is none
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
 FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is wild
-REGISTERED = "registered"
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +120,7 @@ def calibrate(
         raise _nowhere(readings)
     wild = np.zeros(readings.n_readings, dtype=bool) if placed is None else placed.wild
     start = started(model, readings, placed, geometry=geometry, catalogue=catalogue)
-    start, unloaded = _loaded(start, readings)
+    start, unloaded = loaded(start, readings)
     kept_back = set(freedom)
     start = replace(
         start,
@@ -165,95 +164,6 @@ def _nowhere(readings: Measurements) -> InputError:
         where=str(readings.path or "measurements"),
         remedy=remedy,
     )
-
-
-def in_gravity(model: Model, gravity: Array | None) -> Model:
-    """The model under the acceleration (3,) that a file states in base axes [m/s²]."""
-    if gravity is None:
-        return model
-    robot = model.robot
-    own = robot.gravity_in_base
-    scale = float(np.linalg.norm(own))
-    if not gravity.any() or scale == 0.0:
-        return replace(model, robot=replace(robot, gravity=np.zeros(3)), uncertainty=None)
-    # `Robot.gravity` is in axes of the root: turn what the file says as the root is turned.
-    columns = [replace(robot, gravity=axis).gravity_in_base for axis in np.eye(3)]
-    turned = np.asarray(np.linalg.solve(np.array(columns).T, gravity), dtype=np.float64)
-    return replace(model, robot=replace(robot, gravity=turned), uncertainty=None)
-
-
-def options_of(readings: Measurements) -> Options:
-    """What effects may be told of readings."""
-    said = readings.absolute
-    labels = () if said is None or said.groups is None else tuple(dict.fromkeys(said.groups))
-    return Options(
-        poses=readings.poses,
-        timed=readings.time is not None,
-        series=labels,
-        thermal=said is not None and said.temperature is not None,
-    )
-
-
-def started(
-    model: Model,
-    readings: Measurements,
-    placed: Placing | None,
-    *,
-    geometry: bool,
-    catalogue: Catalogue = CATALOGUE,
-) -> Model:
-    """The model with frame, marker, payload and geometry beside what it has."""
-    said, robot, told = readings.absolute, model.robot, options_of(readings)
-    if said is None:
-        return model
-    present = {effect.id for effect in model.effects}
-
-    def joined(model: Model, name: str, where: str, values: Array | None = None) -> Model:
-        effect = catalogue.effect(robot, name, where, told)
-        if effect.id in present or not effect.parameters:
-            return model
-        internal = np.zeros(len(effect.parameters)) if values is None else values
-        return model + [
-            Parameter(effect, spec, float(value), origin=REGISTERED)
-            for spec, value in zip(effect.parameters, internal, strict=True)
-        ]
-
-    if said.frame == "unknown" and placed is not None:
-        frame = np.concatenate([placed.shift, placed.turn])
-        model = joined(model, "tracker_frame", "tracker", frame)
-    if said.fit_point:
-        marker = np.zeros(3) if placed is None else placed.marker
-        model = joined(model, "tool_offset", robot.tool_frame, marker)
-        if said.groups is not None:
-            apart = None if placed is None or len(placed.apart) == 1 else placed.apart[1:].ravel()
-            model = joined(model, "marker_shift", robot.tool_frame, apart)
-    elif said.series is not None and len(set(said.series)) > 1:
-        model = joined(model, "marker_shift", robot.tool_frame)
-    if said.fit_payload:
-        model = joined(model, "payload", robot.tool_frame)
-    if geometry:
-        for where in catalogue["joint_frame"].places(robot):
-            model = joined(model, "joint_frame", where)
-    return model
-
-
-def _loaded(model: Model, readings: Measurements) -> tuple[Model, list[str]]:
-    """The model without springs where nothing bends them, and a sentence on that."""
-    said = readings.absolute
-    weighs = model.robot.mechanism().chain.weighs and model.robot.gravity.any()
-    hung = said is not None and bool(said.payload.any()) and bool(model.robot.gravity.any())
-    if weighs or hung or readings.wrench.any():
-        return model, []
-    springs = [effect.id for effect in model.effects if isinstance(effect, Elastic)]
-    for name in springs:
-        model = model.without(name)
-    why = (
-        "the URDF states no masses" if not model.robot.mechanism().chain.weighs else "gravity is 0"
-    )
-    return model, [
-        f"Nothing bends this arm as far as is known: {why}, and no payload and no load is stated. "
-        "Springs cannot be told from these positions; geometry can."
-    ]
 
 
 def _fitted(

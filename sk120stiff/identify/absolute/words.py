@@ -25,7 +25,8 @@ SHARED = "these positions tell it together with errors of geometry only"
 def known_calibration(found: Calibration) -> Model:
     """The fitted model with its uncertainty, as it is written to a file."""
     fit = found.fit
-    sigma = found.problem.stated_sigma or fit.rms
+    problem = found.problem
+    sigma = problem.stated_sigma or fit.rms if len(problem.lengths) else None
     source = f"{found.problem.situation.count} readings of positions"
     return fit.model.known(known_estimates(fit, sigma, source))
 

@@ -46,12 +46,12 @@ def known_model(fit: Fit) -> Model:
     return fit.model.known(known)
 
 
-def known_estimates(fit: Fit, sigma: float, source: str) -> Uncertainty:
+def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     """What the readings show of the estimates, and what they do not.
 
     Args:
         fit: A fit with a known size of its noise.
-        sigma: Standard uncertainty of one reading per axis [m].
+        sigma: Standard uncertainty of one reading per axis [m]; None where none is a length.
         source: Which readings it comes from, in words.
     """
     problem = fit.problem

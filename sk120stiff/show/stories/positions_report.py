@@ -50,14 +50,16 @@ def positions_report(
             ),
         ]
     )
+    shown = 3 + bool(np.isfinite(away))
     steps = Table(
-        ("model", "fitted", "held out", "mean distance"),
+        ("model", "fitted", "held out", "mean distance")[:shown],
         [
-            (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)
+            (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)[:shown]
             for s in answer.steps
         ],
-        "The gap as one cause after the other joins, rms per axis and mean distance.",
-        units=("", unit, unit, "µm"),
+        "The gap as one cause after the other joins, rms per axis"
+        + (" and mean distance." if shown > 3 else "."),
+        units=("", unit, unit, "µm")[:shown],
     )
     families = Table(
         ("family", "takes off"),
