@@ -9,10 +9,13 @@ from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect, situation_of
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import Options, explain
+from sk120stiff.explain.judge import imitation
 from sk120stiff.explain.judge.attribution import _objection as objection
 from sk120stiff.explain.judge.attribution import findings_of
 from sk120stiff.explain.judge.beside_form import beside_model_form
+from sk120stiff.explain.judge.imitation import _Lineup as Lineup
 from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
+from sk120stiff.explain.localise.suspects import Suspect
 from sk120stiff.explain.select.stepwise import attempt, refit
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, ModelForm
@@ -146,3 +149,25 @@ def test_beside_model_form_error_a_name_is_at_few_places(springs):
         findings, _ = findings_of(found, seed=0)
         many = replace(findings[0], alternatives=tuple(each.id for each in candidates))
         assert (objection(found, many, [], -np.inf) is None) == stands
+
+
+def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(springs):
+    """Alone against the gap it would lose; with the foreign cause let in beside it, it wins."""
+    found = fitted(springs, hidden(TILT), "joint_tilt", "joint_2_l")
+    foreign, mimic, true = np.eye(3)
+    true = (true + 0.8 * mimic + 0.4 * foreign) / np.linalg.norm([1.0, 0.8, 0.4])
+    columns = np.stack([true, foreign, mimic + 0.9 * foreign], axis=1)
+    columns /= np.linalg.norm(columns, axis=0)
+    gap = 10.0 * columns[:, 0] + 30.0 * foreign
+    line = Lineup(
+        suspects=tuple(Suspect("place", name, np.zeros((1, 3, 1)), gap, "") for name in "fm"),
+        gram=columns.T @ columns,
+        moment=columns.T @ gap,
+        names=[np.array([0])],
+        parts=[np.array([1]), np.array([2])],
+        unit=1.0,
+    )
+    assert line.score([0], 0) < line.score([], 1) < line.score([0])
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(imitation, "_line_up", lambda *_: line)
+        assert instead_of(found, [named(found)]) is None

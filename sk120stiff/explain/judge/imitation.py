@@ -47,7 +47,7 @@ class Instead:
 
     Attributes:
         name: Completes the sentence "The gap goes with ...".
-        better: Evidence (BIC) by which it wins.
+        better: Evidence (BIC) by which it wins, beyond what it needs.
         effects: Ids of the effects to which it leaves hardly anything.
     """
 
@@ -107,8 +107,9 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
     With every suspect in the model those names leave it, one at a time, to which it leaves no
     evidence, or hardly any of their length. A suspect that is the free form of a name's own law
     says what the name says, and is no reason against it. The strongest name has to be beaten
-    clearly. Beside model-form error a cause without a name is at work for certain and needs no
-    evidence of its own: a further name has to do better than it.
+    clearly, also by all names beside any other suspect: a cause without a name may stand beside
+    them. Beside model-form error such a cause is at work for certain and needs no evidence of its
+    own: a further name has to do better than it.
 
     Args:
         fit: The fitted model.
@@ -118,7 +119,8 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
     everything = range(len(names))
     whole = line.score(everything)
     alone = [line.takes(everything) - line.takes(set(everything) - {e}) for e in everything]
-    found = []
+    found: list[Instead] = []
+    beside = 0.0  # the best evidence with all names in the model
     for k, suspect in enumerate(line.suspects):
         kept = list(everything)
         while True:
@@ -133,11 +135,14 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
                 break
             kept.remove(min(idle, key=lambda e: losses[e]))
         better = whole - line.score(kept, k)
-        beside = bool(fit.problem.noise.form) and 0 in kept
-        if len(kept) < len(names) and better > (0.0 if beside else BETTER):
-            fallen = tuple(names[e].id for e in everything if e not in kept)
-            found.append(Instead(suspect.name, better, fallen))
-    return max(found, key=lambda each: each.better, default=None)
+        fallen = tuple(names[e].id for e in everything if e not in kept)
+        if fallen:
+            certain = bool(fit.problem.noise.form) and 0 in kept
+            found.append(Instead(suspect.name, better - (0.0 if certain else BETTER), fallen))
+        else:
+            beside = max(beside, better)
+    won = [each for each in found if each.better > (beside if names[0].id in each.effects else 0.0)]
+    return max(won, key=lambda each: each.better, default=None)
 
 
 @dataclass(frozen=True, eq=False)
