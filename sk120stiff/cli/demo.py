@@ -232,6 +232,7 @@ def _files(written: Mapping[str, object]) -> list[object]:
 
 
 def _parts(made: Demo) -> list[object]:
+    from sk120stiff.show.stories.demo_report import demo_lead
     from sk120stiff.show.wording import with_error
 
     given = {p.name: p for p in made.paper.parameters}
@@ -244,6 +245,7 @@ def _parts(made: Demo) -> list[object]:
     gaps.append(("all", 1e6 * made.rms(made.paper), 1e6 * made.rms(made.found.model)))
     answer = made.answer
     shown: list[object] = [
+        demo_lead(made),
         table("1. Gap [µm rms per axis]", ["", "paper's springs", "identified"], gaps),
         table("2. Springs [N·m/rad]", ["", "paper", "identified"], springs),
         made.of_the_gain(),

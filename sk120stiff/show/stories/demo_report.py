@@ -40,7 +40,7 @@ from sk120stiff.show.wording import chance, counted, number, percent, um, with_e
 
 NAMEABLE = 5.0  # √λ at which an effect can usually be named
 _SHORT = {
-    "none": ("no name", "verdict: none"),
+    "none": ("cannot be told", "here; verdict: none"),
     "named": ("named", "verdict: named"),
     "ambiguous": ("open", "verdict: ambiguous"),
     "outside": ("outside", "no effect explains it"),
@@ -92,26 +92,25 @@ def demo_report(
 
 
 def demo_lead(demo: Demo) -> str:
-    """The demo in three sentences."""
-    before, after = demo.rms(demo.paper), demo.rms(demo.found.model)
-    said = (
-        f"The springs that the paper gives miss its measured deflections by {um(before)} µm rms "
-        f"per axis; springs identified from these readings miss them by {um(after)} µm. "
-    )
+    """What the demo found in the paper's data, in one sentence."""
+    before, after = (um(demo.rms(model)) for model in (demo.paper, demo.found.model))
     poses = counted(len(demo.found.problem.situation.poses), "pose")
+    moved = (
+        f"Springs identified from the paper's readings bring its gap from {before} to {after} µm "
+        "rms per axis"
+    )
     if demo.answer.verdict == "ambiguous":
         names = [f.effect.id for f in demo.answer.findings]
         names += [name for f in demo.answer.findings for name in f.alternatives]
         fitting = listed([f"`{name}`" for name in dict.fromkeys(names)], "or")
-        return said + f"Something may be missing, but {poses} cannot tell what: {fitting} would do."
+        return f"{moved}, and which of {fitting} would close the rest, {poses} cannot tell."
     if demo.answer.verdict != "none":
-        return said + lead_of(demo.answer)
+        return f"{moved}. {lead_of(demo.answer)}"
     if demo.noise is None or demo.chance is None:
-        return said + f"With {poses} nothing can be named as missing."
-    return said + (
-        f"The noise, by {demo.answer.yardstick.name}, makes {um(demo.noise)} µm. Whether the rest "
-        f"is real, and what it is, {poses} cannot tell: no effect of the catalogue earns its name "
-        "here."
+        return f"{moved}, and whether anything is missing beyond them, {poses} cannot tell."
+    return (
+        f"{moved}; noise alone makes {um(demo.noise)} µm, and whether anything is missing beyond "
+        f"them, {poses} cannot tell (p = {chance(demo.chance)})."
     )
 
 
