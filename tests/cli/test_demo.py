@@ -145,7 +145,11 @@ def test_the_report_tells_four_acts_and_its_limits(demo) -> None:
                     "4. The proof: a hidden cause"):  # fmt: skip
         assert heading in text
     gap = document["gap_um"]
-    assert f"by {gap['paper']:.1f} µm rms" in text and f"by {gap['identified']:.1f} µm" in text
+    (lead,) = re.findall(r'<p class="lead">(.*?)</p>', page)
+    first = unescape(lead).partition(". ")[0]  # one sentence: what was found, and what was not
+    assert f"from {gap['paper']:.1f} to {gap['identified']:.1f} µm rms per axis" in first
+    assert f"noise alone makes {gap['noise_floor']:.1f} µm" in first
+    assert "whether anything is missing beyond them, 3 poses cannot tell" in first
     assert ("What 'none' means here" in text) == (document["verdict"] == "none")
     assert ("Thin ground" in text) == bool(document["effects"])
     assert "force_scale:sensor and reading_scale:tracker : absorbed whole" in text
@@ -156,6 +160,7 @@ def test_the_report_tells_four_acts_and_its_limits(demo) -> None:
 
 def test_pages_load_nothing(demo) -> None:
     out, _ = demo
+    assert all(page.stat().st_size < 3e6 for page in out.rglob("*.html"))
     for name in ("report.html", "scene.html"):
         outline = Outline((out / name).read_text(encoding="utf-8"))
         for _, attributes in outline.tags:

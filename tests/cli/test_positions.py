@@ -37,6 +37,8 @@ def test_the_command_writes_its_folder(run, tmp_path: Path) -> None:
     assert verdict["remainder"]["interval_95"][0] < 10.0  # beside a noise of 20 µm, which is stated
     assert "Left beyond the stated noise" in outcome.stdout
     assert "looks for" not in outcome.stdout
+    assert "What to do now: Use model.yaml" in outcome.stdout
+    assert "What to do now" in (out / "report.html").read_text()
     marker = [p for p in verdict["parameters"] if p["name"].startswith("tool_offset")]
     assert len(marker) == 3 and max(abs(p["value"]) for p in marker) > 0.1  # m
     assert all(p["plausible"] for p in marker)

@@ -19,7 +19,10 @@ def next_step_of_positions(answer: Explained) -> str:
     if answer.families:
         largest = max(answer.families, key=lambda name: answer.families[name])
         share = f"{1e6 * answer.families[largest]:.3g} {unit}"
-        said.append(f"Most of it is {largest}, {share}: look there first if the arm is to mend.")
+        said.append(
+            f"What takes off most is {largest}, {share}: look there first if the arm is to be "
+            "mended."
+        )
     if answer.verdict == "ambiguous":
         if answer.following is not None:
             one, other = answer.following.between

@@ -35,7 +35,14 @@ def budget_bars(
         panel = figure.subplots()
         rows = np.arange(len(names))
         colours = [palette.NAMED if name in named else palette.YIELDS for name in names]
-        panel.barh(rows, sizes, xerr=errors, color=colours, ecolor=palette.INK, capsize=3)
+        panel.barh(
+            rows,
+            sizes,
+            xerr=errors if np.any(errors) else None,
+            color=colours,
+            ecolor=palette.INK,
+            capsize=3,
+        )
         panel.set_yticks(rows, list(names))
         panel.set_ylim(len(names) - 0.4, -0.6)
         panel.set_xlabel(label)

@@ -149,7 +149,6 @@ def _budget(answer: Explained, table: Table) -> Section:
                     label=f"{unit} rms per axis at poses left out", named=list(sizes),
                 ),
                 alt="Bars: " + "; ".join(f"{n} {size:.3g} {unit}" for n, size in sizes.items()),
-                caption="What each family of causes takes off beside the others.",
             ),
             table,
         ],
