@@ -29,11 +29,13 @@ from sk120stiff.plan import (
     d_optimal,
     feasible_pool,
     lowest_points,
+    promised,
     random_choice,
     rivalry,
     to_be_taken,
     well_spread,
 )
+from sk120stiff.plan.design import refuse_count
 from sk120stiff.units import parse_size, parse_values
 
 DRAWS = 50  # random and well-spread choices that a plan is held against
@@ -44,9 +46,8 @@ def command(
     model: Annotated[
         Path | None, typer.Option("--model", metavar="MODEL", help="Model file (YAML).")
     ] = None,
-    count: Annotated[
-        int | None, typer.Option(min=1, help="Number of readings (pose and load each).")
-    ] = None,
+    count: Annotated[int | None, typer.Option(min=1, help="Number of poses.")] = None,
+    loads: Annotated[int, typer.Option(min=1, help="Number of loads at each pose.")] = 1,
     check: Annotated[
         Path | None,
         typer.Option(
@@ -164,9 +165,9 @@ def command(
     before = None if known is None else Pool(situation_of(start.robot, known.masked()))
     with progress_bar("plan"):
         if between is None:
-            chosen = _precise(start, pool, before, wanted, count, sigma, seed)
+            chosen = _precise(start, pool, known, wanted, (count, loads), sigma, seed)
         else:
-            chosen = _telling(start, pool, before, between, count, sigma, seed)
+            chosen = _telling(start, pool, before, between, (count, loads), sigma, seed)
     rows, document, said = chosen
     poses, plan = _plan(start, pool, rows, known)
     heights = lowest_points(start.robot, plan.joints, at, within)
@@ -194,9 +195,9 @@ Chosen = tuple[Sequence[int], dict[str, object], list[object]]
 def _precise(
     model: Model,
     pool: Pool,
-    before: Pool | None,
+    known: Measurements | None,
     wanted: Sequence[str] | None,
-    count: int,
+    count: tuple[int, int],
     sigma: float,
     seed: int,
 ) -> Chosen:
@@ -204,15 +205,23 @@ def _precise(
     for text in wanted or ():
         model, found = named_parameters(model, text)
         names += found
+    before = None if known is None else Pool(situation_of(model.robot, known.masked()))
     design = d_optimal(
-        model, pool, count=count, sigma=sigma, parameters=names or None, known=before
+        model, pool, count=count[0], loads=count[1], sigma=sigma, parameters=names or None,
+        known=before,
+    )  # fmt: skip
+    random, spread = _held_against(design.gain_over, pool, len(design.rows), seed)
+    zero = "unknown" if known is None else known.zero
+    plan = to_be_taken(model.robot, pool, design.rows, zero=zero)
+    every = dict(
+        zip((model.names[k] for k in model.free), promised(model, plan, sigma, known), strict=True)
     )
-    random, spread = _held_against(design.gain_over, pool, count, seed)
     expected: list[dict[str, object]] = []
     rows: list[tuple[object, ...]] = []
     chosen = pool.situation.rows(np.array(design.rows, dtype=np.intp))
     blind: list[object] = []
-    for name, std in zip(design.parameters, design.std, strict=True):
+    for name in design.parameters:
+        std = every[name]
         p = model.parameter(name)
         public, unit = p.spec.public_std(p.internal, float(std)), p.spec.unit
         why = why_unseen(chosen, p)
@@ -254,18 +263,19 @@ def _telling(
     pool: Pool,
     before: Pool | None,
     between: str,
-    count: int,
+    count: tuple[int, int],
     sigma: float,
     seed: int,
 ) -> Chosen:
     first, second = two_effects(model, between)
     rivals = rivalry(model, first, second, pool, sigma=sigma, known=before)
-    choice = rivals.best(count)
+    refuse_count(pool, *count)
+    choice = rivals.best(count[0], pool.pose, count[1])
 
     def gain_over(rows: Sequence[int]) -> float:
         return choice.after / max(rivals.evidence_of(rows), 1e-12)
 
-    random, spread = _held_against(gain_over, pool, count, seed)
+    random, spread = _held_against(gain_over, pool, len(choice.rows), seed)
     document: dict[str, object] = {
         "criterion": "T-optimal",
         "between": [first.id, second.id],

@@ -10,7 +10,7 @@ from sk120stiff.plan.discriminate import (
     signature_columns,
 )
 from sk120stiff.plan.feasible import Verdict, feasible
-from sk120stiff.plan.planned import plan, to_be_taken
+from sk120stiff.plan.planned import plan, promised, to_be_taken
 from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.rig import Rig
 from sk120stiff.plan.schedule import Schedule, scheduled
@@ -38,6 +38,7 @@ __all__ = [
     "feasible_pool",
     "lowest_points",
     "plan",
+    "promised",
     "random_choice",
     "random_pool",
     "random_poses",

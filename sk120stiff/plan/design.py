@@ -66,13 +66,15 @@ def d_optimal(
     sigma: float,
     parameters: Sequence[str] | None = None,
     known: Pool | None = None,
+    loads: int | None = None,
 ) -> Design:
     """Choose readings that make parameters as well known as can be.
 
     Args:
         model: Model with its values; its free parameters are estimated, the others are known.
         pool: Candidate readings.
-        count: How many to choose; each candidate at most once.
+        count: How many to choose, each candidate at most once; with `loads` how many poses.
+        loads: Loads at each of the poses; None: as may be.
         sigma: Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
         parameters: Full names of those that count, all free ones by default.
         known: Readings that were taken already.
@@ -92,8 +94,7 @@ def d_optimal(
                 f"the parameter {name!r} is fixed in the model",
                 remedy="Write 'free: true' at it.",
             )
-    if not 1 <= count <= pool.count:
-        raise InputError(f"{count} readings cannot be chosen from {pool.count} candidates")
+    refuse_count(pool, count, loads)
     interest = np.array([names.index(name) for name in wanted], dtype=np.intp)
     span = np.array([model.parameters[k].spec.plausible for k in free])
     noise = sigma * DISPLACEMENT
@@ -102,7 +103,7 @@ def d_optimal(
     if known is not None:
         start += information(model, known, span).sum(axis=0) / noise**2
     worth = determinant_worth(interest)
-    rows = best_choice(worth, gains, start, count)
+    rows = best_choice(worth, gains, start, count, pool.pose if loads else None, loads or 1)
     total = start + gains[rows].sum(axis=0)
     std = np.sqrt(np.diag(np.linalg.inv(total)))[interest] * span[interest]
     reached = float(worth(total[None])[0])
@@ -131,13 +132,37 @@ def determinant_worth(interest: Index) -> Worth:
     return worth
 
 
-def best_choice(worth: Worth, gains: Array, known: Array, count: int) -> list[int]:
-    """Rows of `gains` (M, k, k) whose sum is worth most: greedy, then by exchange."""
+def refuse_count(pool: Pool, count: int, loads: int | None) -> None:
+    """Raise an `InputError` where so many cannot be chosen."""
+    if loads is None:
+        if not 1 <= count <= pool.count:
+            raise InputError(f"{count} readings cannot be chosen from {pool.count} candidates")
+        return
+    sizes = np.sort(np.bincount(pool.pose))[::-1]
+    if count < 1 or loads < 1 or count > len(sizes) or sizes[count - 1] < loads:
+        raise InputError(
+            f"{count} poses with {loads} loads each cannot be chosen from candidates at "
+            f"{len(sizes)} poses with up to {sizes[0]} loads"
+        )
+
+
+def best_choice(
+    worth: Worth,
+    gains: Array,
+    known: Array,
+    count: int,
+    pose: Index | None = None,
+    loads: int = 1,
+) -> list[int]:
+    """Rows of `gains` (M, k, k) whose sum is worth most: greedy, then by exchange.
+
+    With the `pose` (M,) of each candidate, `count` poses with `loads` rows each.
+    """
     rows: list[int] = []
     total = known.copy()
     free = np.ones(len(gains), dtype=bool)
-    for _ in range(count):
-        pick = _best(worth(total + gains), free)
+    for _ in range(count * loads):
+        pick = _best(worth(total + gains), _open(free, rows, pose, count, loads))
         rows.append(pick)
         free[pick] = False
         total = total + gains[pick]
@@ -147,7 +172,8 @@ def best_choice(worth: Worth, gains: Array, known: Array, count: int) -> list[in
         for slot, row in enumerate(rows):
             without = total - gains[row]
             found = worth(without + gains)
-            pick = _best(found, free)
+            others = rows[:slot] + rows[slot + 1 :]
+            pick = _best(found, _open(free, others, pose, count, loads))
             if found[pick] > reached + BETTER:
                 free[row], free[pick] = True, False
                 rows[slot] = pick
@@ -156,6 +182,18 @@ def best_choice(worth: Worth, gains: Array, known: Array, count: int) -> list[in
         if reached <= before + BETTER:
             break
     return rows
+
+
+def _open(free: Mask, rows: Sequence[int], pose: Index | None, count: int, loads: int) -> Mask:
+    """(M,) candidates that may still join `rows`: no pose has too many, nor are there too many."""
+    if pose is None:
+        return free
+    taken = np.bincount(pose[list(rows)], minlength=int(pose.max()) + 1)
+    full = np.bincount(pose) < loads  # a pose that never can have so many loads
+    good = (taken < loads) & ~full
+    if np.count_nonzero(taken) >= count:
+        good &= taken > 0
+    return np.asarray(free & good[pose])
 
 
 def _best(found: Array, free: Mask) -> int:

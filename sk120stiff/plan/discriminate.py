@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
@@ -52,8 +52,11 @@ class Rivalry:
         total = self.known + self.gains[:, list(rows)].sum(axis=1)
         return float(np.sqrt(_evidence(total).min()))
 
-    def best(self, count: int) -> Choice:
-        """The readings that tell most, for the effect that is the harder to tell."""
+    def best(self, count: int, pose: Index | None = None, loads: int = 1) -> Choice:
+        """The readings that tell most, for the effect that is the harder to tell.
+
+        With the `pose` of each candidate, `count` poses with `loads` each.
+        """
         if not 1 <= count <= self.gains.shape[1]:
             raise InputError(
                 f"{count} readings cannot be chosen from {self.gains.shape[1]} candidates"
@@ -65,7 +68,7 @@ class Rivalry:
             return np.asarray(_evidence(both).min(axis=-1))
 
         flat = np.moveaxis(self.gains, 0, 1).reshape(len(self.gains[0]), 2 * size, size)
-        rows = best_choice(worth, flat, self.known.reshape(2 * size, size), count)
+        rows = best_choice(worth, flat, self.known.reshape(2 * size, size), count, pose, loads)
         return Choice(tuple(rows), self.evidence_of([]), self.evidence_of(rows))
 
 

@@ -8,8 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.effects import Effect
-from sk120stiff.measurements import Measurements
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Effect, situation_of
+from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.design import d_optimal
@@ -25,6 +26,7 @@ def plan(
     model: Model,
     count: int,
     *,
+    loads: int = 1,
     between: tuple[Effect, Effect] | None = None,
     parameters: Sequence[str] | None = None,
     force: float = 400.0,
@@ -39,7 +41,8 @@ def plan(
 
     Args:
         model: Model with its values; its free parameters are to be known.
-        count: Number of readings, a pose and a load each.
+        count: Number of poses.
+        loads: Number of loads at each of them.
         between: Two effects that are to be told apart instead.
         parameters: Full names of the parameters that count, all free ones by default.
         force: Size of the loads [N], less where the motors cannot hold it.
@@ -71,10 +74,41 @@ def plan(
     )
     rows: Sequence[int]
     if between is None:
-        rows = d_optimal(model, pool, count=count, sigma=sigma, parameters=parameters).rows
+        rows = d_optimal(
+            model, pool, count=count, sigma=sigma, parameters=parameters, loads=loads
+        ).rows
     else:
-        rows = rivalry(model, *between, pool, sigma=sigma).best(count).rows
+        rows = rivalry(model, *between, pool, sigma=sigma).best(count, pool.pose, loads).rows
     return to_be_taken(model.robot, pool, rows)
+
+
+def promised(
+    model: Model, plan: Measurements, sigma: float, known: Measurements | None = None
+) -> Array:
+    """(P_free,) standard errors that a plan will leave, internal values.
+
+    From the very covariance of the readings that the fit will have: rows that subtract one zero
+    reading share its error, where nobody said otherwise.
+
+    Args:
+        model: Model with its values; its free parameters are estimated.
+        plan: Poses and loads.
+        sigma: Standard uncertainty of one reading per axis [m].
+        known: Readings that were taken already.
+    """
+    span = np.array([model.parameters[k].spec.plausible for k in model.free])
+    total = np.eye(len(span))
+    for rows in (plan, known):
+        if rows is None:
+            continue
+        used = rows.masked()
+        situation = situation_of(model.robot, used)
+        zero: Literal["shared", "separate"] = "separate" if used.zero == "separate" else "shared"
+        whitener = NoiseModel(sigma, zero=zero).whitener(used, np.zeros(used.n_readings))
+        derivative = model.predict_with_sensitivities(situation)[1][:, :, model.free] * span
+        A = whitener.apply(derivative)
+        total += A.T @ A
+    return np.asarray(np.sqrt(np.diag(np.linalg.inv(total))) * span)
 
 
 def to_be_taken(

@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Situation, situation_of_load
 from sk120stiff.errors import Refusal
 from sk120stiff.plan.cell import Cell
@@ -41,6 +42,11 @@ class Pool:
     def count(self) -> int:
         """Number of candidates M."""
         return self.situation.count
+
+    @cached_property
+    def pose(self) -> Index:
+        """(M,) index of each candidate's pose."""
+        return np.unique(self.situation.a, axis=0, return_inverse=True)[1].reshape(-1)
 
 
 def random_pool(

@@ -142,3 +142,12 @@ def test_rows_are_checked_one_by_one(run, tmp_path: Path) -> None:
     assert first["line"] == 2 and any("weight" in fault for fault in first["faults"])
     assert run("plan", "--check", DATA).code == 0
     assert run("plan", "--count", "3").code == 2
+
+
+def test_a_count_is_of_poses(run, tmp_path: Path) -> None:
+    out = tmp_path / "plan.csv"
+    options = ("--count", "4", "--loads", "3", *FEW, "--out", str(out), "--json")
+    found = run("plan", "--model", MODEL, *options).document
+    assert len(found["poses"]) == 12
+    assert len({row["pose"] for row in found["poses"]}) == 4
+    assert len(read_measurements(out).poses) == 4

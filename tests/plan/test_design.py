@@ -1,5 +1,6 @@
 """Chosen readings against exhaustive search, explicit covariances and random choices."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -7,15 +8,20 @@ import pytest
 
 from sk120stiff.effects import effect, situation_of_load
 from sk120stiff.errors import InputError, Refusal
+from sk120stiff.identify import fit
+from sk120stiff.measurements import NoiseModel
 from sk120stiff.plan import (
     Cell,
     Pool,
     d_optimal,
     discriminating_readings,
+    plan,
+    promised,
     random_choice,
     random_pool,
     rivalry,
     signature_columns,
+    simulate,
     well_spread,
 )
 from sk120stiff.plan.design import best_choice, determinant_worth
@@ -220,3 +226,24 @@ def test_exchanges_mend_what_greed_took() -> None:
         best += reached >= max(map(value, combinations(range(9), 3))) - 1e-9
     assert better >= 1
     assert best >= 36
+
+
+def test_a_count_is_of_poses_and_each_has_its_loads(robot, springs) -> None:
+    made = plan(springs, 5, loads=2, point=POINT, force=400.0)
+    assert len(made.poses) == 5 and made.n_readings == 10
+    assert len(np.unique(made.joints, axis=0)) == 5
+    with pytest.raises(InputError, match="13 loads"):
+        plan(springs, 2, loads=13, point=POINT)
+
+
+def test_what_is_promised_is_the_error_of_the_fit(springs) -> None:
+    """Rows that share a zero reading are not worth what as many are that do not."""
+    made = plan(springs, 4, loads=3, point=POINT, force=400.0)
+    alone = promised(springs, replace(made, zero="separate"), SIGMA)
+    shared = promised(springs, made, SIGMA)
+    assert (np.abs(shared / alone - 1.0) > 0.02).all()
+    noise = NoiseModel(SIGMA, zero="shared")
+    read = simulate(springs, made, noise=noise, seed=1).measurements
+    found = fit(springs, read, noise=noise)
+    errors = np.sqrt(np.diag(found.covariance)) * found.problem.scale
+    np.testing.assert_allclose(shared, errors, rtol=0.02)
