@@ -12,6 +12,7 @@ from sk120stiff.robot.anatomy import arm_length
 
 TIMES = 3.0  # own weights that no arm carries; the strongest carry about one
 PER_AREA = 500.0  # kg per squared metre of reach that no arm carries, where masses are unknown
+LIGHT = 25.0  # the same, below which a URDF that weighs little may leave most masses out
 NOTHING = 1e-3  # share of its own weight that does not bend an arm so that it shows
 CLOSE = 1e-3  # m; nothing is fixed to a tool so near to the origin of its frame, but at it
 
@@ -32,7 +33,7 @@ def doubtful_sizes(robot: Robot, readings: Measurements) -> tuple[str, ...]:
     ]
     heaviest = float(np.abs(said.payload[rows]).max(initial=0.0))
     reach, own = arm_length(robot), robot.total_mass
-    most = TIMES * own if own > 0.0 else PER_AREA * reach**2
+    most = max(TIMES * own, LIGHT * reach**2) if own > 0.0 else PER_AREA * reach**2
     if heaviest > most:
         row = int(rows[np.argmax(np.abs(said.payload[rows]))])
         against = f"weighs {own:.4g} kg itself" if own > 0.0 else f"reaches {reach:.3g} m"
