@@ -23,6 +23,7 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "commands",
+    "from_root",
     "run",
     "without_scripts",
 ]
@@ -61,6 +62,7 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "min_reported_time": 3,
     "remove_config_comments": True,
+    "write_computation_times": False,  # that page would fetch scripts
     "show_signature": False,
     "reset_modules": ("gallery_look.reset",),
     "download_all_examples": True,

@@ -51,12 +51,11 @@ class LazyGroup(TyperGroup):
         """The real command of `args[0]`, imported now."""
         name, command, rest = super().resolve_command(ctx, args)
         if name is not None and command is not None:
-            command = loaded(name)
+            command = _load(name)
         return name, command, rest
 
 
-def loaded(name: str) -> Any:
-    """The command of that name as typer makes it, imported now."""
+def _load(name: str) -> Any:
     from sk120stiff.cli.frame import framed, guarded
 
     with guarded(debug="--debug" in sys.argv, as_json=_ASKED_FOR_JSON.get()):
