@@ -47,9 +47,9 @@ def faults(page: Path, outside: set[str]) -> Iterator[str]:
             target = (page.parent / unquote(parts.path)).resolve() if parts.path else page
             if not target.is_file():
                 yield f"{address} leads nowhere"
-            elif parts.fragment and target.suffix == ".html":
-                if unquote(parts.fragment) not in anchors(target):
-                    yield f"{address}: that page has no such place"
+            elif target.suffix == ".html" and parts.fragment:
+                place = unquote(parts.fragment)
+                yield from () if place in anchors(target) else [f"{address}: no such place there"]
 
 
 def fetched(sheet: Path) -> Iterator[str]:

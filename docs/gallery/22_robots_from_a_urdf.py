@@ -27,7 +27,7 @@ for name, (urdf, springs, pose) in arms.items():
     loads = np.zeros((11, 6))
     loads[:, 2] = -forces
     sag = -model.deflect(np.tile(np.radians(pose), (11, 1)), loads)[:, 2]
-    plt.plot(forces, 1e3 * sag, "o-", label=f"{name}: {robot}")
+    plt.plot(forces, 1e3 * sag, "o-", label=f"{name}, {robot.n} joints")
 plt.gca().set(xlabel="force down at the tool [N]", ylabel="sag [mm]")
-plt.legend(fontsize=6)
+plt.legend()
 plt.show()
