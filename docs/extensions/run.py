@@ -45,7 +45,7 @@ def lay(app: Sphinx, page: str, source: list[str]) -> None:
     desk = desk_of(app, page)
     shutil.rmtree(desk, ignore_errors=True)
     desk.mkdir(parents=True)
-    (desk / "robots").symlink_to(ROOT / "robots")
+    shutil.copytree(ROOT / "robots", desk / "robots")  # a link would lead packaging astray
     for block in blocks(source[0]):
         if block.file:
             (desk / block.file).write_text(block.text, encoding="utf-8")

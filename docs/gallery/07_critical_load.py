@@ -22,5 +22,6 @@ for softer in (1, 10, 100):
     plt.semilogy(lean, np.array(load) / 1e3, label=f"springs {softer} times softer")
 plt.axhline(1.0, color="gray", ls="--", label="1 kN, a heavy milling force")
 plt.gca().set(xlabel="joint 2 [deg]", ylabel="force down that it cannot hold [kN]")
-plt.legend()
+plt.legend(loc="upper left", ncols=2)
+plt.ylim(top=3e3)
 plt.show()

@@ -19,9 +19,10 @@ parts |= {f"pose {pose}": readings.select(readings.rows_of(pose)) for pose in re
 for row, part in enumerate(parts.values()):
     found = sk.fit(model, part)
     for panel, p, (low, high) in zip(axes, found.parameters, found.intervals()):
-        panel.plot([low / 1e6, high / 1e6], [row, row], "-", lw=3)
+        panel.plot([low / 1e6, min(high, 1e9) / 1e6], [row, row], "-", lw=3)
         panel.plot(p.value / 1e6, row, "ko")
-        panel.set(title=p.effect.where, xlabel="10⁶ N·m/rad", xlim=(0.3 * p.value / 1e6, None))
+        panel.set(title=p.effect.where, xlabel="10⁶ N·m/rad")
+        if part is readings:  # intervals that are open upwards leave the picture
+            panel.set_xlim(0, 2.2 * p.value / 1e6)
 axes[0].set_yticks(range(len(parts)), parts)
-axes[0].set_title("joint_1_s")
 plt.show()

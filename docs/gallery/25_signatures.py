@@ -33,6 +33,7 @@ for name, where in places.items():
         names.append(parameter.name.split(".")[0].replace(":", "\n"))
 plt.figure(figsize=(7.2, 5.4))
 plt.imshow(np.abs(np.array(patterns) @ np.array(patterns).T), cmap="magma", vmin=0, vmax=1)
+plt.grid(visible=False)
 plt.colorbar(label="likeness of the patterns")
 plt.xticks(range(len(names)), names, rotation=90, fontsize=6)
 plt.yticks(range(len(names)), names, fontsize=6)

@@ -162,7 +162,7 @@ class Measurements(Tabular):
             f"<Measurements: {self.n_readings} readings at {len(self.poses)} poses"
             + (f", {masked} masked" if masked else "")
             + (", a plan" if self.displacement is None and self.absolute is None else "")
-            + (f", {self.path}>" if self.path else ">")
+            + (f", {self.path.name}>" if self.path else ">")
         )
 
     @property
