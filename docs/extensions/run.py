@@ -35,7 +35,7 @@ WIDTH = 88  # of what is printed
 
 def desk_of(app: Sphinx, page: str) -> Path:
     """Where the commands of a page run."""
-    return Path(app.doctreedir).parent / "desks" / page
+    return Path(app.outdir).parent / "desks" / page
 
 
 def lay(app: Sphinx, page: str, source: list[str]) -> None:
