@@ -27,7 +27,7 @@ from sk120stiff.explain.options import Options, candidates_for, with_assumed
 from sk120stiff.explain.priors import FURTHER_IMPOSTOR, IMPOSTOR
 from sk120stiff.explain.select.best_attempt import best_attempt, held_against
 from sk120stiff.explain.select.stepwise import Attempt, attempt
-from sk120stiff.identify import refuse_unusable
+from sk120stiff.identify import Fit, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
@@ -96,7 +96,7 @@ def explain(
         found, named = beside_model_form(at, under, names=standing, seed=options.seed)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
-    remainder = remainder_of(held_against(noise, found.final))
+    remainder = remainder_of(_as_written(found.final, noise))
     if left.lacking:
         remainder = remainder.beside(left.probability)
     findings = tuple(
@@ -117,7 +117,7 @@ def explain(
         verdict=verdict,
         findings=findings,
         base=base,
-        final=final if final.problem.noise.form else held_against(noise, final),
+        final=_as_written(final, noise),
         steps=gap_steps(found, effects, holdout, seed=options.seed),
         noise=noise,
         noise_reasons=(*decided(noise, used), *left.of_the_statement()),
@@ -212,6 +212,11 @@ def _silent(phrase: str, share: float) -> None:
 
 def _adequacy(found: Attempt, noise: NoiseModel) -> Adequacy:
     return adequacy(held_against(noise, found.final), {effect.id for effect in found.effects})
+
+
+def _as_written(final: Fit, noise: NoiseModel) -> Fit:
+    """The fit that goes into files: by the noise as stated, beside model-form error if there is."""
+    return final if final.problem.noise.form else held_against(noise, final)
 
 
 def _too_much(left: Adequacy, allowed: float) -> bool:

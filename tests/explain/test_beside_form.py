@@ -8,6 +8,7 @@ import pytest
 from sk120stiff import base_model, load_robot
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, read_measurements
 from sk120stiff.model import joint_spring_model
 from tests.explain.readings import base_fit, hidden
@@ -46,6 +47,9 @@ def test_a_strong_cause_is_named_though_no_law_is_exact(springs):
     true = np.sqrt(np.mean((rough.displacement - hidden(tilt).displacement) ** 2))
     assert left.interval[0] < true < left.interval[1]
     assert left.form.proportional == pytest.approx(0.04, rel=0.3)
+    written = known_model(answer.final).uncertainty.remainder  # one number in every file
+    assert written.rms == pytest.approx(np.full(3, left.rms))
+    assert written.grows
 
 
 def test_roughness_alone_has_no_name(springs):

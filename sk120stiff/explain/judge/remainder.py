@@ -1,7 +1,7 @@
 """What is left once everything that can be named is in the model: how large, how surely, where.
 
-The left-over of a fitted model is laid out as model-form error beside the noise
-(`measurements/model_form.py`): its size is that of the random effects that these readings met.
+Its size is that of `identify/uncertainty/left_over.py`; here are the words, and whether it speaks
+for a cause that no effect in the model is.
 """
 
 from __future__ import annotations
@@ -9,25 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
-from scipy.optimize import brentq
 from scipy.special import expit
 from scipy.special import logit as _logit
 
 from sk120stiff.explain.priors import SOMETHING_ELSE
 from sk120stiff.identify import Fit
-from sk120stiff.identify.uncertainty.variance_components import (
-    Components,
-    Deviance,
-    variance_components,
-)
-from sk120stiff.measurements.model_form import ModelForm, form_columns, rows_of_poses
+from sk120stiff.identify.uncertainty.left_over import left_over
+from sk120stiff.identify.uncertainty.variance_components import Components
+from sk120stiff.measurements.model_form import ModelForm
 
 LEVEL = 1e-3  # below this probability of noise alone something is left
-INTERVAL = float(stats.chi2.isf(0.05, 1))  # rise of -2 ln L at the ends of a 95 % interval
-NORMAL = float(stats.norm.isf(0.025))  # standard deviations of a 95 % interval
-SMALLEST = 1e-6  # of a pose's compliance: where an upper limit is looked for from
-WIDEST = 16.0  # ln of the factors by which the size is looked for
 
 
 @dataclass(frozen=True)
@@ -92,60 +83,15 @@ class Remainder:
 
 
 def remainder_of(fit: Fit) -> Remainder:
-    """The remainder of a fitted model; its model-form error is estimated anew."""
-    found = variance_components(fit)
-    readings = fit.problem.measurements
-    deviance = Deviance.of(fit)
-    relative = found.form.scaled(1.0 / found.noise_factor)
-    least = deviance(relative)
-    form = relative or ModelForm(proportional=SMALLEST)
-
-    def rise(logarithm: float) -> float:
-        return deviance(form.scaled(float(np.exp(logarithm)))) - least - INTERVAL
-
-    def factor(way: float) -> float:
-        """Of the sizes, at one end of their interval."""
-        return float(np.exp(brentq(rise, *sorted((0.0, way * WIDEST)))))
-
-    size = form.scaled(found.noise_factor)
-    low, high = 0.0, np.inf
-    if relative and rise(-WIDEST) > 0.0:
-        low = _left(fit, size.scaled(factor(-1.0)), found.noise_factor)[0]
-    if rise(WIDEST) > 0.0:
-        high = _left(fit, size.scaled(factor(1.0)), found.noise_factor)[2]
+    """The remainder of a fitted model, the one that its model's file has."""
+    left = left_over(fit)
     return Remainder(
-        _left(fit, found.form, found.noise_factor)[1],
-        (low, high),
-        found.probability,
-        found.form,
-        something_else=_something_else(found, len(readings.poses)),
+        left.rms,
+        left.interval,
+        left.found.probability,
+        left.found.form,
+        something_else=_something_else(left.found, len(fit.problem.measurements.poses)),
     )
-
-
-def _left(fit: Fit, form: ModelForm, noise_factor: float) -> tuple[float, float, float]:
-    """What random effects of one size left in these readings: 2.5 %, mean, 97.5 %, rms [m].
-
-    Their distribution given the gap is normal (Searle, Casella & McCulloch, chapter 7); what the
-    model's parameters took on is not left, and no remainder is larger than the gap.
-    """
-    problem = fit.problem
-    readings = problem.measurements
-    gap = problem.measured - fit.model.predict(problem.situation)
-    proportional, constant = form_columns(readings)
-    Z = np.concatenate([form.proportional * proportional, form.constant * constant], axis=2)
-    white = problem.whitener.apply(np.concatenate([Z, gap[:, :, None]], axis=2)) / noise_factor
-    Z = Z.reshape(len(white), -1)
-    mean = variance = 0.0
-    for rows in rows_of_poses(readings):
-        drawn, rest = white[rows, :-1], white[rows, -1]
-        spread = np.linalg.inv(np.eye(drawn.shape[1]) + drawn.T @ drawn)
-        likeliest = Z[rows] @ (spread @ (drawn.T @ rest))
-        covariance = Z[rows] @ spread @ Z[rows].T
-        mean += float(likeliest @ likeliest + np.trace(covariance))
-        variance += float(2.0 * (covariance**2).sum() + 4.0 * likeliest @ covariance @ likeliest)
-    ends = mean + NORMAL * np.sqrt(variance) * np.array([-1.0, 0.0, 1.0])
-    low, middle, high = np.sqrt(np.maximum(ends, 0.0) / max(len(white), 1))
-    return float(low), float(middle), float(high)
 
 
 def _something_else(found: Components, poses: int) -> float:

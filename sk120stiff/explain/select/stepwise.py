@@ -167,6 +167,8 @@ def _settle(
         regression = regression_at(
             final, candidates, ids, alpha=regression.alpha, prior=regression.prior
         )
+        if len(effects) >= max_effects and final.exceeds:
+            break  # no set is enough: another will be looked for beside model-form error
     return final, regression, positions(regression, effects)
 
 
