@@ -16,10 +16,13 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.plan_check import checked
+from sk120stiff.cli.plan_program import in_order, language_for, write_route
+from sk120stiff.cli.plan_shown import as_keys, height_words, plan_table
 from sk120stiff.cli.plan_wishes import named_parameters, two_effects
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import situation_of
 from sk120stiff.errors import InputError
+from sk120stiff.files import will_write
 from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
@@ -128,6 +131,14 @@ def command(
         Path | None,
         typer.Option("--out", metavar="CSV", help="Where to write them, for the measurement."),
     ] = None,
+    program: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Order the poses for least driving and write the way through them, free of "
+            "collisions: .src (KUKA), .mod (ABB), .ls (FANUC), .jbi (Motoman), .script (UR).",
+        ),
+    ] = None,
     seed: SeedOption = 0,
 ) -> Answer:
     """The poses and loads to measure next.
@@ -147,6 +158,8 @@ def command(
             remedy="Write --model model.yaml --count 12; --check plan.csv checks one there is.",
         )
     declare_readings(out)
+    will_write(program, "--program")
+    language = None if program is None else language_for(program)
     known, start = _opened(model, data)
     at, force_at = _points(known, point)
     within = _stated(opened_cell(start.robot, cell, data, model), lowest, box)
@@ -169,10 +182,28 @@ def command(
         else:
             chosen = _telling(start, pool, before, between, (count, loads), sigma, seed)
     rows, document, said = chosen
-    poses, plan = _plan(start, pool, rows, known)
+    zero = "unknown" if known is None else known.zero
+    plan = to_be_taken(start.robot, pool, rows, zero=zero)
+    way: dict[str, object] | None = None
+    if language is not None and program is not None:
+        labels = plan.poses
+        with progress_bar("the way between the poses"):
+            plan, route = in_order(plan, start.robot, within, seed)
+        write_route(language, program, start.robot, route, labels)
+        way = {
+            "order": [labels[k] for k in route.order],
+            "via_points": int((route.pose < 0).sum()),
+            "driving_s": route.seconds,
+            "minutes": route.minutes(plan.n_readings),
+        }
+        said.append(
+            f"Driven in this order: {route.seconds:.0f} s of way with {way['via_points']} via "
+            f"points; about {route.minutes(plan.n_readings):.0f} min with the readings. Written "
+            f"to {program}."
+        )
     heights = lowest_points(start.robot, plan.joints, at, within)
     document = {
-        "poses": poses,
+        "poses": as_keys(plan),
         **document,
         "sigma_um": sigma * 1e6,
         "seed": seed,
@@ -180,13 +211,15 @@ def command(
         "floor_m": within.floor if np.isfinite(within.floor) else None,
         "lowest_m": float(heights.min()),
         "remarks": pool.remarks,
+        "route": way,
+        "program": program,
         "out": out,
     }
-    said += [*pool.remarks, _height(plan, heights, within.floor)]
+    said += [*pool.remarks, height_words(plan, heights, within.floor)]
     if out is not None:
         write_measurements(plan, out)
         said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
-    return Answer(document, [_table(plan), *said])
+    return Answer(document, [plan_table(plan), *said])
 
 
 Chosen = tuple[Sequence[int], dict[str, object], list[object]]
@@ -339,42 +372,3 @@ def _stated(cell: Cell, lowest: str | None, box: str | None) -> Cell:
         corners = parse_values(box, "length", where="--box", like="0.8,-1,0, 2.2,1,1.5 m")
         cell = replace(cell, low=corners[:3], high=corners[3:])
     return cell
-
-
-def _height(plan: Measurements, heights: Array, floor: float) -> str:
-    row = int(np.argmin(heights))
-    text = (
-        f"The arm's lowest point is {1e3 * heights[row]:.0f} mm high (base frame, {plan.pose[row]})"
-    )
-    if not np.isfinite(floor):
-        return f"{text}: give --floor if that is too low."
-    return f"{text}, the floor {1e3 * floor:.0f} mm."
-
-
-def _plan(
-    model: Model, pool: Pool, rows: Sequence[int], known: Measurements | None
-) -> tuple[list[dict[str, object]], Measurements]:
-    """The chosen readings, those of one pose together, as JSON and as measurements to be taken."""
-    robot = model.robot
-    zero = "unknown" if known is None else known.zero
-    plan = to_be_taken(robot, pool, rows, zero=zero)
-    poses: list[dict[str, object]] = [
-        {
-            "pose": label,
-            "joints": dict(zip(robot.actuated, a.tolist(), strict=True)),
-            "wrench": wrench.tolist(),
-        }
-        for label, a, wrench in zip(plan.pose, plan.joints, plan.wrench, strict=True)
-    ]
-    return poses, plan
-
-
-def _table(plan: Measurements) -> object:
-    scale = [180.0 / np.pi if kind == "angle" else 1e3 for kind in plan.joint_kinds]
-    unit = ["deg" if kind == "angle" else "mm" for kind in plan.joint_kinds]
-    columns = ["pose", *(f"{n} [{u}]" for n, u in zip(plan.joint_names, unit, strict=True))]
-    rows = [
-        (label, *(f"{x:.1f}" for x in a * scale), *(f"{x:.0f}" for x in w[:3]))
-        for label, a, w in zip(plan.pose, plan.joints, plan.wrench, strict=True)
-    ]
-    return table("Measure", [*columns, "fx [N]", "fy [N]", "fz [N]"], rows)

@@ -151,3 +151,17 @@ def test_a_count_is_of_poses(run, tmp_path: Path) -> None:
     assert len(found["poses"]) == 12
     assert len({row["pose"] for row in found["poses"]}) == 4
     assert len(read_measurements(out).poses) == 4
+
+
+def test_the_way_is_written_as_a_program(run, tmp_path: Path) -> None:
+    out, program = tmp_path / "plan.csv", tmp_path / "way.src"
+    options = ("--count", "4", *FEW, "--program", str(program), "--out", str(out), "--json")
+    outcome = run("plan", "--model", MODEL, *options)
+    assert outcome.code == 0, outcome.stderr
+    way = outcome.document["route"]
+    assert sorted(way["order"]) == ["p1", "p2", "p3", "p4"]
+    assert way["minutes"] == pytest.approx((way["driving_s"] + 4 * 20) / 60)
+    assert list(read_measurements(out).poses) == way["order"]
+    assert program.read_text(encoding="ascii").count("PTP") >= 4 + way["via_points"]
+    wrong = run("plan", "--model", MODEL, "--count", "4", *FEW, "--program", "way.nc")
+    assert wrong.code == 2 and "joint values" in wrong.stderr

@@ -1,0 +1,85 @@
+"""What `plan --program` writes: the way through the planned poses, in a robot's language."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from sk120stiff import __version__
+from sk120stiff.errors import InputError
+from sk120stiff.files import write_atomically
+from sk120stiff.measurements import Measurements
+from sk120stiff.plan import Cell, Route, route
+from sk120stiff.programs import Language, language_of
+from sk120stiff.programs.controller import controller_axes, convention
+from sk120stiff.programs.program import Program
+from sk120stiff.robot import Robot
+
+SPEED = 0.05  # m/s that the header names for the tool; joints go at the language's own share
+
+
+def language_for(out: Path) -> Language:
+    """The language of a program's file name.
+
+    Raises:
+        InputError: It is none that moves by joint values.
+    """
+    language = language_of(out, None)
+    if language is None or not language.joint_moves:
+        raise InputError(
+            "poses are driven to by joint values, which this file's language does not know",
+            where=f"--program {out}",
+            remedy="Name a program that ends in .src, .mod, .ls, .jbi or .script.",
+        )
+    return language
+
+
+def in_order(plan: Measurements, robot: Robot, cell: Cell, seed: int) -> tuple[Measurements, Route]:
+    """The plan with its poses in the order of least driving, and the way."""
+    first = [plan.pose.index(label) for label in plan.poses]
+    found = route(robot, cell, plan.joints[first], point=plan.point, seed=seed)
+    rows = [
+        k for pose in found.order for k, label in enumerate(plan.pose) if label == plan.poses[pose]
+    ]
+    return plan.select(np.array(rows, dtype=np.intp)), found
+
+
+def write_route(
+    language: Language, out: Path, robot: Robot, found: Route, labels: tuple[str, ...]
+) -> None:
+    """Write the program; each stop at a planned pose is a target of its own."""
+    given = {}
+    if "pulses" in language.settings and robot.controller.pulses_per_degree:
+        given = {"pulses": ",".join(f"{x:.12g}" for x in robot.controller.pulses_per_degree)}
+    settings = language.with_defaults(given)
+    axes, slides, values = controller_axes(robot, found.a)
+    place = robot.placement(found.a)
+    stops = ", ".join(
+        f"{labels[pose]} at target {k}" for k, pose in enumerate(found.pose, 1) if pose >= 0
+    )
+    count = len(found.a)
+    program = Program(
+        name=out.stem,
+        header=(
+            f"Written by sk120stiff {__version__}: the way through the poses of a plan.",
+            f"Robot: {robot.name}. Poses: {stops}; the others are via points.",
+            "Stop at each pose, hang on the loads, read. Between targets the joints go straight; "
+            "this way was held against the cell, loads and cables were not.",
+            f"Joints: {convention(robot)}.",
+            *language.remarks(settings),
+        ),
+        axes=axes,
+        slides=slides,
+        joints=values,
+        position=place[:, :3, 3],
+        rotation=place[:, :3, :3],
+        speed=np.full(count, SPEED),
+        rapid=np.ones(count, dtype=bool),
+        lines=np.arange(1, count + 1, dtype=np.intp),
+        by_joints=True,
+        settings=settings,
+        date=datetime.now(UTC).strftime("%Y/%m/%d %H:%M"),
+    )
+    write_atomically(out, language.text(program))

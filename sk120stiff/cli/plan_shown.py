@@ -1,0 +1,44 @@
+"""How a plan is shown: as a table, as JSON, and how low the arm comes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.cli.tables import table
+from sk120stiff.measurements import Measurements
+
+
+def height_words(plan: Measurements, heights: Array, floor: float) -> str:
+    """How low the arm comes, and what the floor is."""
+    row = int(np.argmin(heights))
+    text = (
+        f"The arm's lowest point is {1e3 * heights[row]:.0f} mm high (base frame, {plan.pose[row]})"
+    )
+    if not np.isfinite(floor):
+        return f"{text}: give --floor if that is too low."
+    return f"{text}, the floor {1e3 * floor:.0f} mm."
+
+
+def as_keys(plan: Measurements) -> list[dict[str, object]]:
+    """The rows in JSON."""
+    return [
+        {
+            "pose": label,
+            "joints": dict(zip(plan.joint_names, a.tolist(), strict=True)),
+            "wrench": wrench.tolist(),
+        }
+        for label, a, wrench in zip(plan.pose, plan.joints, plan.wrench, strict=True)
+    ]
+
+
+def plan_table(plan: Measurements) -> object:
+    """The rows for people: degrees, mm, N."""
+    scale = [180.0 / np.pi if kind == "angle" else 1e3 for kind in plan.joint_kinds]
+    unit = ["deg" if kind == "angle" else "mm" for kind in plan.joint_kinds]
+    columns = ["pose", *(f"{n} [{u}]" for n, u in zip(plan.joint_names, unit, strict=True))]
+    rows = [
+        (label, *(f"{x:.1f}" for x in a * scale), *(f"{x:.0f}" for x in w[:3]))
+        for label, a, w in zip(plan.pose, plan.joints, plan.wrench, strict=True)
+    ]
+    return table("Measure", [*columns, "fx [N]", "fy [N]", "fz [N]"], rows)

@@ -1,0 +1,174 @@
+"""In which order poses are driven to, and by which way, so that nothing is run into.
+
+The order is that of least time, by nearest neighbours and 2-opt (Croes 1958). Between two poses the
+joints go straight; where that is not free, the way goes by via points of a roadmap of random free
+poses, whose edges are asked when they are needed (Bohlin & Kavraki 2000, lazy PRM).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.errors import Refusal
+from sk120stiff.plan.cell import Cell
+from sk120stiff.plan.pool import poses_in
+from sk120stiff.plan.surroundings import scene_of
+from sk120stiff.robot import Robot
+from sk120stiff.robot.collision import Scene
+
+SPEED_SHARE = 0.2  # of the joints' speeds in the URDF, for a campaign
+USUAL_SPEED, USUAL_SLIDE = 0.3, 0.1  # rad/s and m/s where it states none
+STEP, SLIDE_STEP = np.deg2rad(2.0), 0.01  # of a way between two questions
+ROADMAP, NEIGHBOURS = 120, 12  # random poses, and edges of each
+ATTEMPTS = 200  # ways through the roadmap that are asked before it is given up
+SETTLING = 20.0  # s at a reading: to come to rest, to load, to read
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A way through poses.
+
+    Attributes:
+        order: (N,) the poses in the order in which they are driven to.
+        a: (K, n) all stops, via points among them [rad or m].
+        pose: (K,) index of the pose at each stop; -1 at a via point.
+        seconds: Driving time, without the readings.
+    """
+
+    order: Index
+    a: Array
+    pose: Index
+    seconds: float
+
+    def minutes(self, readings: int) -> float:
+        """Of the campaign with so many readings [min]."""
+        return (self.seconds + SETTLING * readings) / 60.0
+
+
+def route(
+    robot: Robot, cell: Cell, a: ArrayLike, *, point: ArrayLike | None = None, seed: int = 0
+) -> Route:
+    """The way through poses (N, n) that takes least time and runs into nothing.
+
+    Raises:
+        Refusal: No free way to a pose was found.
+    """
+    poses = np.atleast_2d(robot.coordinates(a))
+    scene = scene_of(robot, cell, point)
+    speed = joint_speeds(robot)
+    order = _ordered(_times(poses, poses, speed))
+    stops, which, seconds = [poses[order[0]]], [int(order[0])], 0.0
+    roadmap: Array | None = None
+    for here, there in itertools.pairwise(order):
+        way = [poses[here], poses[there]]
+        if not straight_is_free(robot, scene, way[0], way[1]):
+            if roadmap is None:
+                at = np.zeros(3) if point is None else point
+                rng = np.random.default_rng(seed)
+                roadmap = np.concatenate([poses, poses_in(robot, ROADMAP, rng, cell, at)])
+            way = _around(robot, scene, roadmap, int(here), int(there), speed)
+        for k, stop in enumerate(way[1:], 1):
+            stops.append(stop)
+            which.append(int(there) if k == len(way) - 1 else -1)
+        seconds += sum(
+            float(_times(p[None], q[None], speed)[0, 0]) for p, q in itertools.pairwise(way)
+        )
+    return Route(order, np.array(stops), np.array(which, dtype=np.intp), seconds)
+
+
+def joint_speeds(robot: Robot) -> Array:
+    """(n,) speeds at which a campaign is driven [rad/s or m/s]."""
+    stated = {joint.name: joint.velocity for joint in robot.document.joints}
+    usual = np.where(robot.prismatic, USUAL_SLIDE, USUAL_SPEED)
+    own = [SPEED_SHARE * (stated.get(name) or 0.0) for name in robot.actuated]
+    return np.where(np.array(own) > 0.0, own, usual)
+
+
+def straight_is_free(robot: Robot, scene: Scene, start: Array, end: Array) -> bool:
+    """Can the joints go straight from one pose to another?"""
+    longest = np.abs(end - start) / np.where(robot.prismatic, SLIDE_STEP, STEP)
+    count = max(int(np.ceil(longest.max())), 1)
+    shares = _halving(count)
+    between = start + shares[:, None] * (end - start)
+    if not robot.closes(between).all():
+        return False
+    return all(bool(scene.free(row[None])[0]) for row in between)
+
+
+def _halving(count: int) -> Array:
+    """Shares of a way, the middle first: what blocks it is met soon."""
+    steps = np.arange(1, count)
+    key = [int(k & -k) for k in steps]
+    return np.concatenate([steps[np.argsort(key, kind="stable")[::-1]] / count, [0.0, 1.0]])
+
+
+def _times(a: Array, b: Array, speed: Array) -> Array:
+    """(N, M) seconds from each pose to each other, all joints at once."""
+    return np.asarray((np.abs(a[:, None] - b[None]) / speed).max(axis=2))
+
+
+def _ordered(times: Array) -> Index:
+    """An order with little time between neighbours; the first pose stays first."""
+    left = set(range(1, len(times)))
+    order = [0]
+    while left:
+        order.append(min(left, key=lambda k: times[order[-1], k]))
+        left.remove(order[-1])
+    better = True
+    while better:
+        better = False
+        for i in range(1, len(order) - 1):
+            for j in range(i + 1, len(order)):
+                tried = order[:i] + order[i : j + 1][::-1] + order[j + 1 :]
+                if _length(times, tried) < _length(times, order) - 1e-9:
+                    order, better = tried, True
+    return np.array(order, dtype=np.intp)
+
+
+def _length(times: Array, order: Sequence[int]) -> float:
+    return float(times[order[:-1], order[1:]].sum())
+
+
+def _around(
+    robot: Robot, scene: Scene, nodes: Array, start: int, end: int, speed: Array
+) -> list[Array]:
+    """The shortest way through the roadmap whose edges are all free."""
+    times = _times(nodes, nodes, speed)
+    near: Mask = np.zeros_like(times, dtype=bool)
+    closest = np.argsort(times, axis=1)[:, 1 : NEIGHBOURS + 1]
+    near[np.arange(len(nodes))[:, None], closest] = True
+    weight = np.where(near | near.T, times, 0.0)
+    weight[start, end] = weight[end, start] = 0.0
+    known: set[tuple[int, int]] = set()
+    for _ in range(ATTEMPTS):
+        length, before = dijkstra(
+            csr_matrix(weight), indices=start, return_predecessors=True, directed=False
+        )
+        if not np.isfinite(length[end]):
+            break
+        way = [end]
+        while way[-1] != start:
+            way.append(int(before[way[-1]]))
+        for p, q in itertools.pairwise(way):
+            edge = (min(p, q), max(p, q))
+            if edge in known:
+                continue
+            if not straight_is_free(robot, scene, nodes[p], nodes[q]):
+                weight[p, q] = weight[q, p] = 0.0
+                break
+            known.add(edge)
+        else:
+            return [nodes[k] for k in reversed(way)]
+    raise Refusal(
+        f"no free way was found from pose {start + 1} of the plan to pose {end + 1}",
+        where=robot.name,
+        remedy="Take another --seed, or leave one of them out.",
+    )
