@@ -67,6 +67,7 @@ def test_every_step_at_its_defaults(name: str, run, tmp_path: Path, monkeypatch)
         else:
             assert parameter["value"] == pytest.approx(truth, rel=1e-3)
     page = Path("told/report.html").read_text(encoding="utf-8")
+    assert len(page) < 3e6  # with the arm's meshes
     assert page.count("<svg") >= 2 and "could not be made" not in page
     assert all(name in page for name in blind)
     verdict = Path("told/verdict.json").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ from sk120stiff.robot.visuals import Visual, visuals
 from sk120stiff.show.scene.links import LinkTree
 from sk120stiff.show.scene.shapes import PLAIN, Body, Mesh, capsules, reach_of, simplified, welded
 
-TRIANGLES = 120_000  # for a whole robot; a page stays below some 4 MB and turns smoothly
+TRIANGLES = 60_000  # for a whole robot; a report stays below 3 MB and its scene turns smoothly
 
 
 def bodies_of(robot: Robot, tree: LinkTree) -> list[Body]:

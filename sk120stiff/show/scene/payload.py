@@ -252,10 +252,12 @@ def _body(body: Body, meshes: list[Mesh]) -> dict[str, Any]:
     return shown
 
 
-def _mesh(mesh: Mesh) -> dict[str, str]:
+def _mesh(mesh: Mesh) -> dict[str, Any]:
+    wide = len(mesh.vertices) > np.iinfo(np.uint16).max
     return {
         "vertices": _binary(mesh.vertices.astype("<f4")),
-        "faces": _binary(mesh.faces.astype("<u4")),
+        "faces": _binary(mesh.faces.astype("<u4" if wide else "<u2")),
+        "wide": wide,
     }
 
 

@@ -40,7 +40,7 @@ from sk120stiff.show.wording import chance, counted, number, percent, um, with_e
 
 NAMEABLE = 5.0  # √λ at which an effect can usually be named
 _SHORT = {
-    "none": ("cannot be told", "here; verdict: none"),
+    "none": ("?", "these poses cannot tell"),
     "named": ("named", "verdict: named"),
     "ambiguous": ("open", "verdict: ambiguous"),
     "outside": ("outside", "no effect explains it"),

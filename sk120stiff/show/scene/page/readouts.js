@@ -64,7 +64,7 @@ SK.makeReadouts = (scene, state) => {
     if (!current) { data.replaceChildren(); return; }
     const models = Object.entries(current.predicted), row = (name, d, mark) => element("tr", {},
       element("th", { scope: "row" }, element("i", { class: "dot " + mark }), name),
-      ...(d ? [...d, size(d)].map((value) => element("td", {}, number(1e6 * value, 3))) : [element("td", { colspan: 4 }, "\u2013")]));
+      ...(d ? [...d, size(d)].map((value) => element("td", {}, number(Math.abs(value) < 1e-12 ? 0 : 1e6 * value, 3))) : [element("td", { colspan: 4 }, "\u2013")]));
     const rows = [row("measured", current.measured, "measured")];
     for (const [name, predicted] of models) {
       const mark = name === state.model ? "predicted" : "other";

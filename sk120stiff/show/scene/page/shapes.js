@@ -9,10 +9,10 @@ SK.makeShapes = (scene) => {
     return new Type(bytes.buffer);
   }
 
-  const meshes = scene.meshes.map(({ vertices, faces }) => {
+  const meshes = scene.meshes.map(({ vertices, faces, wide }) => {
     const indexed = new THREE.BufferGeometry();
     indexed.setAttribute("position", new THREE.BufferAttribute(decode(vertices, Float32Array), 3));
-    indexed.setIndex(new THREE.BufferAttribute(decode(faces, Uint32Array), 1));
+    indexed.setIndex(new THREE.BufferAttribute(decode(faces, wide ? Uint32Array : Uint16Array), 1));
     const geometry = indexed.toNonIndexed(); // edges stay sharp: one normal for each face
     geometry.computeVertexNormals();
     return geometry;
