@@ -152,6 +152,9 @@ def usable_range(robot: Robot) -> tuple[Array, Array]:
     reach = np.where(robot.prismatic, REACH_OF_UNLIMITED_SLIDE, REACH_OF_UNLIMITED)
     lower = np.where(np.isfinite(robot.lower), robot.lower, -reach)
     upper = np.where(np.isfinite(robot.upper), robot.upper, reach)
+    # A joint that turns farther stands no otherwise there: one turn is enough, and driven sooner.
+    wide = ~np.array(robot.prismatic) & (lower < -reach) & (upper > reach)
+    lower, upper = np.where(wide, -reach, lower), np.where(wide, reach, upper)
     middle, half = 0.5 * (lower + upper), 0.5 * SHARE_OF_RANGE * (upper - lower)
     return middle - half, middle + half
 

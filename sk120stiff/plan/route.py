@@ -27,8 +27,9 @@ from sk120stiff.robot.collision import Scene
 SPEED_SHARE = 0.2  # of the joints' speeds in the URDF, for a campaign
 USUAL_SPEED, USUAL_SLIDE = 0.3, 0.1  # rad/s and m/s where it states none
 STEP, SLIDE_STEP = np.deg2rad(2.0), 0.01  # of a way between two questions
-ROADMAP, NEIGHBOURS = 120, 12  # random poses, and edges of each
-ATTEMPTS = 200  # ways through the roadmap that are asked before it is given up
+ROADMAPS = (120, 500, 1500)  # random poses, more where fewer do not do
+NEIGHBOURS = 15  # edges of each
+ATTEMPTS = 400  # ways through the roadmap that are asked before it is given up
 SETTLING = 20.0  # s at a reading: to come to rest, to load, to read
 
 
@@ -70,11 +71,24 @@ def route(
     for here, there in itertools.pairwise(order):
         way = [poses[here], poses[there]]
         if not straight_is_free(robot, scene, way[0], way[1]):
-            if roadmap is None:
-                at = np.zeros(3) if point is None else point
-                rng = np.random.default_rng(seed)
-                roadmap = np.concatenate([poses, poses_in(robot, ROADMAP, rng, cell, at)])
-            way = _around(robot, scene, roadmap, int(here), int(there), speed)
+            at = np.zeros(3) if point is None else point
+            ends = int(here), int(there)
+            found: list[Array] | None = None
+            for size in ROADMAPS:
+                if roadmap is None or len(roadmap) < len(poses) + size:
+                    rng = np.random.default_rng(seed)
+                    roadmap = np.concatenate([poses, poses_in(robot, size, rng, cell, at)])
+                found = _around(robot, scene, roadmap, *ends, speed)
+                if found is not None:
+                    break
+            if found is None:
+                raise Refusal(
+                    f"no free way was found from pose {ends[0] + 1} of the plan to pose "
+                    f"{ends[1] + 1}",
+                    where=robot.name,
+                    remedy="Take another --seed, or leave one of them out.",
+                )
+            way = found
         for k, stop in enumerate(way[1:], 1):
             stops.append(stop)
             which.append(int(there) if k == len(way) - 1 else -1)
@@ -139,8 +153,8 @@ def _length(times: Array, order: Sequence[int]) -> float:
 
 def _around(
     robot: Robot, scene: Scene, nodes: Array, start: int, end: int, speed: Array
-) -> list[Array]:
-    """The shortest way through the roadmap whose edges are all free."""
+) -> list[Array] | None:
+    """The shortest way through the roadmap whose edges are all free; None where there is none."""
     times = _times(nodes, nodes, speed)
     near: Mask = np.zeros_like(times, dtype=bool)
     closest = np.argsort(times, axis=1)[:, 1 : NEIGHBOURS + 1]
@@ -167,8 +181,4 @@ def _around(
             known.add(edge)
         else:
             return [nodes[k] for k in reversed(way)]
-    raise Refusal(
-        f"no free way was found from pose {start + 1} of the plan to pose {end + 1}",
-        where=robot.name,
-        remedy="Take another --seed, or leave one of them out.",
-    )
+    return None
