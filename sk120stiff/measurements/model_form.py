@@ -111,13 +111,34 @@ class FormWhitener:
         columns = [form.proportional * proportional, form.constant * constant]
         white = noise.apply(np.concatenate(columns, axis=2))
         self._poses: list[tuple[Index, Array, Array]] = []
-        logdet = noise.logdet
+        self._outweighing: list[tuple[Index, Array]] = []
+        logdet, noise_left = noise.logdet, []
         for rows in rows_of_poses(measurements):
             U, singular, _ = np.linalg.svd(white[rows], full_matrices=False)
             self._poses.append((rows, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
             logdet += float(np.log1p(singular**2).sum())
+            large = singular > 1.0
+            self._outweighing.append((rows, U[:, large]))
+            noise_left.append(1.0 / (1.0 + singular[large] ** 2))
         self.logdet = logdet
         """Natural logarithm of det V, over all 3N readings; V in m²."""
+        shares = np.concatenate([*noise_left, np.zeros(0)])
+        self.noise_share = float(shares.mean()) if len(shares) else 1.0
+        """Mean share of the noise in the variance along the directions of `outweighing`."""
+
+    def outweighing(self, white: Array) -> tuple[Array, Index]:
+        """What lies along the directions in which model-form error outweighs the noise.
+
+        Args:
+            white: (3N, ...) whitened by `apply`.
+
+        Returns:
+            tuple: Components (M, ...) along these orthonormal directions, and (M,) the first
+                whitened row of each one's pose.
+        """
+        parts = [U.T @ white[rows] for rows, U in self._outweighing]
+        first = [np.full(U.shape[1], rows[0]) for rows, U in self._outweighing]
+        return np.concatenate(parts), np.concatenate(first)
 
     def apply(self, x: ArrayLike) -> Array:
         """As `Whitener.apply`."""

@@ -8,9 +8,9 @@ from scipy.optimize import nnls
 from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
-from sk120stiff.explain.candidates.regression import Regression, solve_columns
+from sk120stiff.explain.candidates.regression import FormRows, Regression, solve_columns
 from sk120stiff.explain.select.beam import beam_search, gains
-from sk120stiff.explain.select.score import price_of_choice, score_set
+from sk120stiff.explain.select.score import _deviance, price_of_choice, score_set
 from sk120stiff.robot import load_robot
 
 POSES, AXES = 12, 15
@@ -154,3 +154,40 @@ def test_effects_settle_their_laws_one_after_the_other():
         found = score_set(many, many.sums(), [0, 1], start=start)
         assert found.by_variant == {0: 2, 1: 2}
     assert price_of_choice(many, 0, 1) > price_of_choice(many, 0, 0)
+
+
+def beside_form(share: float) -> Regression:
+    """The same readings; in the first two axes of every three model-form error outweighs noise."""
+    plain = regression()
+    rows = np.arange(len(plain.y)) % 3 < 2
+    form = FormRows(plain.y[rows], plain.X[rows], plain.group[rows], share)
+    return Regression(**{**vars_of(plain), "form": form})
+
+
+@pytest.mark.parametrize("pick", [[0, 1], [0, 1, 2]])
+def test_every_model_has_its_own_size_of_model_form_error(pick):
+    """The likeliest variance of the rows that it rules, beside σ as stated in the others."""
+    found = beside_form(0.01)
+    columns = np.array(pick)
+    weights = np.ones(POSES)
+    weights[0] = 0.0  # as in a fold
+    sums = found.sums(weights)
+    solved = solve_columns(sums, columns, found.lower, found.plausible)
+    rest = (found.y - found.X[:, columns] @ solved.values)[found.group > 0]
+    own = np.arange(len(found.y))[found.group > 0] % 3 < 2
+    likeliest = min(
+        own.sum() * np.log(size) + (rest[own] ** 2).sum() / size
+        for size in np.mean(rest[own] ** 2) * np.linspace(0.9, 1.1, 201)
+    )
+    expected = likeliest + (rest[~own] ** 2).sum()
+    assert _deviance(found, sums, solved) == pytest.approx(expected, rel=1e-6)
+
+
+def test_no_model_leaves_less_than_the_noise():
+    found = beside_form(1e6)
+    solved = solve_columns(found.sums(), np.arange(5), found.lower, found.plausible)
+    assert found.form is not None and found.form.noise_share == 1e6
+    rows = len(found.form.y)
+    left = found.sums().form.left_by(solved)
+    expected = solved.rss - left + left / 1e6 + rows * np.log(1e6)
+    assert _deviance(found, found.sums(), solved) == pytest.approx(expected)

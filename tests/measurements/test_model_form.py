@@ -68,6 +68,20 @@ def test_whitening_is_that_of_the_dense_covariance(moments, zero):
     assert white.apply(x[:, :, 0]) == pytest.approx(got[:, 0])
 
 
+def test_noise_is_the_lesser_part_along_the_directions_of_model_form_error():
+    data = readings()
+    noise = NoiseModel(8e-6, form=FORM)
+    white = noise.whitener(data)
+    root = np.linalg.cholesky(dense(data, NoiseModel(8e-6)))
+    turned, first = white.outweighing(white.apply(root.reshape(12, 3, 36)))
+    shares = (turned**2).sum(axis=1)  # of the noise, in units of the whole
+    assert len(turned) and (shares < 0.5).all()
+    assert white.noise_share == pytest.approx(shares.mean())
+    assert set(first) <= {0, 12, 24}
+    identity = white.outweighing(np.eye(36))[0]
+    assert identity @ identity.T == pytest.approx(np.eye(len(first)))
+
+
 def test_the_size_is_that_of_the_covariance():
     data = readings(moments=True)
     form = dense(data, NoiseModel(8e-6, form=FORM)) - dense(data, NoiseModel(8e-6))

@@ -22,10 +22,29 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
+from sk120stiff.measurements import FormWhitener
 from sk120stiff.model import Parameter
 
 FAR_SOFTER = 10.0  # times as soft as usual: less than that ranges of plausible values allow for
 DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class FormRows:
+    """Whitened readings, turned pose by pose, in which model-form error outweighs the noise.
+
+    How large that error is goes with what a model explains, so every model has its own size of it:
+    else what one effect more explains would be held against an error that holds the effect itself.
+
+    Attributes:
+        y, X, group: As of `Regression`, in these directions.
+        noise_share: Mean share of the noise in their variance; no model leaves less.
+    """
+
+    y: Array
+    X: Array
+    group: Index
+    noise_share: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +69,7 @@ class Regression:
         sigma_known: The noise's size is known; else it is estimated by every model for itself.
         alpha: Probability at which a first effect may be named where nothing is missing.
         prior: Probabilities of effects that the user gave, by ``name`` or ``name:where``.
+        form: Its part in which model-form error outweighs the noise; None where there is none.
     """
 
     y: Array
@@ -67,6 +87,7 @@ class Regression:
     sigma_known: bool
     alpha: float
     prior: Mapping[str, float]
+    form: FormRows | None = None
 
     @cached_property
     def unusual(self) -> tuple[float, ...]:
@@ -121,23 +142,37 @@ class Regression:
         return self._weighted(np.ones(self.poses))
 
     def _weighted(self, w: Array) -> Sums:
-        by = w[self.group]
-        weighted = (self.X * by[:, None]).T
-        y = self.y
-        return Sums(weighted @ self.X, weighted @ y, float(by @ y**2), float(by.sum()))
+        form = None if self.form is None else _sums_of(self.form, w)
+        return replace(_sums_of(self, w), form=form)
+
+
+def _sums_of(rows: Regression | FormRows, weights: Array) -> Sums:
+    by, y = weights[rows.group], rows.y
+    weighted = (rows.X * by[:, None]).T
+    return Sums(weighted @ rows.X, weighted @ y, float(by @ y**2), float(by.sum()))
 
 
 @dataclass(frozen=True, eq=False)
 class Sums:
-    """XᵀX, Xᵀy, yᵀy and the number of rows of some choice of poses; `scores` remembers models."""
+    """XᵀX, Xᵀy, yᵀy and the number of rows of some choice of poses; `scores` remembers models.
+
+    `form` has the same of the part in which model-form error outweighs the noise.
+    """
 
     gram: Array
     moment: Array
     square: float
     count: float
+    form: Sums | None = None
     _marginals: dict[tuple[bytes, float], Marginal] = field(default_factory=dict)
     _inverses: dict[bytes, Array] = field(default_factory=dict)
     scores: dict[bytes, Any] = field(default_factory=dict)
+
+    def left_by(self, solved: Solved) -> float:
+        """What a solution leaves of yᵀy."""
+        v = solved.values
+        inner = self.gram[solved.columns[:, None], solved.columns] @ v
+        return self.square + float(v @ (inner - 2.0 * self.moment[solved.columns]))
 
     def over(self, columns: Index, right: Array) -> Array:
         """(XᵀX)⁻¹ of some columns, on the right-hand side (k,)."""
@@ -318,9 +353,10 @@ def regression_at(
         (*(effect for _ in own), *laws)
         for effect, own, laws in zip(chosen, variants, others, strict=True)
     )
+    whole = np.hstack([X, tied])
     return Regression(
         y=y,
-        X=np.hstack([X, tied]),
+        X=whole,
         group=np.repeat(problem.situation.pose, 3),
         base=np.concatenate([*base, np.zeros(0, dtype=np.intp)]),
         candidates=tuple(chosen),
@@ -340,7 +376,19 @@ def regression_at(
         sigma_known=fit.sigma_known,
         alpha=alpha,
         prior=prior or {},
+        form=_form_rows(fit, whole, y),
     )
+
+
+def _form_rows(fit: Fit, X: Array, y: Array) -> FormRows | None:
+    whitener = fit.problem.whitener
+    if not isinstance(whitener, FormWhitener):
+        return None
+    turned, rows = whitener.outweighing(np.column_stack([X, y]))
+    if not len(rows):
+        return None
+    group = np.repeat(fit.problem.situation.pose, 3)[rows]
+    return FormRows(turned[:, -1], turned[:, :-1], group, whitener.noise_share)
 
 
 def softness(fit: Fit) -> float:

@@ -147,11 +147,21 @@ def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> t
     price = len(parts) * price_of_looking(regression, n) + _sizes(regression, sums, solved, parts)
     # A spring of the base model is there whether it moves or not: none is cheaper for being rigid.
     price += len(regression.base) * np.log(n)
-    return solved, float(_misfit(regression, n, solved.rss) + price)
+    return solved, _deviance(regression, sums, solved) + price
 
 
-def _misfit(regression: Regression, n: float, rss: float) -> float:
-    return float(rss if regression.sigma_known else n * np.log(max(rss, 1e-300) / n))
+def _deviance(regression: Regression, sums: Sums, solved: Solved) -> float:
+    """-2 ln L up to a constant, at the likeliest variances of what nobody stated."""
+    rss, n = solved.rss, max(sums.count, 2.0)
+    own = 0.0
+    if regression.form is not None and sums.form is not None and sums.form.count:
+        left, count = max(sums.form.left_by(solved), 0.0), sums.form.count
+        size = max(left / count, regression.form.noise_share)
+        own = count * float(np.log(size)) + left / size
+        rss, n = max(rss - left, 0.0), n - count
+    if regression.sigma_known or n < 1.0:
+        return own + rss
+    return own + n * float(np.log(max(rss, 1e-300) / n)) + n
 
 
 def _with_draws(
@@ -198,7 +208,8 @@ def _sizes(regression: Regression, sums: Sums, solved: Solved, parts: Sequence[I
     if not parts:
         return 0.0
     n = max(sums.count, 2.0)
-    variance = 1.0 if regression.sigma_known else max(solved.rss, 1e-300) / n
+    known = regression.sigma_known and regression.form is None
+    variance = 1.0 if known else max(solved.rss, 1e-300) / n
     base = solved.columns[regression.in_base[solved.columns]]
     price = 0.0
     for part in parts:

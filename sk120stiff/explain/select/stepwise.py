@@ -91,8 +91,6 @@ def attempt(
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     axes = np.log(3.0 * measurements.n_readings)
-    if not regression.sigma_known:  # its part of the likelihood that no model changes
-        score += regression.rows
     return Attempt(
         base=base,
         final=final,
