@@ -8,7 +8,8 @@ from scipy.optimize import nnls
 from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
-from sk120stiff.explain.candidates.regression import FormRows, Regression, solve_columns
+from sk120stiff.explain.candidates.form_rows import FormRows
+from sk120stiff.explain.candidates.regression import Regression, solve_columns
 from sk120stiff.explain.select.beam import beam_search, gains
 from sk120stiff.explain.select.score import _deviance, price_of_choice, score_set
 from sk120stiff.robot import load_robot

@@ -20,31 +20,13 @@ from scipy.linalg.lapack import dtrtrs
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
+from sk120stiff.explain.candidates.form_rows import FormRows, form_rows
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
-from sk120stiff.measurements import FormWhitener
 from sk120stiff.model import Parameter
 
 FAR_SOFTER = 10.0  # times as soft as usual: less than that ranges of plausible values allow for
 DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
-
-
-@dataclass(frozen=True, eq=False)
-class FormRows:
-    """Whitened readings, turned pose by pose, in which model-form error outweighs the noise.
-
-    How large that error is goes with what a model explains, so every model has its own size of it:
-    else what one effect more explains would be held against an error that holds the effect itself.
-
-    Attributes:
-        y, X, group: As of `Regression`, in these directions.
-        noise_share: Mean share of the noise in their variance; no model leaves less.
-    """
-
-    y: Array
-    X: Array
-    group: Index
-    noise_share: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -376,19 +358,8 @@ def regression_at(
         sigma_known=fit.sigma_known,
         alpha=alpha,
         prior=prior or {},
-        form=_form_rows(fit, whole, y),
+        form=form_rows(fit, whole, y),
     )
-
-
-def _form_rows(fit: Fit, X: Array, y: Array) -> FormRows | None:
-    whitener = fit.problem.whitener
-    if not isinstance(whitener, FormWhitener):
-        return None
-    turned, rows = whitener.outweighing(np.column_stack([X, y]))
-    if not len(rows):
-        return None
-    group = np.repeat(fit.problem.situation.pose, 3)[rows]
-    return FormRows(turned[:, -1], turned[:, :-1], group, whitener.noise_share)
 
 
 def softness(fit: Fit) -> float:
