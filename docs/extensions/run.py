@@ -5,6 +5,7 @@ fenced block, as in README.md) and the bundled robots. Blocks of a page run in t
 
     ```{run}
     :exit: 1            what the last line leaves; 0 if not said
+    :shows: it loads    what must be among what is printed, for the text speaks of it
     :lines: 12          print no more of it
     :picture: fit.png   and show this file of the desk
     sk120stiff check motoman_sk120
@@ -62,6 +63,7 @@ class Run(SphinxDirective):
         "picture": directives.path,
         "alt": directives.unchanged_required,
         "quiet": directives.flag,
+        "shows": directives.unchanged_required,
     }
 
     def run(self) -> list[nodes.Node]:
@@ -82,6 +84,8 @@ class Run(SphinxDirective):
         )  # fmt: skip
         if done.returncode != self.options.get("exit", 0):
             raise self.error(f"exit {done.returncode} of\n{text}\n{done.stdout}")
+        if self.options.get("shows", "") not in done.stdout:
+            raise self.error(f"{self.options['shows']!r} is not in\n{done.stdout}")
         shown: list[nodes.Node] = [
             nodes.literal_block(text, text, language="python" if python else "bash")
         ]
