@@ -11,7 +11,6 @@ Run:  python scripts/18_fanuc_splits.py FOLDER_OF_DATA
 import argparse
 import runpy
 import tempfile
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -56,14 +55,12 @@ def readings(folder: Path, place: Path, sigma: float | None) -> tuple[sk.Model, 
     return sk.base_model(robot), stated
 
 
-def splits(model: sk.Model, data: Measurements) -> Iterator[Split]:
-    """The four of them, one after the other."""
-    number = np.arange(data.n_readings)
-    for k in range(SPLITS):
-        left_out = number % SPLITS == k
-        answer = sk.explain(model, data.select(~left_out))
-        rest = data.select(left_out)
-        yield Split(answer, off(answer.base, rest), off(answer.final, rest))
+def split(model: sk.Model, data: Measurements, number: int) -> Split:
+    """One of the four, counted from 0."""
+    left_out = np.arange(data.n_readings) % SPLITS == number
+    answer = sk.explain(model, data.select(~left_out))
+    rest = data.select(left_out)
+    return Split(answer, off(answer.base, rest), off(answer.final, rest))
 
 
 def off(fit: Fit, rest: Measurements) -> np.ndarray:
@@ -99,10 +96,11 @@ def main() -> None:
             held = 1e3 * np.sqrt(3.0) * step.heldout_rms
             print(f"  {step.label}: {held:.3f} mm at poses left out, names chosen anew each time")
         found = []
-        for k, split in enumerate(splits(model, data)):
-            found.append(split)
-            print(f"without every fourth pose from the {k + 1}. on: {names(split.answer)}")
-            print(f"  {rms(split.springs):.3f} mm by springs, {rms(split.named):.3f} mm with names")
+        for k in range(SPLITS):
+            one = split(model, data, k)
+            found.append(one)
+            print(f"without every fourth pose from the {k + 1}. on: {names(one.answer)}")
+            print(f"  {rms(one.springs):.3f} mm by springs, {rms(one.named):.3f} mm with names")
     springs, named = (
         np.concatenate([getattr(each, what) for each in found]) for what in ("springs", "named")
     )

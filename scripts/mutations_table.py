@@ -213,7 +213,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/judge/imitation.py", *_tests("explain", "imitation"),
-        impostors_never_compared=("takes - length - price", "takes - 2.0 * length - price"),
+        impostors_never_compared=("better - (0.0 if certain else BETTER)", "better - 1e9"),
         spread_for_nothing=("return spread, least(0.0)[0] - value", "return spread, least(0.0)[0]"),
     ),
     *_of(
