@@ -171,3 +171,22 @@ def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(sp
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(imitation, "_line_up", lambda *_: line)
         assert instead_of(found, [named(found)]) is None
+
+
+@pytest.mark.parametrize(("noise", "fall"), [(NOISE, False), (ROUGH, True)])
+def test_only_where_something_has_no_name_a_suspect_stands_for_several(springs, noise, fall):
+    names = [effect(springs.robot, "joint_tilt", where) for where in ("joint_2_l", "joint_3_u")]
+    found = refit(fit(springs, hidden(TILT), noise=noise), names)
+    columns = np.array([[1.0, 0.0, np.sqrt(0.5)], [0.0, 1.0, np.sqrt(0.5)]])
+    line = Lineup(
+        suspects=(Suspect("place", "both", np.zeros((1, 3, 1)), columns[:, 0], ""),),
+        gram=columns.T @ columns,
+        moment=columns.T @ np.array([10.0, 10.0]),
+        names=[np.array([0]), np.array([1])],
+        parts=[np.array([2])],
+        unit=10.0,
+    )
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(imitation, "_line_up", lambda *_: line)
+        other = instead_of(found, names)
+    assert (other is not None and len(other.effects) == 2) == fall

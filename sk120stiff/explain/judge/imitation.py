@@ -109,7 +109,8 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
     says what the name says, and is no reason against it. The strongest name has to be beaten
     clearly, also by all names beside any other suspect: a cause without a name may stand beside
     them. Beside model-form error such a cause is at work for certain and needs no evidence of its
-    own: a further name has to do better than it.
+    own: a further name has to do better than it, and it may stand for several. Where laws seem
+    exact it takes the place of one.
 
     Args:
         fit: The fitted model.
@@ -119,6 +120,7 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
     everything = range(len(names))
     whole = line.score(everything)
     alone = [line.takes(everything) - line.takes(set(everything) - {e}) for e in everything]
+    certain = bool(fit.problem.noise.form)
     found: list[Instead] = []
     beside = 0.0  # the best evidence with all names in the model
     for k, suspect in enumerate(line.suspects):
@@ -131,14 +133,14 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
                 if not {names[e].id, names[e].name} & set(suspect.frees)
                 and loss < max(line.price(e), NOTHING**2 * alone[e])
             ]
-            if not idle:
+            if not idle or (len(kept) < len(names) and not certain):
                 break
             kept.remove(min(idle, key=lambda e: losses[e]))
         better = whole - line.score(kept, k)
         fallen = tuple(names[e].id for e in everything if e not in kept)
         if fallen:
-            certain = bool(fit.problem.noise.form) and 0 in kept
-            found.append(Instead(suspect.name, better - (0.0 if certain else BETTER), fallen))
+            needed = 0.0 if certain and 0 in kept else BETTER
+            found.append(Instead(suspect.name, better - needed, fallen))
         else:
             beside = max(beside, better)
     won = [each for each in found if each.better > (beside if names[0].id in each.effects else 0.0)]
