@@ -7,7 +7,7 @@ Run from the repository:  python scripts/07_planning.py
 
 import numpy as np
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.model import Model, base_model
 from sk120stiff.plan import (
     Cell,
@@ -45,9 +45,7 @@ def upright_pool() -> Pool:
     loads = np.zeros((3, 6))
     loads[:, :3] = FORCE * np.eye(3)
     a = a[good][:400]
-    return Pool(
-        situation_of_load(robot, np.repeat(a, 3, axis=0), np.tile(loads, (len(a), 1)), point=POINT)
-    )
+    return Pool(load_case(robot, np.repeat(a, 3, axis=0), np.tile(loads, (len(a), 1)), point=POINT))
 
 
 def precision(name: str, model: Model, count: int) -> None:

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import sk120stiff as sk
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit
 from sk120stiff.measurements import Measurements, NoiseStatement
@@ -65,7 +65,7 @@ def split(model: sk.Model, data: Measurements, number: int) -> Split:
 
 def off(fit: Fit, rest: Measurements) -> np.ndarray:
     """(k,) distance between prediction and reading [m]."""
-    gap = rest.displacement - fit.model.predict(situation_of(fit.model.robot, rest))
+    gap = rest.displacement - fit.model.predict(load_cases_of(fit.model.robot, rest))
     return np.linalg.norm(gap, axis=1)
 
 

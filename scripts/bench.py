@@ -143,31 +143,31 @@ def tasks(seconds: float) -> Iterator[Row]:
     import bench_tasks as jobs
 
     group = "identification"
-    found = attempt(lambda: jobs.table_2_identification(seconds))
+    found = selection(lambda: jobs.table_2_identification(seconds))
     yield Row(group, "the paper's measured data, read and identified", found[0], "s", found[1])
     for count in (30, 100, 1_000, 10_000):
-        found = attempt(lambda count=count: jobs.identification(count, seconds / 2))
+        found = selection(lambda count=count: jobs.identification(count, seconds / 2))
         yield Row(group, f"{count:,} readings, three springs", found[0], "s", found[1])
     for count in (100, 1_000, 10_000):
-        found = attempt(lambda count=count: jobs.prediction(count, seconds / 2))
+        found = selection(lambda count=count: jobs.prediction(count, seconds / 2))
         yield Row(group, f"{count:,} readings predicted", found[0], "s", found[1])
     for count in (100, 2_000):
-        found = attempt(lambda count=count: jobs.slip_search(count))
+        found = selection(lambda count=count: jobs.slip_search(count))
         yield Row(
             group, f"{count:,} readings searched for slips of the pen", found[0], "s", found[1]
         )
-    found = attempt(lambda: jobs.sensitivities(seconds / 2))
+    found = selection(lambda: jobs.sensitivities(seconds / 2))
     yield Row(group, "100 readings, sensitivities of two effects", found[0], "s", found[1])
     group = "explain"
     for count, candidates in ((50, 3), (100, 3), (200, 3), (100, 6), (100, 0)):
         which = f"{candidates} kinds of effect" if candidates else "the whole catalogue"
-        found = attempt(lambda count=count, some=candidates: jobs.explanation(count, some))
+        found = selection(lambda count=count, some=candidates: jobs.explanation(count, some))
         yield Row(group, f"{count} readings, {which}", found[0], "s", found[1])
-    found = attempt(lambda: jobs.live_frame(seconds) * 1e3)
+    found = selection(lambda: jobs.live_frame(seconds) * 1e3)
     yield Row("view", "one request of the live page, answered", found[0], "ms", found[1])
 
 
-def attempt(work: Callable[[], float]) -> tuple[float | None, str]:
+def selection(work: Callable[[], float]) -> tuple[float | None, str]:
     """A number, or why there is none."""
     try:
         return work(), ""

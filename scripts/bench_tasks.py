@@ -75,22 +75,22 @@ def identification(count: int, budget: float) -> float:
 
 def prediction(count: int, budget: float) -> float:
     """Exact equilibrium of `count` readings [s]."""
-    from sk120stiff.effects import situation_of
+    from sk120stiff.effects import load_cases_of
 
     model = sk120_model()
-    situation = situation_of(model.robot, readings(count, model))
-    return seconds(lambda: model.predict(situation), budget)
+    load_cases = load_cases_of(model.robot, readings(count, model))
+    return seconds(lambda: model.predict(load_cases), budget)
 
 
 def sensitivities(budget: float) -> float:
     """Exact derivatives of 100 readings by the parameters of springs, base and link [s]."""
-    from sk120stiff.effects import effect, situation_of
+    from sk120stiff.effects import effect, load_cases_of
 
     model = sk120_model()
-    situation = situation_of(model.robot, readings(100, model))
+    load_cases = load_cases_of(model.robot, readings(100, model))
     for name, where in (("base_rocking", None), ("link_bending", "link_3_u")):
         model = model + effect(model.robot, name, where)
-    return seconds(lambda: model.predict_with_sensitivities(situation), budget)
+    return seconds(lambda: model.predict_with_sensitivities(load_cases), budget)
 
 
 def slip_search(count: int) -> float:

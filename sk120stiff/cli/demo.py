@@ -21,7 +21,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.tables import progress_bar, table
-from sk120stiff.effects import all_effects, situation_of
+from sk120stiff.effects import all_effects, load_cases_of
 from sk120stiff.explain import explain, verdict_document
 from sk120stiff.explain.answer.saving import plan_of, replacing_results
 from sk120stiff.explain.candidates.absorbed import absorbed
@@ -106,7 +106,7 @@ def _of_hidden(cause: HiddenCause) -> dict[str, object]:
 def _told(cause: HiddenCause) -> list[object]:
     answer = cause.answer
     steps = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
-    poses = len(answer.base.problem.situation.poses)
+    poses = len(answer.base.problem.load_cases.poses)
     return [
         f"4. A campaign of {poses} poses, simulated by other code, with a hidden cause",
         said(answer),
@@ -126,12 +126,12 @@ def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
     other = fit(paper, readings, method="lm")
     tell(10, 100)
     answer = explain(paper, readings, progress=lambda _, share: tell(10 + round(25 * share), 100))
-    situation = situation_of(robot, readings.masked())
+    load_cases = load_cases_of(robot, readings.masked())
     present = {effect.id for effect in found.model.effects}
     absent = [
         effect
         for effect in all_effects(robot, poses=readings.poses, timed=readings.time is not None)
-        if effect.id not in present and effect.applies_to(situation)
+        if effect.id not in present and effect.applies_to(load_cases)
     ]
     return Demo(paper, found, other, answer, absorbed(found, absent))
 
@@ -222,7 +222,7 @@ def _per_pose(made: Demo) -> list[tuple[str, float, float]]:
     from sk120stiff.show.stories.gap_section import pose_rms
 
     before, after = (1e6 * pose_rms(made.found, m) for m in (made.paper, made.found.model))
-    poses = made.found.problem.situation.poses
+    poses = made.found.problem.load_cases.poses
     return [(p, float(b), float(a)) for p, b, a in zip(poses, before, after, strict=True)]
 
 

@@ -240,7 +240,7 @@ def _none(left: Adequacy) -> str:
 
 def _outside(answer: Explanation) -> str:
     if answer.unnamed:
-        poses = len(answer.base.problem.situation.poses)
+        poses = len(answer.base.problem.load_cases.poses)
         few = f" {poses} poses are few: measure at more." if poses < FEW_POSES else ""
         return f"Something is missing, and no name for it is confirmed by other poses.{few}"
     allowed = "that was looked for" if answer.limits else "of the catalogue"

@@ -187,13 +187,13 @@ def with_effect(model: Model, text: str, readings: Measurements) -> Model:
     Raises:
         InputError: No such effect, it cannot act there, or the readings lack what its law needs.
     """
-    from sk120stiff.effects import situation_of
+    from sk120stiff.effects import load_cases_of
 
     name, _, where = text.partition(":")
     found = effect(
         model.robot, name, where or None, poses=readings.poses, timed=readings.time is not None
     )
-    if not found.applies_to(situation_of(model.robot, readings)):
+    if not found.applies_to(load_cases_of(model.robot, readings)):
         raise InputError(
             f"these readings lack what the effect {found.id!r} needs",
             where=str(readings.path or "measurements"),

@@ -17,7 +17,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_robot
 from sk120stiff.cli.options import BaseOption, RobotArgument, ToolOption
 from sk120stiff.cli.tables import table
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.errors import InputError
 from sk120stiff.files import together, will_write, write_atomically
 from sk120stiff.identify import why_unseen
@@ -145,8 +145,8 @@ def _unseen(model: Model) -> dict[str, str]:
     """Joint → reason why its spring cannot show at the tool frame's origin."""
     arm = model.robot
     poses = sample_poses(arm, 5)
-    situation = situation_of_load(arm, poses, np.tile(PROBE, (len(poses), 1)))
-    found = ((p.effect.where, why_unseen(situation, p)) for p in model.parameters)
+    load_cases = load_case(arm, poses, np.tile(PROBE, (len(poses), 1)))
+    found = ((p.effect.where, why_unseen(load_cases, p)) for p in model.parameters)
     return {joint: why for joint, why in found if why is not None}
 
 

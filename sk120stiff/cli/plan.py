@@ -20,7 +20,7 @@ from sk120stiff.cli.plan_program import in_order, language_for, write_route
 from sk120stiff.cli.plan_shown import as_keys, height_words, plan_table
 from sk120stiff.cli.plan_wishes import named_parameters, two_effects
 from sk120stiff.cli.tables import progress_bar, table
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.identify import why_unseen
@@ -175,7 +175,7 @@ def command(
         cell=within,
     )
     sigma = _sigma(known, noise)
-    before = None if known is None else Pool(situation_of(start.robot, known.masked()))
+    before = None if known is None else Pool(load_cases_of(start.robot, known.masked()))
     with progress_bar("plan"):
         if between is None:
             chosen = _precise(start, pool, known, wanted, (count, loads), sigma, seed)
@@ -238,7 +238,7 @@ def _precise(
     for text in wanted or ():
         model, found = named_parameters(model, text)
         names += found
-    before = None if known is None else Pool(situation_of(model.robot, known.masked()))
+    before = None if known is None else Pool(load_cases_of(model.robot, known.masked()))
     design = d_optimal(
         model, pool, count=count[0], loads=count[1], sigma=sigma, parameters=names or None,
         known=before,
@@ -251,7 +251,7 @@ def _precise(
     )
     expected: list[dict[str, object]] = []
     rows: list[tuple[object, ...]] = []
-    chosen = pool.situation.rows(np.array(design.rows, dtype=np.intp))
+    chosen = pool.load_cases.rows(np.array(design.rows, dtype=np.intp))
     blind: list[object] = []
     for name in design.parameters:
         std = every[name]

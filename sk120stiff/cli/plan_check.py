@@ -9,7 +9,7 @@ from sk120stiff.cli.cell import opened_cell
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_data
 from sk120stiff.cli.tables import table
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.plan import Cell, assumptions, feasible
 
 
@@ -24,9 +24,9 @@ def checked(path: Path, given: Path | None, stated: Callable[[Cell], Cell]) -> A
     data, robot = open_data(path)
     cell = stated(opened_cell(robot, given, path))
     used = data.masked()
-    situation = situation_of(robot, used)
+    load_cases = load_cases_of(robot, used)
     verdict = feasible(
-        robot, cell, situation.a, situation.wrench,
+        robot, cell, load_cases.a, load_cases.wrench,
         point=used.point, force_point=used.force_point,
     )  # fmt: skip
     rows = [

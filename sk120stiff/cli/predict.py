@@ -14,7 +14,7 @@ from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
 from sk120stiff.cli.positions import predicted_positions
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.files import csv_text, will_write, write_atomically
 from sk120stiff.measurements import Measurements
@@ -49,7 +49,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     for said in look(believed, readings).sentences:
         warnings.warn(said, ToolkitWarning, stacklevel=2)
     with progress_bar("predict"):
-        predicted = predict_what_holds(believed, situation_of(robot, readings))
+        predicted = predict_what_holds(believed, load_cases_of(robot, readings))
     columns = prediction_table(readings, predicted)
     if out is not None:
         write_atomically(out, csv_text(columns.items()))

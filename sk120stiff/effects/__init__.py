@@ -17,9 +17,9 @@ from sk120stiff.effects.base import (
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.declared import declared_aliases
+from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.signatures import FirstOrder
-from sk120stiff.effects.situation import Situation, situation_of, situation_of_load
 from sk120stiff.effects.words import EffectWords, catalogue_words, comment_lines, words_of
 
 __all__ = [
@@ -35,11 +35,11 @@ __all__ = [
     "Geometric",
     "Imposed",
     "LinearElastic",
+    "LoadCases",
     "LoadError",
     "Options",
     "ParameterSpec",
     "ReadingError",
-    "Situation",
     "Switching",
     "Viewpoint",
     "alias_classes",
@@ -49,7 +49,7 @@ __all__ = [
     "declared_aliases",
     "effect",
     "generic_readings",
-    "situation_of",
-    "situation_of_load",
+    "load_case",
+    "load_cases_of",
     "words_of",
 ]

@@ -14,8 +14,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Effect, LinearElastic
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
+from sk120stiff.effects.load_cases import LoadCases, load_case
 from sk120stiff.effects.signatures import FirstOrder
-from sk120stiff.effects.situation import Situation, situation_of_load
 from sk120stiff.errors import listed
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length, sample_poses
@@ -77,7 +77,7 @@ def alias_classes(
     effects: Sequence[Effect] | None = None,
     catalogue: Catalogue = CATALOGUE,
     base: Sequence[str] | None = None,
-    situation: Situation | None = None,
+    load_cases: LoadCases | None = None,
     tolerance: float = TOLERANCE,
 ) -> AliasClasses:
     """Effects that cannot be told apart by any readings of a kind.
@@ -88,11 +88,11 @@ def alias_classes(
             out.
         catalogue: The effects that there are.
         base: Joints whose springs are in the base model; all actuated joints by default.
-        situation: Readings to judge by. Default: `generic_readings`, pure forces at the measured
+        load_cases: Readings to judge by. Default: `generic_readings`, pure forces at the measured
             point. Give the readings of an experiment to learn what these can tell at all.
         tolerance: Share of a signature that may differ.
     """
-    readings = generic_readings(robot) if situation is None else situation
+    readings = generic_readings(robot) if load_cases is None else load_cases
     held = tuple(robot.actuated if base is None else base)
     if effects is None:
         timed = readings.time is not None
@@ -127,7 +127,7 @@ def generic_readings(
     moments: bool = False,
     unloading: bool = True,
     seed: int = 0,
-) -> Situation:
+) -> LoadCases:
     """Readings at random poses with random loads at a point off every axis.
 
     Args:
@@ -145,7 +145,7 @@ def generic_readings(
     force_point = size * np.array([0.071, 0.018, 0.102]) if moments else point
     if not moments:
         wrench[:, 3:] = 0.0
-    plain = situation_of_load(
+    plain = load_case(
         robot, sample_poses(robot, number, seed), wrench, point=point, force_point=force_point
     )
     falling = rng.random(number) < 0.5
@@ -245,7 +245,7 @@ class _Table:
         """Columns of the single virtual joints of an effect whose one parameter has several."""
         if not isinstance(item, LinearElastic) or len(item.parameters) != 1:
             return {}
-        joints = item.virtual_joints(self._first.situation.robot)
+        joints = item.virtual_joints(self._first.load_cases.robot)
         out: dict[str, Array] = {}
         for joint in joints if len(joints) > 1 else ():
             column = self._first.of_coordinate(joint.name).reshape(-1)

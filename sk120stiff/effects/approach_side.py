@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Geometric, Options, scale_of
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 
 
@@ -51,20 +51,20 @@ class ApproachSide(Geometric):
         """Every actuated joint."""
         return robot.actuated
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """The order must be known, and both sides must occur."""
-        if not situation.absolute or situation.side is None:
+        if not load_cases.absolute or load_cases.side is None:
             return False
-        sides = situation.side[:, situation.robot.actuated.index(self.where)]
+        sides = load_cases.side[:, load_cases.robot.actuated.index(self.where)]
         return bool((sides > 0).any() and (sides < 0).any())
 
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """The joint itself."""
         return (self.where,)
 
-    def shifts(self, situation: Situation) -> Array:
+    def shifts(self, load_cases: LoadCases) -> Array:
         """The side of each reading."""
-        if situation.side is None:
-            return np.zeros((situation.count, 1, 1))
-        own = situation.side[:, situation.robot.actuated.index(self.where)]
+        if load_cases.side is None:
+            return np.zeros((load_cases.count, 1, 1))
+        own = load_cases.side[:, load_cases.robot.actuated.index(self.where)]
         return np.asarray(own[:, None, None])

@@ -30,8 +30,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_length
 
@@ -91,7 +91,7 @@ class Effect(ABC):
         axes: The frame in which its parameters are stated (class attribute).
         former: Names under which files of earlier versions hold a parameter with the other sign,
             and its name now (class attribute).
-        exchangeable: The parameters are draws of one size (class attribute).
+        random_effects: The parameters are draws of one size (class attribute).
         bends_a_spring: It changes the spring of the joint at which it acts, so there must be one
             (class attribute).
         inexact: Share of what it explains by which real parts depart from its law (class
@@ -124,7 +124,7 @@ class Effect(ABC):
     equation: ClassVar[str] = ""
     axes: ClassVar[str] = ""
     former: ClassVar[Mapping[str, str]] = {}
-    exchangeable: ClassVar[bool] = False
+    random_effects: ClassVar[bool] = False
     bends_a_spring: ClassVar[bool] = False
     inexact: ClassVar[float] = 0.0
     joint_spring: ClassVar[bool] = False
@@ -193,11 +193,11 @@ class Effect(ABC):
         """
         return ()
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """Do these readings hold what the law needs (an order, branches, a weight)?"""
         return True
 
-    def other_laws(self, situation: Situation) -> tuple[Effect, ...]:
+    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """The same effect at the same place by other laws, where more than one is usual."""
         return ()
 
@@ -229,7 +229,7 @@ class Elastic(Effect):
         return tuple(joint.name for joint in self.virtual_joints(robot))
 
     @abstractmethod
-    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+    def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """Law e(τ) for torques (N, k) [N·m or N] and internal parameter values (P,)."""
 
 
@@ -244,12 +244,12 @@ class LinearElastic(Elastic):
     one_axis_each: ClassVar[bool] = False
 
     @abstractmethod
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """(P, k, k) or (P, N, k, k) symmetric compliance per unit of each parameter."""
 
-    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+    def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""
-        patterns = self.patterns(situation)
+        patterns = self.patterns(load_cases)
         if patterns.ndim == 3:
             by_parameter = np.einsum("pij,nj->nip", patterns, torques)
         else:
@@ -289,13 +289,13 @@ class Geometric(Effect):
         """Names of the k coordinates that are shifted."""
         return tuple(joint.name for joint in self.virtual_joints(robot))
 
-    def shifts(self, situation: Situation) -> Array:
+    def shifts(self, load_cases: LoadCases) -> Array:
         """(N, k, P) shift of the coordinates per unit of a parameter.
 
         Parameter k shifts coordinate k alone, at all poses alike, unless the effect says otherwise.
         """
         P = len(self.parameters)
-        return np.broadcast_to(np.eye(P), (situation.count, P, P))
+        return np.broadcast_to(np.eye(P), (load_cases.count, P, P))
 
 
 class Imposed(Effect):
@@ -314,7 +314,7 @@ class Imposed(Effect):
         return tuple(joint.name for joint in self.virtual_joints(robot))
 
     @abstractmethod
-    def shifts(self, situation: Situation) -> Array:
+    def shifts(self, load_cases: LoadCases) -> Array:
         """(N, k, P) movement of the coordinates since the zero reading, per unit of a parameter.
 
         Zero where the readings do not hold what it goes with (a time, an order).
@@ -329,15 +329,15 @@ class Misreading(Effect):
     def generators(self) -> Array:
         """(P, d, d) matrices S_p."""
 
-    def offsets(self, situation: Situation) -> Array:
+    def offsets(self, load_cases: LoadCases) -> Array:
         """(N, d, P) constants o_p; zero unless the effect adds something of its own."""
         P, d, _ = self.generators.shape
-        return np.zeros((situation.count, d, P))
+        return np.zeros((load_cases.count, d, P))
 
-    def columns(self, x: Array, situation: Situation) -> Array:
+    def columns(self, x: Array, load_cases: LoadCases) -> Array:
         """(N, d, P) derivative of the output by the parameters, for inputs x (N, d)."""
         proportional = np.einsum("pij,nj->nip", self.generators, x)
-        return np.asarray(proportional + self.offsets(situation))
+        return np.asarray(proportional + self.offsets(load_cases))
 
     def matrix(self, values: Array) -> Array:
         """(d, d) derivative of the output by the input."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.robot import Linkage
 
@@ -54,7 +54,7 @@ class ClosureCoupling(LinearElastic):
         """The two joints."""
         return tuple(self.where.split(PAIR))
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """c₂₃ (e₂ e₃ᵀ + e₃ e₂ᵀ)."""
         return np.array([[[0.0, 1.0], [1.0, 0.0]]])
 
@@ -105,11 +105,11 @@ class ClosureRod(LinearElastic):
         """The joint whose crank the rod holds."""
         return (self.linkage(robot).drivers[1],)
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """1 / (r sin γ)² at the unloaded pose [1/m²]."""
-        corners = self.linkage(situation.robot).corners
+        corners = self.linkage(load_cases.robot).corners
         pivot, elbow, end = (
-            situation.robot.screws(situation.a, frame).position for frame in corners
+            load_cases.robot.screws(load_cases.a, frame).position for frame in corners
         )
         crank, rod = elbow - pivot, end - elbow
         lever = (np.cross(crank, rod) ** 2).sum(-1) / (rod**2).sum(-1)  # (r sin γ)² [m²]

@@ -15,8 +15,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
 from sk120stiff.robot.rotations import crossed
@@ -118,9 +118,9 @@ class ForceBias(ForceSensorEffect):
         """It does not depend on the load."""
         return np.zeros((3, 6, 6))
 
-    def offsets(self, situation: Situation) -> Array:
+    def offsets(self, load_cases: LoadCases) -> Array:
         """A unit force along each sensor axis, taken away."""
-        return np.broadcast_to(-np.eye(6)[:, :3], (situation.count, 6, 3))
+        return np.broadcast_to(-np.eye(6)[:, :3], (load_cases.count, 6, 3))
 
 
 @dataclass(frozen=True)

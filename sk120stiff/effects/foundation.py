@@ -10,8 +10,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import ONE_WAY, Alias, LinearElastic, Options, scale_of
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 
 CROSS = "cross_stiffness"
@@ -45,7 +45,7 @@ class BaseRocking(LinearElastic):
         """The law that the names of the parameters tell."""
         return Options(shape=tuple(parameters))
 
-    def other_laws(self, situation: Situation) -> tuple[BaseRocking, ...]:
+    def other_laws(self, load_cases: LoadCases) -> tuple[BaseRocking, ...]:
         """With a cross term or without."""
         return (replace(self, askew=not self.askew),)
 
@@ -101,7 +101,7 @@ class BaseRocking(LinearElastic):
             for k, label in enumerate("xy")
         )
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """Each axis has a compliance of its own; the cross term couples them."""
         own = [np.diag(row) for row in np.eye(2)]
         return np.array([*own, 1.0 - np.eye(2)] if self.askew else own)
@@ -160,6 +160,6 @@ class BaseSliding(LinearElastic):
             for k in "xyz"
         )
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """Each axis has a compliance of its own."""
         return np.array([np.diag(row) for row in np.eye(3)])

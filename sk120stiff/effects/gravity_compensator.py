@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joint, arm_joints, sample_poses
 
@@ -66,12 +66,12 @@ class GravityCompensator(LinearElastic):
         """The actuated joint itself."""
         return (self.where,)
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """−cos θ, from the height of the link's far end over its near end."""
-        robot = situation.robot
+        robot = load_cases.robot
         joint = arm_joint(robot, self.where)
-        origin = robot.screws(situation.a, joint.link).position
-        end = robot.screws(situation.a, joint.link, joint.along).position
+        origin = robot.screws(load_cases.a, joint.link).position
+        end = robot.screws(load_cases.a, joint.link, joint.along).position
         up = -robot.gravity / np.linalg.norm(robot.gravity)
         cosine = (end - origin) @ up / joint.length
         return -cosine[None, :, None, None]

@@ -10,8 +10,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Geometric
 from sk120stiff.effects.closure import PAIR
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 
 REACH = 2  # joints further on that a drive passes on its way
@@ -57,15 +57,15 @@ class JointCoupling(Geometric):
             for second in turning[k + 1 : k + 1 + REACH]
         )
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """Displacements hardly show it."""
-        return situation.absolute
+        return load_cases.absolute
 
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """The joint that is moved."""
         return (self.where.split(PAIR)[1],)
 
-    def shifts(self, situation: Situation) -> Array:
+    def shifts(self, load_cases: LoadCases) -> Array:
         """The other joint's coordinate."""
-        first = situation.robot.actuated.index(self.where.split(PAIR)[0])
-        return np.asarray(situation.a[:, first, None, None])
+        first = load_cases.robot.actuated.index(self.where.split(PAIR)[0])
+        return np.asarray(load_cases.a[:, first, None, None])

@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.effects.base import Geometric
 from sk120stiff.effects.geometry import length_error
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, free_joints
 
@@ -58,9 +58,9 @@ class JointFrame(Geometric):
         """Every joint on the way to the tool that moves."""
         return free_joints(robot)
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """Displacements hardly show it."""
-        return situation.absolute
+        return load_cases.absolute
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three rigid slides and three rigid turns where the joint's frame is."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic, Options, scale_of
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 
 MEANING = "torque per angle (force per way) by which the drive yields; larger is stiffer"
@@ -68,6 +68,6 @@ class JointSprings(LinearElastic):
         """The actuated joint itself."""
         return (self.where,)
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """e = c τ."""
         return np.ones((1, 1, 1))

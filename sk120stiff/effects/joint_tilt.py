@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic, unit_vectors
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, free_joints
 
@@ -72,6 +72,6 @@ class JointTilt(LinearElastic):
             for label, axis in zip(("along", "across"), joint.tilt_axes(), strict=True)
         )
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """Each axis has a compliance of its own."""
         return np.array([np.diag(row) for row in unit_vectors(2, (0, 1))])

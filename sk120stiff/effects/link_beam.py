@@ -17,8 +17,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic, Options, scale_of
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, sample_poses
 
@@ -123,9 +123,9 @@ class LinkBending(LinearElastic):
             for plane in ([f"_{each}" for each in PLANES] if self.planes else [""])
         )
 
-    def other_laws(self, situation: Situation) -> tuple[LinkBending, ...]:
+    def other_laws(self, load_cases: LoadCases) -> tuple[LinkBending, ...]:
         """Other tapers, a beam along the roll axis where there is one, planes that differ."""
-        along = [False, True] if _roll_member(situation.robot, self.where) else [False]
+        along = [False, True] if _roll_member(load_cases.robot, self.where) else [False]
         laws = [
             replace(self, taper=taper, roll=roll, planes=planes)
             for planes in (False, True)
@@ -191,9 +191,9 @@ class LinkBending(LinearElastic):
             for j in np.flatnonzero(alike.all(axis=0))
         )
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """Every station of the beam yields by its share of the flexibility."""
-        length = float(np.linalg.norm(self._member(situation.robot).span))
+        length = float(np.linalg.norm(self._member(load_cases.robot).span))
         both = length * np.repeat(shares(self.taper), 2)
         if not self.planes:
             return np.diag(both)[None]
@@ -255,9 +255,9 @@ class LinkTorsion(LinearElastic):
             axis, placement[:3, 3] = roll, link.along
         return (VirtualJoint(f"{self.id}.twist", link.index, placement, axis),)
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """Twist of the whole length."""
-        return np.full((1, 1, 1), arm_joint(situation.robot, self.where).length)
+        return np.full((1, 1, 1), arm_joint(load_cases.robot, self.where).length)
 
 
 def _rolling_axis(robot: Robot, link: ArmJoint, most: float) -> Array | None:

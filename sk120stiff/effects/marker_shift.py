@@ -11,8 +11,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Geometric, Options, scale_of
 from sk120stiff.effects.geometry import length_error, tool_slides
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 
 
@@ -67,20 +67,20 @@ class MarkerShift(Geometric):
         """The tool frame."""
         return (robot.tool_frame,)
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """There must be several series."""
-        return situation.absolute and bool(self.series) and situation.series is not None
+        return load_cases.absolute and bool(self.series) and load_cases.series is not None
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three rigid slides at the tool frame."""
         return tool_slides(robot, self.id)
 
-    def shifts(self, situation: Situation) -> Array:
+    def shifts(self, load_cases: LoadCases) -> Array:
         """One in the series that the parameter belongs to."""
-        out = np.zeros((situation.count, 3, len(self.series), 3))
-        if situation.series is not None:
+        out = np.zeros((load_cases.count, 3, len(self.series), 3))
+        if load_cases.series is not None:
             for k, label in enumerate(self.series):
-                if label in situation.series_names:
-                    rows = situation.series == situation.series_names.index(label)
+                if label in load_cases.series_names:
+                    rows = load_cases.series == load_cases.series_names.index(label)
                     out[rows, :, k, :] = np.eye(3)
-        return out.reshape(situation.count, 3, -1)
+        return out.reshape(load_cases.count, 3, -1)

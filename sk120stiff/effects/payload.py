@@ -10,8 +10,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LoadError
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import crossed
 
@@ -55,21 +55,23 @@ class Payload(LoadError):
         """The tool frame."""
         return (robot.tool_frame,)
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """It hangs there with and without load, so displacements do not show it."""
-        return situation.absolute
+        return load_cases.absolute
 
     @cached_property
     def generators(self) -> Array:
         """It does not depend on the reported load."""
         return np.zeros((4, 6, 6))
 
-    def offsets(self, situation: Situation) -> Array:
+    def offsets(self, load_cases: LoadCases) -> Array:
         """Weight and moment of a unit of each parameter, tool axes, at the point of the force."""
-        gravity = np.einsum("nji,j->ni", situation.rotation, situation.robot.gravity_in_base)
-        out = np.zeros((situation.count, 6, 4))
+        gravity = np.einsum("nji,j->ni", load_cases.rotation, load_cases.robot.gravity_in_base)
+        out = np.zeros((load_cases.count, 6, 4))
         out[:, :3, 0] = gravity
-        hung = situation.force_point if situation.payload_point is None else situation.payload_point
-        out[:, 3:, 0] = np.cross(hung - situation.force_point, gravity)
+        hung = (
+            load_cases.force_point if load_cases.payload_point is None else load_cases.payload_point
+        )
+        out[:, 3:, 0] = np.cross(hung - load_cases.force_point, gravity)
         out[:, 3:, 1:] = -crossed(gravity)
         return out

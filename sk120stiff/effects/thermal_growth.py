@@ -10,8 +10,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Imposed, Options, scale_of
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, arm_links
 
@@ -61,13 +61,13 @@ class ThermalGrowth(Imposed):
         """Every link with a length."""
         return tuple(joint.link for joint in arm_links(robot))
 
-    def _clock(self, situation: Situation) -> Array | None:
-        return situation.temperature if self.thermal else situation.time
+    def _clock(self, load_cases: LoadCases) -> Array | None:
+        return load_cases.temperature if self.thermal else load_cases.time
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """The file must hold what it goes with."""
-        clock = self._clock(situation)
-        return situation.absolute and clock is not None and bool(np.ptp(clock) > 0.0)
+        clock = self._clock(load_cases)
+        return load_cases.absolute and clock is not None and bool(np.ptp(clock) > 0.0)
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """A rigid slide along the link, at its far end."""
@@ -77,8 +77,8 @@ class ThermalGrowth(Imposed):
         axis = link.directions()[0]
         return (VirtualJoint(f"{self.id}.length", link.index, placement, axis, revolute=False),)
 
-    def shifts(self, situation: Situation) -> Array:
+    def shifts(self, load_cases: LoadCases) -> Array:
         """Temperature or time of each reading."""
-        clock = self._clock(situation)
-        elapsed = np.zeros(situation.count) if clock is None else clock
+        clock = self._clock(load_cases)
+        elapsed = np.zeros(load_cases.count) if clock is None else clock
         return np.asarray(elapsed[:, None, None])

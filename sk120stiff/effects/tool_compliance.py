@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LinearElastic
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot, VirtualJoint
 
 
@@ -79,6 +79,6 @@ class ToolCompliance(LinearElastic):
             for k, label in enumerate("xyz")
         )
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         """Each axis has a compliance of its own."""
         return np.array([np.diag(row) for row in np.eye(6)])

@@ -11,8 +11,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Alias, Options, ReadingError, scale_of
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import crossed
 
@@ -131,22 +131,22 @@ class ReadingDrift(TrackerEffect):
         """What happens."""
         return "The readings drift as the measurement goes on."
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """The file must say in which order, or when, it was read."""
-        return self._clock(situation) is not None
+        return self._clock(load_cases) is not None
 
-    def _clock(self, situation: Situation) -> Array | None:
-        return situation.time if self.per_second else situation.order
+    def _clock(self, load_cases: LoadCases) -> Array | None:
+        return load_cases.time if self.per_second else load_cases.order
 
     @cached_property
     def generators(self) -> Array:
         """It does not depend on the displacement."""
         return np.zeros((3, 3, 3))
 
-    def offsets(self, situation: Situation) -> Array:
+    def offsets(self, load_cases: LoadCases) -> Array:
         """Time or steps since the zero reading."""
-        clock = self._clock(situation)
-        elapsed = np.zeros(situation.count) if clock is None else clock
+        clock = self._clock(load_cases)
+        elapsed = np.zeros(load_cases.count) if clock is None else clock
         return elapsed[:, None, None] * np.eye(3)
 
 
@@ -159,7 +159,7 @@ class ZeroOffset(TrackerEffect):
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "d_read = d + c of the pose"
     axes: ClassVar[str] = "axes of the base frame"
-    exchangeable: ClassVar[bool] = True
+    random_effects: ClassVar[bool] = True
     needs: ClassVar[str] = "several readings of a pose"
 
     @classmethod
@@ -194,21 +194,21 @@ class ZeroOffset(TrackerEffect):
         """What happens."""
         return "The unloaded readings of the poses are off by more than the noise."
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """Poses need several readings each, else the offset takes everything."""
-        return bool(self.poses) and situation.count > len(self.poses)
+        return bool(self.poses) and load_cases.count > len(self.poses)
 
     @cached_property
     def generators(self) -> Array:
         """It does not depend on the displacement."""
         return np.zeros((3 * len(self.poses), 3, 3))
 
-    def offsets(self, situation: Situation) -> Array:
+    def offsets(self, load_cases: LoadCases) -> Array:
         """One on the readings of the pose that the parameter belongs to."""
         known = {pose: k for k, pose in enumerate(self.poses)}
-        out = np.zeros((situation.count, 3, len(self.poses), 3))
-        for row, index in enumerate(situation.pose):
-            k = known.get(situation.poses[index])
+        out = np.zeros((load_cases.count, 3, len(self.poses), 3))
+        for row, index in enumerate(load_cases.pose):
+            k = known.get(load_cases.poses[index])
             if k is not None:
                 out[row, :, k, :] = np.eye(3)
-        return out.reshape(situation.count, 3, -1)
+        return out.reshape(load_cases.count, 3, -1)

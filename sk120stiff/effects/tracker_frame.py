@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Viewpoint
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import left_jacobian, rotation_of
 
@@ -54,9 +54,9 @@ class TrackerFrame(Viewpoint):
         """The instrument."""
         return ("tracker",)
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """Displacements have their axes from the file."""
-        return situation.absolute
+        return load_cases.absolute
 
     def frame(self, values: Array) -> tuple[Array, Array]:
         """See `Viewpoint.frame`."""

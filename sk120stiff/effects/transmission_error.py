@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Geometric
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 
 HARMONICS = (1, 2)  # once per turn: eccentric; twice: oval
@@ -52,16 +52,16 @@ class TransmissionError(Geometric):
             if not slides
         )
 
-    def applies_to(self, situation: Situation) -> bool:
+    def applies_to(self, load_cases: LoadCases) -> bool:
         """Displacements hardly show it."""
-        return situation.absolute
+        return load_cases.absolute
 
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """The joint itself."""
         return (self.where,)
 
-    def shifts(self, situation: Situation) -> Array:
+    def shifts(self, load_cases: LoadCases) -> Array:
         """Waves over the reported angle."""
-        q = situation.a[:, situation.robot.actuated.index(self.where)]
+        q = load_cases.a[:, load_cases.robot.actuated.index(self.where)]
         waves = [wave(k * q) for k in HARMONICS for wave in (np.sin, np.cos)]
         return np.stack(waves, axis=-1)[:, None, :]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect, all_effects, situation_of
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, all_effects, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -67,13 +67,13 @@ def with_assumed(
 ) -> Model:
     """The model with the effects that the user takes for granted, to be fitted with it."""
     everything = _everything(model, used, catalogue)
-    situation = situation_of(model.robot, used)
+    load_cases = load_cases_of(model.robot, used)
     for wanted in assumed:
         found = [effect for effect in everything if _matches(effect, wanted)]
         if not found:
             raise _unknown(wanted, model, catalogue)
         needed = ", or ".join(dict.fromkeys(e.needs for e in found if e.needs))
-        found = [effect for effect in found if effect.applies_to(situation)]
+        found = [effect for effect in found if effect.applies_to(load_cases)]
         if not found:
             raise InputError(
                 f"these readings do not hold what {wanted!r} needs",
@@ -96,7 +96,7 @@ def candidates_for(
     change their stiffness are looked for, likewise, where the model has one: at a joint that it
     holds rigid the spring itself is missing first.
     """
-    situation = situation_of(model.robot, used)
+    load_cases = load_cases_of(model.robot, used)
     present = {effect.id for effect in model.effects}
     everything = _everything(model, used, catalogue)
     for wanted in (*options.only, *options.exclude):
@@ -106,14 +106,14 @@ def candidates_for(
     soft = {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
 
     def sensible(effect: Effect) -> bool:
-        few = not effect.exchangeable or len(used.poses) <= POSES_WITH_OFFSETS
+        few = not effect.random_effects or len(used.poses) <= POSES_WITH_OFFSETS
         return few and (not effect.bends_a_spring or effect.where in soft)
 
     found = tuple(
         effect
         for effect in everything
         if effect.id not in present
-        and effect.applies_to(situation)
+        and effect.applies_to(load_cases)
         and (sensible(effect) or any(_matches(effect, wanted) for wanted in options.only))
         and not any(_matches(effect, wanted) for wanted in options.exclude)
         and (not options.only or any(_matches(effect, wanted) for wanted in options.only))

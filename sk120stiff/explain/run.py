@@ -25,8 +25,8 @@ from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
 from sk120stiff.explain.priors import FURTHER_IMPOSTOR, IMPOSTOR
-from sk120stiff.explain.select.best_attempt import best_attempt, held_against
-from sk120stiff.explain.select.stepwise import Attempt, attempt
+from sk120stiff.explain.select.best_selection import best_selection, held_against
+from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import Fit, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
@@ -79,8 +79,8 @@ def explain(
     sound = _sound(model, measurements)
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
-    under = _attempts(model, used, options, catalogue)
-    found, noise = best_attempt(used, under)
+    under = _selections(model, used, options, catalogue)
+    found, noise = best_selection(used, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
     exact, at, standing = not found.final.exceeds, base, set[str]()
@@ -121,7 +121,7 @@ def explain(
         steps=gap_steps(found, effects, holdout, seed=options.seed),
         noise=noise,
         noise_reasons=(*decided(noise, used), *left.of_the_statement()),
-        set_aside=tuple(rows[found.aside].tolist()),
+        set_aside=tuple(rows[found.outliers].tolist()),
         readings=measurements,
         adequacy=left,
         remainder=remainder,
@@ -140,7 +140,7 @@ def explain(
     return completed(answer, found.regression, seed=options.seed)
 
 
-def _where_it_binds(found: Attempt, options: Options) -> tuple[str, ...]:
+def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:
     """That more effects might have been found, had more been looked for."""
     if len(found.chosen) < options.max_effects or not options.max_effects:
         return ()
@@ -167,19 +167,19 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
         )
 
 
-def _attempts(
+def _selections(
     model: Model, measurements: Measurements, options: Options, catalogue: Catalogue
-) -> Callable[[NoiseModel], Attempt]:
-    """Attempts at an answer, as a function of the noise."""
+) -> Callable[[NoiseModel], Selection]:
+    """Selections at an answer, as a function of the noise."""
     base_model = with_assumed(model, measurements, options.assume, catalogue)
     candidates = candidates_for(base_model, measurements, options, catalogue)
-    plain = tuple(effect for effect in candidates if not effect.exchangeable)
+    plain = tuple(effect for effect in candidates if not effect.random_effects)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
-    def under(chosen: NoiseModel) -> Attempt:
+    def under(chosen: NoiseModel) -> Selection:
         # Constants of single poses are what a shared zero brings; it need not have been separate.
         # Beside model-form error they are part of it.
-        return attempt(
+        return select(
             base_model,
             measurements,
             chosen,
@@ -210,7 +210,7 @@ def _silent(phrase: str, share: float) -> None:
     del phrase, share
 
 
-def _adequacy(found: Attempt, noise: NoiseModel) -> Adequacy:
+def _adequacy(found: Selection, noise: NoiseModel) -> Adequacy:
     return adequacy(held_against(noise, found.final), {effect.id for effect in found.effects})
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import Elastic, LinearElastic, situation_of_load
+from sk120stiff.effects import Elastic, LinearElastic, load_case
 from sk120stiff.effects.base import Switching
 from sk120stiff.errors import InputError
 from sk120stiff.exports.contract import Request, Told
@@ -50,7 +50,7 @@ def told_of(model: Model) -> tuple[tuple[Told, ...], tuple[Told, ...]]:
     """What a `MovingArm` carries of a model's effects, and what it leaves out."""
     geometry = geometry_of(model)
     carried, left_out = list(geometry.carried), list(geometry.left_out)
-    situation = situation_of_load(model.robot, probing_poses(model.robot), np.zeros(6))
+    load_cases = load_case(model.robot, probing_poses(model.robot), np.zeros(6))
     for effect, part in zip(model.effects, model.assembly.slices, strict=True):
         if not isinstance(effect, Elastic) or not model.values[part].any():
             continue
@@ -59,7 +59,7 @@ def told_of(model: Model) -> tuple[tuple[Told, ...], tuple[Told, ...]]:
         elif not isinstance(effect, LinearElastic):
             carried.append(Told(effect.id, "as a spring, as stiff as it is without load"))
             left_out.append(Told(effect.id, "how its stiffness goes with the load"))
-        elif (patterns := effect.patterns(situation)).ndim == 3 or not np.ptp(patterns, 1).any():
+        elif (patterns := effect.patterns(load_cases)).ndim == 3 or not np.ptp(patterns, 1).any():
             carried.append(Told(effect.id, "as springs"))
         else:
             carried.append(Told(effect.id, "as springs, as stiff as they are at the pose"))

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import Effect, Elastic, Geometric, Imposed, situation_of_load
+from sk120stiff.effects import Effect, Elastic, Geometric, Imposed, load_case
 from sk120stiff.exports.contract import Told
 from sk120stiff.model import Model, probing_poses
 from sk120stiff.robot import LinearCoupling, Robot
@@ -67,10 +67,10 @@ def departure(model: Model) -> Array:
     At random poses: waves of a gear and the like, which no fixed origin holds.
     """
     geometry, assembly = geometry_of(model), model.assembly
-    situation = situation_of_load(model.robot, probing_poses(model.robot), np.zeros(6))
-    fixed = np.tile(geometry.shift, (situation.count, 1))
-    fixed[:, : model.robot.n] += situation.a
-    ways = [assembly.start(situation, model.values), fixed]
+    load_cases = load_case(model.robot, probing_poses(model.robot), np.zeros(6))
+    fixed = np.tile(geometry.shift, (load_cases.count, 1))
+    fixed[:, : model.robot.n] += load_cases.a
+    ways = [assembly.start(load_cases, model.values), fixed]
     true, held = (assembly.mechanism.screws(z).position for z in ways)
     return np.asarray(np.linalg.norm(true - held, axis=1))
 
@@ -86,7 +86,7 @@ def geometry_of(model: Model) -> Geometry:
     mechanism = assembly.mechanism
     names = [*robot.actuated, *(joint.name for joint in mechanism.virtual)]
     index = {name: k for k, name in enumerate(names)}
-    situation = situation_of_load(robot, probing_poses(robot), np.zeros(6))
+    load_cases = load_case(robot, probing_poses(robot), np.zeros(6))
     by_parameter = np.zeros((len(names), len(model.values)))
     of_marker = np.zeros(len(names), dtype=bool)
     carried: list[Told] = []
@@ -98,7 +98,7 @@ def geometry_of(model: Model) -> Geometry:
         if not isinstance(effect, Geometric):
             left_out += [Told(effect.id, _why_not(effect))] if acts else []
             continue
-        shifts = effect.shifts(situation)  # (N, k, P)
+        shifts = effect.shifts(load_cases)  # (N, k, P)
         why = _not_constant(shifts, model.values[part])
         if why:
             left_out += [Told(effect.id, why)] if acts else []

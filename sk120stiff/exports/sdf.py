@@ -13,7 +13,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import LinearElastic, situation_of_load
+from sk120stiff.effects import LinearElastic, load_case
 from sk120stiff.exports.building import moving_arm, told_of
 from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers
 from sk120stiff.exports.meshes import mesh_files
@@ -74,11 +74,11 @@ def _distinct(arm: MovingArm) -> MovingArm:
 
 def _ties(model: Model) -> list[str]:
     """Effects by which the torque of one coordinate moves another."""
-    situation = situation_of_load(model.robot, model.robot.rest, np.zeros(6))
+    load_cases = load_case(model.robot, model.robot.rest, np.zeros(6))
     found = []
     for effect, part in zip(model.effects, model.assembly.slices, strict=True):
         if isinstance(effect, LinearElastic) and model.values[part].any():
-            C = np.tensordot(model.values[part], effect.patterns(situation), axes=1)
+            C = np.tensordot(model.values[part], effect.patterns(load_cases), axes=1)
             if (C * (1.0 - np.eye(C.shape[-1]))).any():
                 found.append(effect.id)
     return found

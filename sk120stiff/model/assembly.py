@@ -29,9 +29,9 @@ from sk120stiff.effects import (
     Geometric,
     Imposed,
     LinearElastic,
+    LoadCases,
     LoadError,
     ReadingError,
-    Situation,
 )
 from sk120stiff.effects.base import Misreading, Switching
 from sk120stiff.model.misread import Misread, misread, rotate, to_sensor
@@ -101,71 +101,71 @@ class Assembly:
     def _indices(self, names: Sequence[str]) -> Index:
         return np.array([self._coordinate[name] for name in names], dtype=np.intp)
 
-    def start(self, situation: Situation, values: Array) -> Array:
+    def start(self, load_cases: LoadCases, values: Array) -> Array:
         """(N, n_z) unloaded coordinates z₀ [rad or m]."""
-        z_0 = np.zeros((situation.count, self.mechanism.n))
-        z_0[:, : self.robot.n] = situation.a
+        z_0 = np.zeros((load_cases.count, self.mechanism.n))
+        z_0[:, : self.robot.n] = load_cases.a
         for effect, part, index in self._geometric:
-            if values[part].any() and not _marks(effect, situation):
-                z_0[:, index] += effect.shifts(situation) @ values[part]
+            if values[part].any() and not _marks(effect, load_cases):
+                z_0[:, index] += effect.shifts(load_cases) @ values[part]
         return z_0
 
-    def _moved(self, z_0: Array, situation: Situation, values: Array) -> Array:
+    def _moved(self, z_0: Array, load_cases: LoadCases, values: Array) -> Array:
         """(N, n_z) where the coordinates have gone by themselves since the zero reading."""
         if not self._imposed:
             return z_0
         moved = z_0.copy()
         for effect, part, index in self._imposed:
-            moved[:, index] += effect.shifts(situation) @ values[part]
+            moved[:, index] += effect.shifts(load_cases) @ values[part]
         return moved
 
-    def stand(self, situation: Situation, values: Array) -> Standing:
+    def stand(self, load_cases: LoadCases, values: Array) -> Standing:
         """Equilibrium under load and weight for N readings and parameter values (P,).
 
         Raises:
             Refusal: The springs cannot hold the load.
         """
-        loads = misread(self.of(LoadError), situation, values, to_sensor(situation))
-        wrench = rotate(situation.rotation, loads.value)
-        z_0 = self.start(situation, values)
-        onset = self.mechanism.screws(z_0, situation.force_point).torques(wrench)
-        law, springs = self.law(situation, values, onset)
+        loads = misread(self.of(LoadError), load_cases, values, to_sensor(load_cases))
+        wrench = rotate(load_cases.rotation, loads.value)
+        z_0 = self.start(load_cases, values)
+        onset = self.mechanism.screws(z_0, load_cases.force_point).torques(wrench)
+        law, springs = self.law(load_cases, values, onset)
         rest = equilibrium(
             self.mechanism,
-            self._moved(z_0, situation, values),
+            self._moved(z_0, load_cases, values),
             wrench,
             law,
-            point=self._marker(situation, values),
-            force_point=situation.force_point,
+            point=self._marker(load_cases, values),
+            force_point=load_cases.force_point,
             soft=self.soft(values),
             weight=self._weight(springs),
         )
-        return Standing(situation, wrench, loads, onset, rest)
+        return Standing(load_cases, wrench, loads, onset, rest)
 
-    def solve(self, situation: Situation, values: Array) -> Solution:
+    def solve(self, load_cases: LoadCases, values: Array) -> Solution:
         """Equilibrium and displacement for N readings and parameter values (P,).
 
         Raises:
             Refusal: The springs cannot hold the load.
         """
-        stood = self.stand(situation, values)
-        z_0 = self.start(situation, values)
-        if situation.zero_a is not None:  # encoders read a little otherwise without load
-            z_0[:, : self.robot.n] += situation.zero_a - situation.a
-        weight = self._weight(self.law(situation, values, stood.onset)[1])
-        unloaded = self._sagging(z_0, situation, weight, self.soft(values))
+        stood = self.stand(load_cases, values)
+        z_0 = self.start(load_cases, values)
+        if load_cases.zero_a is not None:  # encoders read a little otherwise without load
+            z_0[:, : self.robot.n] += load_cases.zero_a - load_cases.a
+        weight = self._weight(self.law(load_cases, values, stood.onset)[1])
+        unloaded = self._sagging(z_0, load_cases, weight, self.soft(values))
         displacement = stood.rest.screws.position - unloaded.screws.position
-        readings = misread(self.of(ReadingError), situation, values, displacement)
+        readings = misread(self.of(ReadingError), load_cases, values, displacement)
         return Solution(
-            situation, stood.wrench, stood.loads, stood.onset, stood.rest, unloaded, readings
+            load_cases, stood.wrench, stood.loads, stood.onset, stood.rest, unloaded, readings
         )
 
-    def _marker(self, situation: Situation, values: Array) -> Array:
+    def _marker(self, load_cases: LoadCases, values: Array) -> Array:
         """(3,) or (N, 3) measured point in the tool frame [m]."""
-        point = situation.point
+        point = load_cases.point
         for effect, part, _ in self._geometric:
-            if _marks(effect, situation) and values[part].any():
-                point = point + effect.shifts(situation) @ values[part]
+            if _marks(effect, load_cases) and values[part].any():
+                point = point + effect.shifts(load_cases) @ values[part]
         return point
 
     def _weight(self, springs: Array) -> Weight | None:
@@ -173,7 +173,7 @@ class Assembly:
         return Weight(self.robot.gravity_in_base, springs) if weighs else None
 
     def _sagging(
-        self, z_0: Array, situation: Situation, weight: Weight | None, soft: Index
+        self, z_0: Array, load_cases: LoadCases, weight: Weight | None, soft: Index
     ) -> Equilibrium:
         """The arm before the load comes, bent by its own weight only."""
         return equilibrium(
@@ -181,7 +181,7 @@ class Assembly:
             z_0,
             np.zeros((len(z_0), 6)),
             lambda torques: (np.zeros_like(torques), np.zeros((z_0.shape[1],) * 2)),
-            point=situation.point,
+            point=load_cases.point,
             soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
             weight=weight,
         )
@@ -196,7 +196,7 @@ class Assembly:
         found = [index for _, part, index in self._elastic if values[part].any()]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.intp)
 
-    def law(self, situation: Situation, values: Array, onset: Array) -> tuple[ElasticLaw, Array]:
+    def law(self, load_cases: LoadCases, values: Array, onset: Array) -> tuple[ElasticLaw, Array]:
         """Elongation of all coordinates under the load, and the compliance of what is linear.
 
         What does not change with the coordinates is evaluated only once.
@@ -204,25 +204,25 @@ class Assembly:
         n = self.mechanism.n
         constant = np.zeros((n, n))
         varying: Array | None = None
-        jumps = np.zeros((situation.count, n))
+        jumps = np.zeros((load_cases.count, n))
         nonlinear: list[tuple[Elastic, slice, Index]] = []
         for effect, part, index in self._elastic:
             if not values[part].any():
                 continue
             if isinstance(effect, Switching):
-                found = effect.elongation(onset[:, index], situation, values[part])
+                found = effect.elongation(onset[:, index], load_cases, values[part])
                 jumps[:, index] += found.value
                 continue
             if not isinstance(effect, LinearElastic):
                 nonlinear.append((effect, part, index))
                 continue
-            patterns = effect.patterns(situation)
+            patterns = effect.patterns(load_cases)
             block = np.tensordot(values[part], patterns, axes=1)
             if patterns.ndim == 3:
                 constant[np.ix_(index, index)] += block
             else:
                 if varying is None:
-                    varying = np.zeros((situation.count, n, n))
+                    varying = np.zeros((load_cases.count, n, n))
                 varying[:, index[:, None], index] += block
         linear = constant if varying is None else constant + varying
 
@@ -230,9 +230,9 @@ class Assembly:
             elongation = jumps + (linear @ torques[..., None])[..., 0]
             if not nonlinear:
                 return elongation, linear
-            tangent = np.broadcast_to(linear, (situation.count, n, n)).copy()
+            tangent = np.broadcast_to(linear, (load_cases.count, n, n)).copy()
             for effect, part, index in nonlinear:
-                found = effect.elongation(torques[:, index], situation, values[part])
+                found = effect.elongation(torques[:, index], load_cases, values[part])
                 elongation[:, index] += found.value
                 tangent[:, index[:, None], index] += found.by_torque
             return elongation, tangent
@@ -249,22 +249,22 @@ class Assembly:
         return self._standing(solution, values, adjoint)
 
     def _standing(self, solution: Standing, values: Array, adjoint: Array) -> Array:
-        situation, rest = solution.situation, solution.rest
+        load_cases, rest = solution.load_cases, solution.rest
         P = int(self.slices[-1].stop) if self.slices else 0
-        out = np.zeros((situation.count, adjoint.shape[1], P))
+        out = np.zeros((load_cases.count, adjoint.shape[1], P))
         for effect, part, index in self._elastic:
             torques = solution.onset if isinstance(effect, Switching) else rest.torques
             if isinstance(effect, LinearElastic):
                 torques = torques + rest.weights
-            found = effect.elongation(torques[:, index], situation, values[part])
+            found = effect.elongation(torques[:, index], load_cases, values[part])
             out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
         for shifted, part, index in self._geometric:
-            if _marks(shifted, situation):
-                out[:, :3, part] += rest.screws.rotation @ shifted.shifts(situation)
+            if _marks(shifted, load_cases):
+                out[:, :3, part] += rest.screws.rotation @ shifted.shifts(load_cases)
                 continue
-            out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(situation)
+            out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(load_cases)
         for moving, part, index in self._imposed:
-            out[:, :, part] += adjoint[:, :, index] @ moving.shifts(situation)
+            out[:, :, part] += adjoint[:, :, index] @ moving.shifts(load_cases)
         return out
 
     def pose_sensitivities(self, stood: Standing, values: Array) -> Array:
@@ -276,7 +276,7 @@ class Assembly:
 
     def sensitivities(self, solution: Solution, values: Array) -> Array:
         """(N, 3, P) exact derivative of the readings by the internal parameter values."""
-        situation, rest, before = solution.situation, solution.rest, solution.unloaded
+        load_cases, rest, before = solution.load_cases, solution.rest, solution.unloaded
         soft = self.soft(values)
         adjoint = _adjoint(rest, soft, rest.screws.linear_jacobian)  # (N, 3, n_z) = J N⁻¹
         weighs = self.mechanism.chain.weighs
@@ -285,28 +285,28 @@ class Assembly:
         out = self._standing(solution, values, adjoint)
         for effect, part, index in self._elastic:
             if isinstance(effect, LinearElastic) and weighs:
-                found = effect.elongation(before.weights[:, index], situation, values[part])
+                found = effect.elongation(before.weights[:, index], load_cases, values[part])
                 out[:, :, part] -= adjoint_0[:, :, index] @ found.by_parameter
         for shifted, part, index in self._geometric:
-            out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(situation)
+            out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
         self._add_loads(out, solution, adjoint)
         out = solution.readings.matrix @ out
         for part, columns in solution.readings.columns:
             out[:, :, part] += columns
-        return np.swapaxes(situation.reading_axes, -1, -2) @ out
+        return np.swapaxes(load_cases.reading_axes, -1, -2) @ out
 
     def _add_loads(self, out: Array, solution: Standing, adjoint: Array) -> None:
         """Add the derivatives (N, k, P) by the parameters of the load errors."""
-        situation, rest = solution.situation, solution.rest
+        load_cases, rest = solution.load_cases, solution.rest
         if not solution.loads.columns:
             return
-        loaded = rest.screws.at(situation.force_point)
+        loaded = rest.screws.at(load_cases.force_point)
         per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, k, 6)
         for part, columns in solution.loads.columns:
             turned = np.concatenate(
                 [
-                    np.einsum("nij,njp->nip", situation.rotation, columns[:, :3]),
-                    np.einsum("nij,njp->nip", situation.rotation, columns[:, 3:]),
+                    np.einsum("nij,njp->nip", load_cases.rotation, columns[:, :3]),
+                    np.einsum("nij,njp->nip", load_cases.rotation, columns[:, 3:]),
                 ],
                 axis=1,
             )
@@ -318,7 +318,7 @@ class Standing:
     """Where the loaded arm stands.
 
     Attributes:
-        situation: The readings.
+        load_cases: The readings.
         wrench: (N, 6) true load, base axes [N, N·m].
         loads: What the force sensor made of the load.
         onset: (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or
@@ -326,7 +326,7 @@ class Standing:
         rest: Equilibrium under load and weight.
     """
 
-    situation: Situation
+    load_cases: LoadCases
     wrench: Array
     loads: Misread
     onset: Array
@@ -348,13 +348,13 @@ class Solution(Standing):
     @property
     def displacement(self) -> Array:
         """(N, 3) predicted readings in the axes of the measurements [m]."""
-        axes = np.swapaxes(self.situation.reading_axes, -1, -2)
+        axes = np.swapaxes(self.load_cases.reading_axes, -1, -2)
         return np.asarray(np.einsum("nij,nj->ni", axes, self.readings.value))
 
 
-def _marks(effect: Geometric, situation: Situation) -> bool:
+def _marks(effect: Geometric, load_cases: LoadCases) -> bool:
     """Does it move the marker, and nothing of the arm?"""
-    return effect.of_marker and situation.absolute
+    return effect.of_marker and load_cases.absolute
 
 
 def _adjoint(rest: Equilibrium, soft: Index, J: Array) -> Array:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import Elastic, LinearElastic, Situation, situation_of_load
+from sk120stiff.effects import Elastic, LinearElastic, LoadCases, load_case
 from sk120stiff.errors import InputError
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Mechanism, Robot
@@ -72,7 +72,7 @@ class ModelCompliance:
 
     def start(self, a: Array) -> Array:
         """See `Compliant`."""
-        return self.model.assembly.start(self._situation(a, np.zeros(6)), self.model.values)
+        return self.model.assembly.start(self._load_cases(a, np.zeros(6)), self.model.values)
 
     def compliance_at(self, a: Array) -> Array:
         """See `Compliant`."""
@@ -95,13 +95,13 @@ class ModelCompliance:
 
     def _laws(self, a: Array, wrench: Array) -> tuple[ElasticLaw, Array]:
         """The law, and the compliance of what is linear and yields to the weight."""
-        situation, values = self._situation(a, wrench), self.model.values
-        z_0 = self.model.assembly.start(situation, values)
-        onset = self.mechanism.screws(z_0, self.point).torques(situation.wrench)
-        return self.model.assembly.law(situation, values, onset)
+        load_cases, values = self._load_cases(a, wrench), self.model.values
+        z_0 = self.model.assembly.start(load_cases, values)
+        onset = self.mechanism.screws(z_0, self.point).torques(load_cases.wrench)
+        return self.model.assembly.law(load_cases, values, onset)
 
-    def _situation(self, a: Array, wrench: Array) -> Situation:
-        return situation_of_load(self.model.robot, a, wrench, point=self.point)
+    def _load_cases(self, a: Array, wrench: Array) -> LoadCases:
+        return load_case(self.model.robot, a, wrench, point=self.point)
 
 
 def model_compliance(

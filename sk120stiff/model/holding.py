@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import Situation
+from sk120stiff.effects import LoadCases
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model.model import Model
 from sk120stiff.robot.anatomy import arm_length
@@ -33,19 +33,19 @@ def warn_of_far_bend(model: Model, displacement: Array) -> None:
         )
 
 
-def held_loads(model: Model, situation: Situation) -> Mask:
+def held_loads(model: Model, load_cases: LoadCases) -> Mask:
     """(N,) readings for which a static equilibrium exists, found by halving.
 
     Args:
         model: Robot and effects.
-        situation: The N readings.
+        load_cases: The N readings.
     """
-    held = np.zeros(situation.count, dtype=bool)
-    parts = [np.arange(situation.count)]
+    held = np.zeros(load_cases.count, dtype=bool)
+    parts = [np.arange(load_cases.count)]
     while parts:
         rows = parts.pop()
         try:
-            model.predict(situation.rows(rows))
+            model.predict(load_cases.rows(rows))
         except Refusal:
             if len(rows) > 1:
                 parts += list(np.array_split(rows, 2))

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.errors import Refusal
 from sk120stiff.model.compliance import ModelCompliance, seen_from
 from sk120stiff.model.loaded import LoadedStiffness
@@ -98,7 +98,7 @@ def _drawn(C: Array, change: Array) -> Array:
 
 def _deflection(model: Model, a: ArrayLike, load: Array, point: Array) -> Predicted | None:
     try:
-        return predict_with_uncertainty(model, situation_of_load(model.robot, a, load, point=point))
+        return predict_with_uncertainty(model, load_case(model.robot, a, load, point=point))
     except Refusal:
         return None
 

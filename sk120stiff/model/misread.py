@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Situation
+from sk120stiff.effects import LoadCases
 from sk120stiff.effects.base import Misreading
 
 
@@ -27,13 +27,13 @@ class Misread:
 
 
 def misread(
-    effects: list[tuple[Misreading, slice]], situation: Situation, values: Array, x: Array
+    effects: list[tuple[Misreading, slice]], load_cases: LoadCases, values: Array, x: Array
 ) -> Misread:
     """Readings `x` (N, d) as they come out of a series of misreadings."""
     matrix = np.eye(x.shape[-1])
     columns: list[tuple[slice, Array]] = []
     for effect, part in effects:
-        own = effect.columns(x, situation)
+        own = effect.columns(x, load_cases)
         step = effect.matrix(values[part])
         x = x + own @ values[part]
         columns = [(earlier, step @ found) for earlier, found in columns]
@@ -42,9 +42,9 @@ def misread(
     return Misread(x, matrix, tuple(columns))
 
 
-def to_sensor(situation: Situation) -> Array:
+def to_sensor(load_cases: LoadCases) -> Array:
     """(N, 6) the reported wrench in sensor axes."""
-    return rotate(np.swapaxes(situation.rotation, -1, -2), situation.wrench)
+    return rotate(np.swapaxes(load_cases.rotation, -1, -2), load_cases.wrench)
 
 
 def rotate(rotation: Array, wrench: Array) -> Array:

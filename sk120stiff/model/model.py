@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import (
     Effect,
+    LoadCases,
     LoadError,
     ReadingError,
-    Situation,
-    situation_of_load,
+    load_case,
 )
 from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.model.assembly import Assembly, Solution
@@ -235,20 +235,20 @@ class Model:
             self.parameter(name)
         return replace(self, uncertainty=uncertainty)
 
-    def solve(self, situation: Situation, values: Array | None = None) -> Solution:
+    def solve(self, load_cases: LoadCases, values: Array | None = None) -> Solution:
         """Equilibrium of all readings at once; see `predict` for many.
 
         Examples:
             >>> import sk120stiff as sk
             >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-            >>> from sk120stiff.effects import situation_of_load
-            >>> one = situation_of_load(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
+            >>> from sk120stiff.effects import load_case
+            >>> one = load_case(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
             >>> model.solve(one).displacement.shape  # m
             (1, 3)
         """
-        return self.assembly.solve(situation, self.values if values is None else values)
+        return self.assembly.solve(load_cases, self.values if values is None else values)
 
-    def predict(self, situation: Situation, values: Array | None = None) -> Array:
+    def predict(self, load_cases: LoadCases, values: Array | None = None) -> Array:
         """(N, 3) predicted readings in the axes of the measurements [m].
 
         Raises:
@@ -257,44 +257,44 @@ class Model:
         Examples:
             >>> import sk120stiff as sk
             >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-            >>> from sk120stiff.effects import situation_of_load
-            >>> one = situation_of_load(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
+            >>> from sk120stiff.effects import load_case
+            >>> one = load_case(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
             >>> model.predict(one).shape  # m
             (1, 3)
         """
         given = self.values if values is None else values
         return np.concatenate(
-            [self.assembly.solve(part, given).displacement for part in self._blocks(situation)]
+            [self.assembly.solve(part, given).displacement for part in self._blocks(load_cases)]
             or [np.zeros((0, 3))]
         )
 
     def predict_with_sensitivities(
-        self, situation: Situation, values: Array | None = None
+        self, load_cases: LoadCases, values: Array | None = None
     ) -> tuple[Array, Array]:
         """(N, 3) predicted readings [m] and (N, 3, P) derivatives by the internal values.
 
         Examples:
             >>> import sk120stiff as sk
             >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-            >>> from sk120stiff.effects import situation_of_load
-            >>> one = situation_of_load(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
+            >>> from sk120stiff.effects import load_case
+            >>> one = load_case(model.robot, [0.0] * 6, [0, 0, -490, 0, 0, 0])
             >>> model.predict_with_sensitivities(one)[1].shape
             (1, 3, 3)
         """
         given = self.values if values is None else values
         displacement, derivative = [], []
-        for part in self._blocks(situation):
+        for part in self._blocks(load_cases):
             solution = self.assembly.solve(part, given)
             displacement.append(solution.displacement)
             derivative.append(self.assembly.sensitivities(solution, given))
         return np.concatenate(displacement), np.concatenate(derivative)
 
-    def _blocks(self, situation: Situation) -> list[Situation]:
+    def _blocks(self, load_cases: LoadCases) -> list[LoadCases]:
         """Readings in stretches that bound the memory, whatever the number of coordinates."""
         block = min(BLOCK, max(1, SQUARES // self.assembly.mechanism.n**2))
-        if situation.count <= block:
-            return [situation]
-        return [situation.rows(slice(k, k + block)) for k in range(0, situation.count, block)]
+        if load_cases.count <= block:
+            return [load_cases]
+        return [load_cases.rows(slice(k, k + block)) for k in range(0, load_cases.count, block)]
 
     def deflect(
         self,
@@ -315,8 +315,8 @@ class Model:
             >>> print(f"{1e3 * moved[0, 2]:.3f} mm")
             -1.052 mm
         """
-        situation = situation_of_load(self.robot, a, wrench, point=point, force_point=force_point)
-        return self.physical().predict(situation)
+        load_cases = load_case(self.robot, a, wrench, point=point, force_point=force_point)
+        return self.physical().predict(load_cases)
 
     def physical(self) -> Model:
         """The arm alone: the model without load and reading errors.

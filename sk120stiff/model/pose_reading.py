@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import ReadingError, Situation, Viewpoint
+from sk120stiff.effects import LoadCases, ReadingError, Viewpoint
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.misread import misread
 from sk120stiff.model.model import Model
@@ -40,7 +40,7 @@ class PoseReading:
 
 
 def read_poses(
-    model: Model, situation: Situation, values: Array | None = None, *, derivative: bool = False
+    model: Model, load_cases: LoadCases, values: Array | None = None, *, derivative: bool = False
 ) -> PoseReading:
     """Predicted positions and orientations of N readings, in blocks.
 
@@ -50,20 +50,22 @@ def read_poses(
     given = model.values if values is None else values
     parts = [
         _read(model.assembly, part, given, derivative)
-        for part in _blocks(situation, model.assembly.mechanism.n)
+        for part in _blocks(load_cases, model.assembly.mechanism.n)
     ]
     names = ("position", "rotation", "columns", "standing", "turning")
     return PoseReading(*(np.concatenate([getattr(part, n) for part in parts]) for n in names))
 
 
-def _blocks(situation: Situation, n: int) -> Iterator[Situation]:
+def _blocks(load_cases: LoadCases, n: int) -> Iterator[LoadCases]:
     size = max(1, min(BLOCK, BUDGET // n**2))
-    for k in range(0, situation.count, size):
-        yield situation.rows(slice(k, k + size))
+    for k in range(0, load_cases.count, size):
+        yield load_cases.rows(slice(k, k + size))
 
 
-def _read(assembly: Assembly, situation: Situation, values: Array, derivative: bool) -> PoseReading:
-    stood = assembly.stand(situation, values)
+def _read(
+    assembly: Assembly, load_cases: LoadCases, values: Array, derivative: bool
+) -> PoseReading:
+    stood = assembly.stand(load_cases, values)
     screws = stood.rest.screws
     R, t = np.eye(3), np.zeros(3)
     views = [
@@ -75,9 +77,9 @@ def _read(assembly: Assembly, situation: Situation, values: Array, derivative: b
         own, shift = effect.frame(values[part])
         R, t = own @ R, own @ t + shift
     turned = screws.position @ R.T
-    said = misread(assembly.of(ReadingError), situation, values, turned + t)
+    said = misread(assembly.of(ReadingError), load_cases, values, turned + t)
     P = len(values) if derivative else 0
-    columns = np.zeros((situation.count, 6, P))
+    columns = np.zeros((load_cases.count, 6, P))
     turning = columns[:, :0]
     if derivative:
         body = assembly.pose_sensitivities(stood, values)

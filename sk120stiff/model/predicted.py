@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import Situation, situation_of
+from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.model import Model
 from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
@@ -86,10 +86,10 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
         >>> print(f"{1e6 * (gap**2).mean() ** 0.5:.1f} µm rms")
         26.4 µm rms
     """
-    return predict_with_uncertainty(model, situation_of(model.robot, measurements))
+    return predict_with_uncertainty(model, load_cases_of(model.robot, measurements))
 
 
-def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
+def predict_with_uncertainty(model: Model, load_cases: LoadCases) -> Predicted:
     """Predicted readings ± what the parameters and what the model lacks make of them.
 
     To first order in the parameters, by the exact derivative at equilibrium: deflections are linear
@@ -97,21 +97,21 @@ def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
 
     Args:
         model: Robot, effects, and their uncertainty if it is known.
-        situation: The N readings.
+        load_cases: The N readings.
 
     Raises:
         Refusal: The springs cannot hold a load.
     """
     known = model.uncertainty
     if known is None:
-        return Predicted(model.predict(situation))
-    displacement, derivative = model.predict_with_sensitivities(situation)
+        return Predicted(model.predict(load_cases))
+    displacement, derivative = model.predict_with_sensitivities(load_cases)
     L, B = known.factors(model.names)
     std = spread(derivative @ L, derivative @ B, known.floor)
     return Predicted(
         displacement,
         std,
-        remainder_std(known, situation),
+        remainder_std(known, load_cases),
         tuple(
             blamed(known, model.names, derivative[k]) if lost else ()
             for k, lost in enumerate(np.atleast_1d(np.isinf(std).any(axis=1)))
@@ -119,12 +119,12 @@ def predict_with_uncertainty(model: Model, situation: Situation) -> Predicted:
     )
 
 
-def remainder_std(known: Uncertainty, situation: Situation) -> Array | None:
+def remainder_std(known: Uncertainty, load_cases: LoadCases) -> Array | None:
     """(N, 3) standard size of what is unexplained, axes of the readings [m]; None: not known."""
     if known.remainder is None:
         return None
-    of_base = known.remainder.std(situation.wrench)
-    return np.asarray(np.sqrt(np.einsum("nij,ni->nj", situation.reading_axes**2, of_base**2)))
+    of_base = known.remainder.std(load_cases.wrench)
+    return np.asarray(np.sqrt(np.einsum("nij,ni->nj", load_cases.reading_axes**2, of_base**2)))
 
 
 def blamed(known: Uncertainty, names: tuple[str, ...], derivative: Array) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sk120stiff.effects import Situation
+from sk120stiff.effects import LoadCases
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.holding import held_loads
@@ -18,16 +18,16 @@ AXES = "xyz"
 UNHELD = "no static equilibrium: the springs cannot hold this load"
 
 
-def predict_what_holds(model: Model, situation: Situation) -> Predicted:
+def predict_what_holds(model: Model, load_cases: LoadCases) -> Predicted:
     """Predictions ± uncertainty; NaN, with a warning, where no equilibrium exists.
 
     Raises:
         Refusal: None of the loads can be held.
     """
     try:
-        return predict_with_uncertainty(model, situation)
+        return predict_with_uncertainty(model, load_cases)
     except Refusal:
-        held = held_loads(model, situation)
+        held = held_loads(model, load_cases)
         if not held.any():
             raise
     warnings.warn(
@@ -36,7 +36,7 @@ def predict_what_holds(model: Model, situation: Situation) -> Predicted:
         ToolkitWarning,
         stacklevel=2,
     )
-    return predict_with_uncertainty(model, situation.rows(held)).among(held)
+    return predict_with_uncertainty(model, load_cases.rows(held)).among(held)
 
 
 Columns = dict[str, list[object]]

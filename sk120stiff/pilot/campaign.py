@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import Situation, situation_of
+from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.identify import Problem
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
@@ -107,7 +107,7 @@ class Campaign:
         given: dict[str, float] | None = None,
     ) -> Campaign:
         """A campaign with a base model and the readings that can be taken."""
-        linear, X = LinearMap.of(model, pool.situation, sigma * DISPLACEMENT)
+        linear, X = LinearMap.of(model, pool.load_cases, sigma * DISPLACEMENT)
         return cls(model, pool, sigma, linear, X, target, most, given or {})
 
     def belief(self, readings: Measurements | None) -> Belief:
@@ -124,7 +124,7 @@ class Campaign:
         found = Belief(linear, Sums.none(size), self.given)
         for _ in range(ROUNDS):
             at = linear.model.with_values(start + v * linear.scale)
-            predicted, derivative = at.predict_with_sensitivities(problem.situation)
+            predicted, derivative = at.predict_with_sensitivities(problem.load_cases)
             X = problem.whitener.apply(derivative * linear.scale)
             y = problem.whitener.apply(problem.measured - predicted) + X @ v
             found = Belief(linear, Sums.none(size).plus(X, y), self.given)
@@ -147,17 +147,17 @@ class Campaign:
         stop = None if count < FIRST else self._stop(belief, count, springs, found.names[~taken])
         return State(count, belief, springs, None if taken.all() else row, decides, stop)
 
-    def situation(self, row: int) -> Situation:
+    def load_cases(self, row: int) -> LoadCases:
         """A reading of the pool."""
-        return self.pool.situation.rows(np.array([row], dtype=np.intp))
+        return self.pool.load_cases.rows(np.array([row], dtype=np.intp))
 
     def _taken(self, readings: Measurements | None) -> Mask:
         """Readings of the pool that were taken already."""
-        pool = self.pool.situation
+        pool = self.pool.load_cases
         taken = np.zeros(pool.count, dtype=bool)
         if readings is None:
             return taken
-        done = situation_of(self.model.robot, readings)
+        done = load_cases_of(self.model.robot, readings)
         for a, wrench in zip(done.a, done.wrench, strict=True):
             near = np.abs(pool.a - a).max(axis=1) < 1e-4
             load = np.linalg.norm(pool.wrench - wrench, axis=1)

@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Situation, all_effects
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, LoadCases, all_effects
 from sk120stiff.model import Model
 
 FAINT = 0.5  # of the noise: an effect whose usual size shows less at every reading is not weighed
@@ -45,13 +45,13 @@ class LinearMap:
 
     @classmethod
     def of(
-        cls, model: Model, situation: Situation, sigma: float, catalogue: Catalogue = CATALOGUE
+        cls, model: Model, load_cases: LoadCases, sigma: float, catalogue: Catalogue = CATALOGUE
     ) -> tuple[Self, Array]:
         """The map of what readings at a pool could show, and its columns there (M, 3, P).
 
         Args:
             model: Base model.
-            situation: The pool.
+            load_cases: The pool.
             sigma: Standard uncertainty of one displacement per axis [m].
             catalogue: What may be missing.
         """
@@ -65,9 +65,9 @@ class LinearMap:
             effect
             for effect in everything
             if effect.id not in present
-            and not effect.exchangeable
+            and not effect.random_effects
             and not effect.only_absolute
-            and effect.applies_to(situation)
+            and effect.applies_to(load_cases)
             and (not effect.bends_a_spring or effect.where in soft_joints)
         ]
         full = model
@@ -90,7 +90,7 @@ class LinearMap:
             columns=tuple(np.array(owner[e.id], dtype=np.intp) for e in fit_for),
             positive=np.array([p.spec.lower == 0.0 for p in full.parameters]),
         )
-        X = found.rows(situation)[1] / sigma
+        X = found.rows(load_cases)[1] / sigma
         shown = [k for k, own in enumerate(found.columns) if np.abs(X[:, :, own]).max() > FAINT]
         return replace(
             found,
@@ -98,9 +98,9 @@ class LinearMap:
             columns=tuple(found.columns[k] for k in shown),
         ), X
 
-    def rows(self, situation: Situation) -> tuple[Array, Array]:
+    def rows(self, load_cases: LoadCases) -> tuple[Array, Array]:
         """(N, 3) displacements of the base model, and (N, 3, P) change per typical size [m]."""
-        predicted, derivative = self.model.predict_with_sensitivities(situation)
+        predicted, derivative = self.model.predict_with_sensitivities(load_cases)
         return predicted, derivative * self.scale
 
     def index(self, ids: Iterable[str]) -> list[int]:

@@ -112,7 +112,7 @@ def d_optimal(
 
 def information(model: Model, pool: Pool, span: Array) -> Array:
     """(M, P, P) AᵀA of each candidate for the free parameters over their spans [m²]."""
-    _, derivative = model.predict_with_sensitivities(pool.situation)
+    _, derivative = model.predict_with_sensitivities(pool.load_cases)
     A = derivative[:, :, model.free] * span
     return np.asarray(np.einsum("mik,mil->mkl", A, A))
 

@@ -148,7 +148,7 @@ def signature_columns(model: Model, effect: Effect, rival: Effect, pool: Pool) -
     for added in (effect, rival):
         if added.id not in {present.id for present in full.effects}:
             full = full + added
-    _, derivative = full.predict_with_sensitivities(pool.situation)
+    _, derivative = full.predict_with_sensitivities(pool.load_cases)
     owner = np.array([parameter.effect.id for parameter in full.parameters])
     free = np.array([parameter.free for parameter in full.parameters])
     plausible = np.array([parameter.spec.plausible for parameter in full.parameters])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect, situation_of
+from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.plan.cell import Cell
@@ -102,10 +102,10 @@ def promised(
         if rows is None:
             continue
         used = rows.masked()
-        situation = situation_of(model.robot, used)
+        load_cases = load_cases_of(model.robot, used)
         zero: Literal["shared", "separate"] = "separate" if used.zero == "separate" else "shared"
         whitener = NoiseModel(sigma, zero=zero).whitener(used, np.zeros(used.n_readings))
-        derivative = model.predict_with_sensitivities(situation)[1][:, :, model.free] * span
+        derivative = model.predict_with_sensitivities(load_cases)[1][:, :, model.free] * span
         A = whitener.apply(derivative)
         total += A.T @ A
     return np.asarray(np.sqrt(np.diag(np.linalg.inv(total))) * span)
@@ -119,21 +119,21 @@ def to_be_taken(
     zero: Literal["shared", "separate", "unknown"] = "unknown",
 ) -> Measurements:
     """Rows of a pool as measurements without displacements, those of one pose together."""
-    situation = pool.situation.rows(np.array(sorted(rows), dtype=np.intp))
-    _, index = np.unique(situation.a, axis=0, return_inverse=True)
+    load_cases = pool.load_cases.rows(np.array(sorted(rows), dtype=np.intp))
+    _, index = np.unique(load_cases.a, axis=0, return_inverse=True)
     order = {pose: k for k, pose in enumerate(dict.fromkeys(index.tolist()))}
     return Measurements(
         pose=tuple(f"p{order[pose] + 1}" for pose in index.tolist()),
         joint_names=robot.actuated,
         joint_kinds=robot.kinds,
-        joints=situation.a,
-        wrench=situation.wrench,
+        joints=load_cases.a,
+        wrench=load_cases.wrench,
         displacement=None,
         robot=robot.source,
         base_frame=robot.base_frame,
         tool_frame=robot.tool_frame,
-        point=situation.point,
-        force_point=situation.force_point,
+        point=load_cases.point,
+        force_point=load_cases.force_point,
         zero=zero,
         source="poses and loads chosen by 'sk120stiff plan'",
     )

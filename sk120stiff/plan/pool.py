@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import Situation, situation_of_load
+from sk120stiff.effects import LoadCases, load_case
 from sk120stiff.errors import Refusal
 from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.efforts import held_loads_of
@@ -31,22 +31,22 @@ class Pool:
     """M candidate readings.
 
     Attributes:
-        situation: Their poses and loads.
+        load_cases: Their poses and loads.
         remarks: What was done so that they can be driven, and what nobody checked, in sentences.
     """
 
-    situation: Situation
+    load_cases: LoadCases
     remarks: tuple[str, ...] = ()
 
     @property
     def count(self) -> int:
         """Number of candidates M."""
-        return self.situation.count
+        return self.load_cases.count
 
     @cached_property
     def pose(self) -> Index:
         """(M,) index of each candidate's pose."""
-        return np.unique(self.situation.a, axis=0, return_inverse=True)[1].reshape(-1)
+        return np.unique(self.load_cases.a, axis=0, return_inverse=True)[1].reshape(-1)
 
 
 def random_pool(
@@ -84,7 +84,7 @@ def random_pool(
     loads = np.zeros((drawn.shape[0] * drawn.shape[1], 6))
     loads[:, :3] = force * drawn.reshape(-1, 3)
     repeated = np.repeat(a, drawn.shape[1], axis=0)
-    return Pool(situation_of_load(robot, repeated, loads, point=point, force_point=force_point))
+    return Pool(load_case(robot, repeated, loads, point=point, force_point=force_point))
 
 
 def feasible_pool(
@@ -111,7 +111,7 @@ def feasible_pool(
     drawn = random_pool(
         robot, poses=poses, directions=directions, force=force, point=point, seed=seed,
         cell=within, force_point=force_point,
-    ).situation  # fmt: skip
+    ).load_cases  # fmt: skip
     held = held_loads_of(robot, within, drawn.a, drawn.wrench, drawn.force_point)
     if not len(held.rows):
         raise Refusal(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.data import NoiseStatement
@@ -81,7 +81,7 @@ def simulate(
         )
     steps = schedule or Schedule()
     readings = scheduled(plan, steps)
-    exact = model.predict(situation_of(model.robot, readings))
+    exact = model.predict(load_cases_of(model.robot, readings))
     count = readings.n_readings
     error, zero_error = np.zeros((count, 3)), np.zeros((count, 3))
     hit = np.zeros(count, dtype=bool)

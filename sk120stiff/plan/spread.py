@@ -23,15 +23,15 @@ def well_spread(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:
     The first pose is random, each further one is the farthest from those before (Gonzalez 1985);
     of its loads the one nearest to the axis whose turn it is counts.
     """
-    situation = pool.situation
-    lower, upper = usable_range(situation.robot)
-    place = (situation.a - lower) / np.where(upper > lower, upper - lower, 1.0)
-    along = _directions(situation.wrench)
+    load_cases = pool.load_cases
+    lower, upper = usable_range(load_cases.robot)
+    place = (load_cases.a - lower) / np.where(upper > lower, upper - lower, 1.0)
+    along = _directions(load_cases.wrench)
     distance = np.full(pool.count, np.inf)
     pick = int(rng.integers(pool.count))
     rows: list[int] = []
     for k in range(count):
-        same = np.flatnonzero((situation.a == situation.a[pick]).all(axis=1))
+        same = np.flatnonzero((load_cases.a == load_cases.a[pick]).all(axis=1))
         row = int(same[np.argmax(np.abs(along[same, k % 3]))])
         rows.append(row)
         distance = np.minimum(distance, np.linalg.norm(place - place[pick], axis=1))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.model.typical import TYPICAL
@@ -58,8 +58,8 @@ def yields_times(model: Model, measurements: Measurements) -> float | None:
     if used.displacement is None:
         return None
     elastic = [k for k, p in enumerate(model.parameters) if p.spec.reciprocal]
-    situation = situation_of(model.robot, used)
-    _, S = model.predict_with_sensitivities(situation, np.zeros(len(model.values)))
+    load_cases = load_cases_of(model.robot, used)
+    _, S = model.predict_with_sensitivities(load_cases, np.zeros(len(model.values)))
     expected = S[:, :, elastic] @ model.values[elastic]
     size = float((expected**2).sum())
     along = float((expected * used.displacement).sum())

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.model import Model, Remainder
 from sk120stiff.model.loaded_uncertainty import by_parameters
 from sk120stiff.model.uncertainty import spread
@@ -83,9 +83,9 @@ def at_poses(doubt: Doubt, model: Model, poses: Array) -> Doubt:
 
 
 def _changes(model: Model, poses: Array) -> Array:
-    situation = situation_of_load(model.robot, poses, np.zeros(6))
+    load_cases = load_case(model.robot, poses, np.zeros(6))
     changes = by_parameters(
-        model, lambda values: np.asarray(model.solve(situation, values).rest.compliance)
+        model, lambda values: np.asarray(model.solve(load_cases, values).rest.compliance)
     )
     n = model.assembly.mechanism.n
     stacked = np.array(changes).reshape(len(changes), -1, n, n)

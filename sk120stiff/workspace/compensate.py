@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.model import Model, seen_from
 from sk120stiff.robot import Robot
@@ -226,7 +226,7 @@ def _step(
 
 def _standing(model: Model, a: Array, load: Array, point: Array, target: _Target) -> Standing:
     try:
-        rest = model.solve(situation_of_load(model.robot, a, load, point=point)).rest.screws
+        rest = model.solve(load_case(model.robot, a, load, point=point)).rest.screws
     except Refusal:
         if len(a) == 1:
             return Standing(np.full((1, 3), np.nan), np.full((1, 3), np.nan))

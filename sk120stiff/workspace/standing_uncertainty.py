@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.errors import Refusal
 from sk120stiff.model import Model, Share, held_loads, seen_from, shares
 from sk120stiff.model.predicted import blamed
@@ -116,13 +116,13 @@ def _derivatives(
     """Rows that have an equilibrium, and (k, 3, P) of where they stand by the internal values."""
     for begin in range(0, len(a), BLOCK):
         rows = np.arange(begin, min(begin + BLOCK, len(a)))
-        situation = situation_of_load(physical.robot, a[rows], load[rows], point=at)
+        load_cases = load_case(physical.robot, a[rows], load[rows], point=at)
         try:
-            solution = physical.solve(situation)
+            solution = physical.solve(load_cases)
         except Refusal:
-            held = held_loads(physical, situation)
+            held = held_loads(physical, load_cases)
             if not held.any():
                 continue
-            rows, situation = rows[held], situation.rows(held)
-            solution = physical.solve(situation)
+            rows, load_cases = rows[held], load_cases.rows(held)
+            solution = physical.solve(load_cases)
         yield rows, physical.assembly.standing_sensitivities(solution, physical.values)

@@ -80,8 +80,8 @@ def test_sides_of_approach_follow_from_the_order_of_the_rows(tmp_path: Path) -> 
     data = sk.read(write(tmp_path, A, x, FIT + NOISE))  # no order: the cause cannot be seen
     robot = found.fit.model.robot
     readings = data.with_joints(robot.actuated)
-    situation = sk.effects.situation_of(robot, readings)
-    shown = candidates_at(robot, situation, readings, (), Options(), sk.CATALOGUE)
+    load_cases = sk.effects.load_cases_of(robot, readings)
+    shown = candidates_at(robot, load_cases, readings, (), Options(), sk.CATALOGUE)
     assert not any(effect.name in ("approach_side", "thermal_growth") for effect in shown)
 
 

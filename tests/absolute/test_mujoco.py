@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.identify.absolute.start import in_gravity
 from sk120stiff.model.pose_reading import read_poses
 from tests.absolute.arm import Array, urdf
@@ -93,7 +93,7 @@ def test_sag_under_weight_and_payload_is_mujocos(name: str, mass: float, tmp_pat
     springs = np.full(robot.n, 1.0 / SOFT[name])
     assert readings.absolute is not None
     model = in_gravity(sk.joint_spring_model(robot, springs), readings.absolute.gravity)
-    found = read_poses(model, situation_of(robot, readings))
+    found = read_poses(model, load_cases_of(robot, readings))
     stiff = robot.screws(a).frame_position + robot.screws(a).rotation @ MARKER
     sag = np.linalg.norm(found.position - stiff, axis=1)
     assert sag.max() > 1e-3

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff.effects import Effect, LinearElastic, Situation, Switching, all_effects
+from sk120stiff.effects import Effect, LinearElastic, LoadCases, Switching, all_effects
 from sk120stiff.effects.base import Elastic
 from sk120stiff.model import Model, model_from_text, model_text
 from sk120stiff.model.pose_reading import PoseReading, read_poses
@@ -18,7 +18,7 @@ from tests.effects.arms import ARMS, LOOPED, POSES, Array, arm, random_values, r
 SERIES = ("a", "b", "c")
 
 
-def situation_of(robot: Robot, seed: int) -> Situation:
+def load_cases_of(robot: Robot, seed: int) -> LoadCases:
     rng = np.random.default_rng(seed)
     return replace(
         readings(robot, 8, seed=seed),
@@ -58,14 +58,14 @@ def apart(one: PoseReading, other: PoseReading) -> Array:
 @pytest.mark.parametrize("name", [*ARMS, *LOOPED])
 def test_all_effects_together(name: str) -> None:
     robot = arm(name)
-    situation, (model, values) = situation_of(robot, 2), with_everything(robot, 3)
-    exact = read_poses(model, situation, values, derivative=True).columns
+    load_cases, (model, values) = load_cases_of(robot, 2), with_everything(robot, 3)
+    exact = read_poses(model, load_cases, values, derivative=True).columns
     typical = np.array([p.spec.typical for p in model.parameters])
     rng = np.random.default_rng(4)
     for _ in range(4):
         way = 0.005 * typical * rng.normal(size=len(typical))
-        near = apart(*(read_poses(model, situation, values + s * way) for s in (1, -1)))
-        far = apart(*(read_poses(model, situation, values + s * way) for s in (2, -2)))
+        near = apart(*(read_poses(model, load_cases, values + s * way) for s in (1, -1)))
+        far = apart(*(read_poses(model, load_cases, values + s * way) for s in (2, -2)))
         slope = (8.0 * near - far) / 12.0
         assert np.abs(exact @ way - slope).max() < 1e-8 * np.abs(slope).max()
     shown = np.abs(exact * typical).max(axis=(0, 1))
@@ -85,9 +85,9 @@ def test_models_with_them_are_written_and_read_without_loss() -> None:
 
 def test_blocks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     robot = arm("six_axis")
-    situation, (model, values) = situation_of(robot, 6), with_everything(robot, 7)
-    whole = read_poses(model, situation, values, derivative=True)
+    load_cases, (model, values) = load_cases_of(robot, 6), with_everything(robot, 7)
+    whole = read_poses(model, load_cases, values, derivative=True)
     monkeypatch.setattr("sk120stiff.model.pose_reading.BLOCK", 3)
-    parts = read_poses(model, situation, values, derivative=True)
+    parts = read_poses(model, load_cases, values, derivative=True)
     assert np.abs(whole.position - parts.position).max() < 1e-14
     assert np.abs(whole.columns - parts.columns).max() < 1e-10

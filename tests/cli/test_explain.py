@@ -178,7 +178,7 @@ def test_what_to_measure_next_is_a_plan(data, tmp_path) -> None:
     assert model is not None
     readings = read_measurements(data)
     found = explain(model, readings)
-    a = found.base.problem.situation.a[:2]
+    a = found.base.problem.load_cases.a[:2]
     wrench = np.array([[100.0, 0, -200.0, 0, 0, 0], [0, 50.0, 0, 0, 0, 0]])
     said = "Of 400 N the motors hold 120 N."
     details = {**found.details, "next_remarks": (said,)}

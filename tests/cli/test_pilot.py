@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import read_model
 from sk120stiff.plan import feasible
@@ -31,7 +31,7 @@ class Arm(io.StringIO):
     def readline(self, *_: object) -> str:
         self.asked += 1
         plan = read_measurements(self.folder / "next.csv")
-        exact = self.truth.predict(situation_of(self.truth.robot, plan))[0]
+        exact = self.truth.predict(load_cases_of(self.truth.robot, plan))[0]
         read = 1e3 * (exact + self.rng.normal(size=3) * 1.4e-5)
         return ",".join(f"{x:.5f}" for x in read) + " mm\n"
 

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.measurements import Measurements, NoiseStatement, write_measurements
 from sk120stiff.model import joint_spring_model, read_model, write_model
 from sk120stiff.plan import random_poses
@@ -39,7 +39,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         zero="separate",
         noise=NoiseStatement(sigma=SIGMA),
     )
-    exact = six.predict(situation_of(robot, plan))
+    exact = six.predict(load_cases_of(robot, plan))
     noisy = exact + np.sqrt(2.0) * SIGMA * rng.normal(size=exact.shape)
     write_measurements(replace(plan, displacement=noisy), place / "readings.csv")
     aside = replace(plan, point=np.array([0.2, 0.0, 0.1]), force_point=np.array([0.2, 0.0, 0.1]))

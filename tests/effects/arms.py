@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.effects import Effect, Situation, all_effects, situation_of_load
+from sk120stiff.effects import Effect, LoadCases, all_effects, load_case
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.robot import Robot, load_robot
@@ -88,7 +88,7 @@ def some_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     return rng.uniform(low, high, (count, robot.n))
 
 
-def readings(robot: Robot, count: int = 12, seed: int = 0, moments: bool = True) -> Situation:
+def readings(robot: Robot, count: int = 12, seed: int = 0, moments: bool = True) -> LoadCases:
     """Readings in which every effect has something to say: two per pose, both branches, a clock."""
     rng = np.random.default_rng(seed)
     poses = some_poses(robot, len(POSES), rng)
@@ -97,7 +97,7 @@ def readings(robot: Robot, count: int = 12, seed: int = 0, moments: bool = True)
     wrench = size * rng.normal(size=(count, 6)) * [1, 1, 1, 0.2, 0.2, 0.2]
     if not moments:
         wrench[:, 3:] = 0.0
-    plain = situation_of_load(
+    plain = load_case(
         robot, poses[index], wrench, point=[0.05, -0.12, 0.2], force_point=[0.1, 0.02, 0.15]
     )
     return replace(

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.effects import CATALOGUE, Imposed, LinearElastic, ParameterSpec, Situation
+from sk120stiff.effects import CATALOGUE, Imposed, LinearElastic, LoadCases, ParameterSpec
 from sk120stiff.effects.parameter import compliance
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, arm_links
@@ -49,7 +49,7 @@ class LinkStretch(LinearElastic):
         axis = link.along / link.length
         return (VirtualJoint(f"{self.id}.z", link.index, placement, axis, revolute=False),)
 
-    def patterns(self, situation: Situation) -> Array:
+    def patterns(self, load_cases: LoadCases) -> Array:
         return np.ones((1, 1, 1))
 
 
@@ -83,11 +83,11 @@ class JointCreep(Imposed):
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         return (self.where,)
 
-    def applies_to(self, situation: Situation) -> bool:
-        return situation.order is not None
+    def applies_to(self, load_cases: LoadCases) -> bool:
+        return load_cases.order is not None
 
-    def shifts(self, situation: Situation) -> Array:
-        steps = np.zeros(situation.count) if situation.order is None else situation.order
+    def shifts(self, load_cases: LoadCases) -> Array:
+        steps = np.zeros(load_cases.count) if load_cases.order is None else load_cases.order
         return steps[:, None, None]
 
 

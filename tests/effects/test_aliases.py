@@ -69,7 +69,7 @@ def groups(pairs, invisible) -> set[frozenset[str]]:
 
 def computed_and_declared(robot: Robot, moments: bool):
     computed = alias_classes(
-        robot, base=base_of(robot), situation=generic_readings(robot, moments=moments)
+        robot, base=base_of(robot), load_cases=generic_readings(robot, moments=moments)
     )
     return computed, declared_aliases(robot)
 
@@ -166,7 +166,7 @@ class BaseYaw(LinearElastic):
         placement[:3, 3] = robot.foundation
         return (VirtualJoint(f"{self.id}.yaw", -1, placement, np.eye(3)[2]),)
 
-    def patterns(self, situation):
+    def patterns(self, load_cases):
         return np.ones((1, 1, 1))
 
 
@@ -188,7 +188,7 @@ def test_lost_motion_is_friction_until_a_load_falls(arms):
     robot = arms["sk120"]
     rising = generic_readings(robot, unloading=False)
     apart = alias_classes(robot, base=BASE)
-    together = alias_classes(robot, base=BASE, situation=rising)
+    together = alias_classes(robot, base=BASE, load_cases=rising)
     new = {frozenset(g) for g in together.twins} - {frozenset(g) for g in apart.twins}
     known = declared_aliases(robot)
     declared = {frozenset((a.name, a.other)) for a in known if a.when == LOADS_GROW}
@@ -196,7 +196,7 @@ def test_lost_motion_is_friction_until_a_load_falls(arms):
     # an arm whose weight holds the gears on one flank tells them apart even so
     heavy = arms["skew"]
     assert not any(a.when == LOADS_GROW for a in declared_aliases(heavy))
-    assert not alias_classes(heavy, situation=generic_readings(heavy, unloading=False)).twins
+    assert not alias_classes(heavy, load_cases=generic_readings(heavy, unloading=False)).twins
 
 
 def test_sliding_is_drift_where_loads_grow_one_way(arms):
@@ -204,13 +204,13 @@ def test_sliding_is_drift_where_loads_grow_one_way(arms):
     plain = generic_readings(robot)
     wrench = np.zeros((plain.count, 6))
     wrench[:, :3] = plain.order[:, None] * np.array([3.0, -5.0, 2.0])
-    situation = replace(plain, wrench=wrench, time=None)
-    found = alias_classes(robot, base=BASE, situation=situation)
+    load_cases = replace(plain, wrench=wrench, time=None)
+    found = alias_classes(robot, base=BASE, load_cases=load_cases)
     twins = {frozenset(group) for group in found.twins}
     for alias in declared_aliases(robot):
         if alias.when == ONE_WAY:
             assert any({alias.name, alias.other} <= group for group in twins)
-    apart = alias_classes(robot, base=BASE, situation=replace(plain, time=None))
+    apart = alias_classes(robot, base=BASE, load_cases=replace(plain, time=None))
     assert not any("drift" in name for group in apart.twins for name in group)
 
 
@@ -219,7 +219,7 @@ def test_an_experiment_of_one_pose_tells_little(arms):
     many = generic_readings(robot)
     one = replace(many, a=np.tile(many.a[:1], (many.count, 1)))
     one = replace(one, rotation=np.tile(many.rotation[:1], (many.count, 1, 1)))
-    found = alias_classes(robot, base=BASE, situation=one)
+    found = alias_classes(robot, base=BASE, load_cases=one)
     everywhere = alias_classes(robot, base=BASE)
     assert len(found.absorbed) + len(found.same) + len(found.within) > 3 * (
         len(everywhere.absorbed) + len(everywhere.same) + len(everywhere.within)

@@ -11,7 +11,7 @@ import numpy as np
 import pint
 import pytest
 
-from sk120stiff.effects import Elastic, LinearElastic, Situation, Switching, effect
+from sk120stiff.effects import Elastic, LinearElastic, LoadCases, Switching, effect
 from sk120stiff.model import Model, joint_spring_model, model_from_text, model_text
 from sk120stiff.units import is_kind, is_unit, to_si
 from tests.effects.arms import (
@@ -49,7 +49,7 @@ def alone(name: str, found: object, seed: int = 1) -> Model:
     return model.with_values(values)
 
 
-def differences(model: Model, situation: Situation, columns: range | None = None) -> Array:
+def differences(model: Model, load_cases: LoadCases, columns: range | None = None) -> Array:
     """(N, 3, P) fourth-order central differences of `predict` by typical steps."""
     out = []
     for k in columns or range(len(model.values)):
@@ -57,7 +57,7 @@ def differences(model: Model, situation: Situation, columns: range | None = None
         step[k] = 0.02 * model.parameters[k].spec.typical
 
         def moved(by: float, step: Array = step) -> Array:
-            return model.predict(situation, model.values + by * step)
+            return model.predict(load_cases, model.values + by * step)
 
         near, far = moved(1) - moved(-1), moved(2) - moved(-2)
         out.append((8.0 * near - far) / (12.0 * step[k]))
@@ -76,16 +76,16 @@ def assert_same_columns(model: Model, exact: Array, differences: Array, first: i
 @pytest.mark.parametrize("name", [*ARMS, *LOOPED])
 def test_sensitivities_of_all_effects_together(name):
     """Along random directions in the space of all parameters, each of usual size."""
-    model, situation = with_every_effect(arm(name)), readings(arm(name), 6)
-    predicted, exact = model.predict_with_sensitivities(situation)
-    assert np.allclose(predicted, model.predict(situation), rtol=0, atol=1e-14)
+    model, load_cases = with_every_effect(arm(name)), readings(arm(name), 6)
+    predicted, exact = model.predict_with_sensitivities(load_cases)
+    assert np.allclose(predicted, model.predict(load_cases), rtol=0, atol=1e-14)
     typical = np.array([parameter.spec.typical for parameter in model.parameters])
     rng = np.random.default_rng(10)
     for _ in range(10):
         direction = 0.005 * typical * rng.normal(size=len(typical))  # no gear jumps so near
 
         def moved(by: float, direction: Array = direction) -> Array:
-            return model.predict(situation, model.values + by * direction)
+            return model.predict(load_cases, model.values + by * direction)
 
         slope = (8.0 * (moved(1) - moved(-1)) - moved(2) + moved(-2)) / 12.0
         assert np.abs(slope).max() > 1e-7
@@ -94,27 +94,27 @@ def test_sensitivities_of_all_effects_together(name):
 
 @pytest.mark.parametrize(("name", "found"), CASES)
 def test_sensitivities_of_one_effect(name, found):
-    model, situation = alone(name, found), readings(arm(name), 6, seed=2)
-    exact = model.predict_with_sensitivities(situation)[1]
+    model, load_cases = alone(name, found), readings(arm(name), 6, seed=2)
+    exact = model.predict_with_sensitivities(load_cases)[1]
     first = 0 if found.name == "joint_springs" else arm(name).n
     assert_same_columns(
-        model, exact, differences(model, situation, range(first, len(model.values))), first
+        model, exact, differences(model, load_cases, range(first, len(model.values))), first
     )
 
 
 @pytest.mark.parametrize(("name", "found"), CASES)
 def test_no_effect_at_zero(name, found):
-    situation = readings(arm(name), seed=3)
+    load_cases = readings(arm(name), seed=3)
     model = sprung(arm(name))
-    plain = model.predict(situation)
+    plain = model.predict(load_cases)
     if found.name == "joint_springs":
         model = model.without(found.id)
-        absent, rigid = model + found, model.predict(situation)
-        assert np.abs(absent.predict(situation) - rigid).max() < 1e-15
+        absent, rigid = model + found, model.predict(load_cases)
+        assert np.abs(absent.predict(load_cases) - rigid).max() < 1e-15
         return
     added = model + found
     assert not added.values[len(model.values) :].any()
-    assert np.abs(added.predict(situation) - plain).max() < 1e-14
+    assert np.abs(added.predict(load_cases) - plain).max() < 1e-14
 
 
 @pytest.mark.parametrize("name", ARMS)
@@ -122,12 +122,12 @@ def test_every_kind_of_effect_shows_somewhere(name):
     """A law that does nothing would pass all else."""
     robot, seen, all_kinds = arm(name), set(), set()
     plain = readings(robot, seed=4)
-    situation = replace(plain, wrench=6.0 * plain.wrench)  # lifts joints off their weight
+    load_cases = replace(plain, wrench=6.0 * plain.wrench)  # lifts joints off their weight
     for found in every_effect(robot):
         all_kinds.add(found.name)
         model = joint_spring_model(robot, np.full(robot.n, 1e7))
         model = model if found.name == "joint_springs" else model + found
-        columns = model.predict_with_sensitivities(situation)[1]
+        columns = model.predict_with_sensitivities(load_cases)[1]
         typical = np.array([p.spec.typical for p in model.parameters])
         own = [k for k, p in enumerate(model.parameters) if p.effect.id == found.id]
         if (np.abs(columns * typical)[..., own] > 1e-11).any():
@@ -137,20 +137,20 @@ def test_every_kind_of_effect_shows_somewhere(name):
 
 @pytest.mark.parametrize(("name", "found"), ELASTIC)
 def test_tangent_compliance_is_the_slope_of_the_elongation(name, found):
-    situation = readings(arm(name), seed=5)
+    load_cases = readings(arm(name), seed=5)
     rng = np.random.default_rng(6)
     values = random_values(Model(arm(name)) + found, rng)
     k = len(found.coordinates(arm(name)))
-    torques = 150.0 * rng.normal(size=(situation.count, k))
-    law = found.elongation(torques, situation, values)
-    assert law.value.shape == (situation.count, k)
-    assert law.by_torque.shape == (situation.count, k, k)
-    assert law.by_parameter.shape == (situation.count, k, len(values))
+    torques = 150.0 * rng.normal(size=(load_cases.count, k))
+    law = found.elongation(torques, load_cases, values)
+    assert law.value.shape == (load_cases.count, k)
+    assert law.by_torque.shape == (load_cases.count, k, k)
+    assert law.by_parameter.shape == (load_cases.count, k, len(values))
     for j in range(k):
         step = np.zeros(k)
         step[j] = 1e-2
-        ahead = found.elongation(torques + step, situation, values).value
-        behind = found.elongation(torques - step, situation, values).value
+        ahead = found.elongation(torques + step, load_cases, values).value
+        behind = found.elongation(torques - step, load_cases, values).value
         slope = (ahead - behind) / 2e-2
         assert np.allclose(law.by_torque[..., j], slope, rtol=1e-7, atol=1e-16)
     if isinstance(found, Switching):
@@ -183,19 +183,19 @@ def test_work_of_the_load_is_the_energy_in_the_springs(name):
     values = random_values(model, np.random.default_rng(8), 0.5)
     values[: robot.n] = sprung(robot).values
     plain = readings(robot, seed=9, moments=False)
-    situation = replace(
+    load_cases = replace(
         plain, force_point=plain.point, reading_axes=np.broadcast_to(np.eye(3), (12, 3, 3))
     )
-    solution = model.solve(situation, values)
-    energy = np.zeros(situation.count)
+    solution = model.solve(load_cases, values)
+    energy = np.zeros(load_cases.count)
     for law, part, index in model.assembly._elastic:
         torque = solution.rest.torques[:, index]
-        energy += 0.5 * (torque * law.elongation(torque, situation, values[part]).value).sum(-1)
-    force = situation.wrench[:, :3]
+        energy += 0.5 * (torque * law.elongation(torque, load_cases, values[part]).value).sum(-1)
+    force = load_cases.wrench[:, :3]
     work = (force * solution.displacement).sum(-1)  # λ F · X at the end, minus ∫ F · X dλ
     nodes, weights = np.polynomial.legendre.leggauss(12)
     for node, weight in zip(0.5 * (nodes + 1.0), 0.5 * weights, strict=True):
-        part = replace(situation, wrench=node * situation.wrench)
+        part = replace(load_cases, wrench=node * load_cases.wrench)
         work -= weight * (force * model.predict(part, values)).sum(-1)
     assert (energy > 1e-4).all()
     assert np.allclose(work, energy, rtol=1e-10)
@@ -260,10 +260,10 @@ def test_words_and_place(name, found):
 
 @pytest.mark.parametrize("name", [*ARMS, *LOOPED])
 def test_batch_equals_loop(name):
-    model, situation = with_every_effect(arm(name)), readings(arm(name))
-    predicted, exact = model.predict_with_sensitivities(situation)
-    for k in range(situation.count):
-        one, slope = model.predict_with_sensitivities(situation.rows(slice(k, k + 1)))
+    model, load_cases = with_every_effect(arm(name)), readings(arm(name))
+    predicted, exact = model.predict_with_sensitivities(load_cases)
+    for k in range(load_cases.count):
+        one, slope = model.predict_with_sensitivities(load_cases.rows(slice(k, k + 1)))
         assert np.abs(one[0] - predicted[k]).max() < 1e-13
         assert np.allclose(slope[0], exact[k], rtol=1e-9, atol=1e-12 * np.abs(exact).max((0, 1)))
 
@@ -286,8 +286,8 @@ def test_models_are_written_and_read_without_loss(name):
         assert read.internal_std is None or np.isclose(
             read.internal_std, written.internal_std, rtol=1e-14
         )
-    situation = readings(arm(name))
-    assert np.abs(again.predict(situation) - model.predict(situation)).max() < 1e-14
+    load_cases = readings(arm(name))
+    assert np.abs(again.predict(load_cases) - model.predict(load_cases)).max() < 1e-14
 
 
 def test_absent_effects_survive_the_file():

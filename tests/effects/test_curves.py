@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import load_robot
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.effects.base import Options
 from sk120stiff.effects.foundation import BaseRocking
 from sk120stiff.effects.gear import FrictionHysteresis, LostMotion
@@ -27,7 +27,7 @@ def pushed(robot, forces, branch=None, repeat=None):
     count = len(forces)
     wrench = np.zeros((count, 6))
     wrench[:, 1] = forces
-    return situation_of(
+    return load_cases_of(
         robot,
         Measurements(
             pose=("1",) * count,
@@ -44,11 +44,11 @@ def pushed(robot, forces, branch=None, repeat=None):
 
 
 def test_a_flank_closes_as_tanh_and_each_side_has_its_own(robot):
-    situation = pushed(robot, [-300.0, -20.0, 20.0, 300.0])
-    torque = LostMotion(JOINT).load_torque(situation)
+    load_cases = pushed(robot, [-300.0, -20.0, 20.0, 300.0])
+    torque = LostMotion(JOINT).load_torque(load_cases)
     law = LostMotion(JOINT, flanks=(0.0, 40.0), sided=True)
     b = np.array([3e-5, 1e-5, 2e-5, 4e-5])  # jump +, jump -, flank +, flank -
-    found = law.elongation(torque, situation, b).value[:, 0]
+    found = law.elongation(torque, load_cases, b).value[:, 0]
     t = torque[:, 0]
     up, down = (3e-5 + 2e-5 * np.tanh(t / 40.0)), (-1e-5 + 4e-5 * np.tanh(t / 40.0))
     assert np.allclose(found, np.where(t > 0.0, up, down), rtol=1e-12)
@@ -60,23 +60,23 @@ def test_presliding_is_a_maxwell_slip_gear(robot):
     gear = MaxwellSlip(JOINT, {"half_width": h}, {"shares": (1.0,), "reach": (reach,)})
     forces = np.array([100, 250, 400, 300, 150, -50, -300, -350, -100, 200, 380], float)
     branch = tuple("load" if k < 3 else "unload" for k in range(len(forces)))
-    situation = pushed(robot, forces, branch)
-    torque = FrictionHysteresis(JOINT).load_torque(situation)
+    load_cases = pushed(robot, forces, branch)
+    torque = FrictionHysteresis(JOINT).load_torque(load_cases)
     advance, state, twists = gear.advance(K), None, []
     for now in (0.0, *torque[:, 0]):
         twist, state = advance(state, np.array([now]))
         twists.append(float(twist[0]) - now / K)
     slips = K * reach + h * K  # the torque at which the slider starts to slip
     law = FrictionHysteresis(JOINT, reaches=(slips,))
-    found = law.elongation(torque, situation, np.array([h])).value[:, 0]
+    found = law.elongation(torque, load_cases, np.array([h])).value[:, 0]
     assert np.allclose(found, np.array(twists[1:]) - twists[0], rtol=0, atol=1e-12)
     assert np.ptp(found) > h
 
 
 def test_between_repeats_the_load_is_off(robot):
     """What slipped under the first load is still there when it comes again."""
-    situation = pushed(robot, [300.0, 300.0], repeat=np.array([1, 2]))
-    steps, zero, own = situation.history
+    load_cases = pushed(robot, [300.0, 300.0], repeat=np.array([1, 2]))
+    steps, zero, own = load_cases.history
     assert steps[:, 0].tolist() == [-1, 0, -1, 1]
     assert (zero.tolist(), own.tolist()) == ([0, 0], [1, 3])
 

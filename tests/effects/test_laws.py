@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.effects.gear import GearHardening
 from sk120stiff.effects.link_beam import STATIONS, TAPER, shares
 from sk120stiff.errors import InputError
@@ -42,9 +42,9 @@ def moved(robot, name, where, load, pose=NOTHING, point=None, breaks=(), **value
     model = model.with_public(**{f"{found.id}.{key}": value for key, value in values.items()})
     wrench = np.zeros(6)
     wrench[: len(load)] = load
-    situation = situation_of_load(robot, pose, wrench, point=point)
-    situation = replace(situation, order=np.array([7.0]), time=np.array([60.0]))
-    return model.predict(situation)[0]
+    load_cases = load_case(robot, pose, wrench, point=point)
+    load_cases = replace(load_cases, order=np.array([7.0]), time=np.array([60.0]))
+    return model.predict(load_cases)[0]
 
 
 def close(got, expected, rtol=1e-3):
@@ -213,10 +213,8 @@ def test_friction_lags_on_both_branches():
     model = Model(robot) + effect(robot, "friction_hysteresis", "yaw")
     model = model.with_public(**{"friction_hysteresis:yaw.half_width": 1e-4})
     wrench = np.array([[0, 50.0, 0, 0, 0, 0], [0, 50, 0, 0, 0, 0], [0, -50, 0, 0, 0, 0]])
-    situation = replace(
-        situation_of_load(robot, [[0, 0]] * 3, wrench), branch=np.array([1.0, -1.0, 1.0])
-    )
-    close(model.predict(situation)[:, 1], [-3e-4, 3e-4, 3e-4])
+    load_cases = replace(load_case(robot, [[0, 0]] * 3, wrench), branch=np.array([1.0, -1.0, 1.0]))
+    close(model.predict(load_cases)[:, 1], [-3e-4, 3e-4, 3e-4])
 
 
 def test_a_jump_finds_its_rest_where_the_torque_almost_vanishes():
@@ -225,7 +223,7 @@ def test_a_jump_finds_its_rest_where_the_torque_almost_vanishes():
     model = joint_spring_model(robot, [1e6, np.inf]) + effect(robot, "lost_motion", "yaw")
     model = model.with_public(**{"lost_motion:yaw.half_width": 2e-4})
     pull = np.array([1000.0, 0.05, 0, 0, 0, 0])
-    got = model.predict(situation_of_load(robot, NOTHING, pull))[0]
+    got = model.predict(load_case(robot, NOTHING, pull))[0]
     assert np.isclose(got[1], 6e-4, rtol=1e-2)
 
 
@@ -252,8 +250,8 @@ def with_instrument(name, load, pose=NOTHING, **values):
     found = effect(robot, name, poses=("1", "2"))
     model = springy(robot) + found
     model = model.with_public(**{f"{found.id}.{key}": value for key, value in values.items()})
-    situation = replace(situation_of_load(robot, pose, load), order=np.array([7.0]))
-    return model.predict(situation)[0], springy(robot).predict(situation)[0]
+    load_cases = replace(load_case(robot, pose, load), order=np.array([7.0]))
+    return model.predict(load_cases)[0], springy(robot).predict(load_cases)[0]
 
 
 SIDE = [0, 100.0, 0, 0, 0, 0]
@@ -308,7 +306,7 @@ def with_wrong_geometry(name, where, load, pose=NOTHING, point=None, **values):
     found = effect(robot, name, where)
     model = springy(robot) + found
     model = model.with_public(**{f"{found.id}.{key}": value for key, value in values.items()})
-    return model.predict(situation_of_load(robot, pose, load, point=point))[0]
+    return model.predict(load_case(robot, pose, load, point=point))[0]
 
 
 def test_the_joint_stands_elsewhere():
@@ -345,7 +343,7 @@ def test_a_forearm_is_the_shaft_of_the_joint_that_rolls_the_wrist():
         found = effect(robot, name, where)
         spec = found.parameters[0]
         model = Model(robot) + [Parameter(found, spec, spec.internal(value))]
-        situation = situation_of_load(robot, a, load, point=[-0.06, 0.04, 0.15])
-        predicted.append(model.predict(situation))
+        load_cases = load_case(robot, a, load, point=[-0.06, 0.04, 0.15])
+        predicted.append(model.predict(load_cases))
     assert np.abs(predicted[1]).max() > 1e-5
     assert np.allclose(predicted[0], predicted[1], rtol=0, atol=1e-12)

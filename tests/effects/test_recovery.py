@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from sk120stiff.effects import CATALOGUE, Situation, effect, situation_of_load
+from sk120stiff.effects import CATALOGUE, LoadCases, effect, load_case
 from sk120stiff.effects.link_beam import TAPER
 from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.robot import Robot, load_robot
@@ -139,9 +139,9 @@ def load(case_arm: str) -> tuple[Arm, Robot]:
     return arm, replace(robot, gravity=GRAVITY)
 
 
-def as_situation(robot: Robot, rows: Rows) -> Situation:
+def as_load_cases(robot: Robot, rows: Rows) -> LoadCases:
     a = np.stack([rows.coordinates[name] for name in robot.actuated], axis=1)
-    plain = situation_of_load(
+    plain = load_case(
         robot, a, np.hstack([rows.force, rows.moment]), point=rows.point,
         force_point=rows.force_point,
     )  # fmt: skip
@@ -155,15 +155,15 @@ def as_situation(robot: Robot, rows: Rows) -> Situation:
     )
 
 
-def fitted(model: Model, situation: Situation, measured: np.ndarray) -> tuple[Model, float]:
+def fitted(model: Model, load_cases: LoadCases, measured: np.ndarray) -> tuple[Model, float]:
     """Gauss–Newton on all parameters, and the rms of what is left [m]."""
     scale = np.array([parameter.spec.typical for parameter in model.parameters])
     for _ in range(12):
-        predicted, derivative = model.predict_with_sensitivities(situation)
+        predicted, derivative = model.predict_with_sensitivities(load_cases)
         columns = (derivative * scale).reshape(-1, len(scale))
         step = np.linalg.lstsq(columns, (measured - predicted).ravel(), rcond=1e-12)[0]
         model = model.with_values(model.values + scale * step)
-    left = measured - model.predict(situation)
+    left = measured - model.predict(load_cases)
     return model, float(np.sqrt(np.mean(left**2)))
 
 
@@ -188,8 +188,8 @@ def test_recovered_from_independent_data(case):
     model = start(arm, robot) + [
         Parameter(found, spec, 0.3 * spec.typical) for spec in found.parameters
     ]
-    situation = as_situation(robot, rows)
-    model, left = fitted(model, situation, measured)
+    load_cases = as_load_cases(robot, rows)
+    model, left = fitted(model, load_cases, measured)
     assert left < max(1e-9, 2.0 * case.rtol * np.abs(measured - without).max())
     for parameter in model.parameters[-len(found.parameters) :]:
         expected = parameter.spec.internal(case.expected[parameter.spec.name])
@@ -213,9 +213,9 @@ def test_zero_offsets_are_recovered():
     cause = causes_sensor.ZeroOffset("tracker", {"rms": 2e-5}, {"seed": 5})
     springs = {name: 1.0 / value for name, value in arm.typical.joint.items()}
     measured = World(arm, springs, (cause,)).displacement(rows)
-    situation = as_situation(robot, rows)
-    model = start(arm, robot) + effect(robot, "zero_offset", poses=situation.poses)
-    model, left = fitted(model, situation, measured)
+    load_cases = as_load_cases(robot, rows)
+    model = start(arm, robot) + effect(robot, "zero_offset", poses=load_cases.poses)
+    model, left = fitted(model, load_cases, measured)
     assert left < 1e-9
     for k, pose in enumerate(np.unique(rows.pose)):
         own = 2e-5 * np.random.default_rng((5, int(pose))).normal(size=3)
@@ -232,7 +232,7 @@ def test_scale_of_the_reading_is_recovered_when_a_spring_is_known():
     measured = World(arm, springs, (cause,)).displacement(rows)
     known = joint_spring_model(robot, [arm.typical.joint[name] for name in robot.actuated])
     model = known + effect(robot, "reading_scale")
-    predicted, derivative = model.predict_with_sensitivities(as_situation(robot, rows))
+    predicted, derivative = model.predict_with_sensitivities(as_load_cases(robot, rows))
     column = derivative[..., -1].ravel()
     assert np.isclose(column @ (measured - predicted).ravel() / (column @ column), 2e-3, rtol=1e-8)
 
@@ -250,7 +250,7 @@ def test_gains_of_the_force_axes_are_recovered_but_for_their_common_part():
     cause = causes_sensor.ForceScale("sensor", {"x": 0.02, "y": -0.01, "z": 0.005})
     measured = World(arm, springs, (cause,)).displacement(rows)
     model = start(arm, robot) + effect(robot, "force_scale")
-    model, left = fitted(model, as_situation(robot, rows), measured)
+    model, left = fitted(model, as_load_cases(robot, rows), measured)
     assert left < 1e-9
     gains = 1.0 - model.values[-3:]  # true over reported
     truth = np.array([1.02, 0.99, 1.005])

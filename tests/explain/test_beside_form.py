@@ -108,9 +108,9 @@ def test_the_remainder_is_what_these_readings_have_left(poses, loads, seed):
     rough = roughened(clean, 0.04, seed=seed)
     fit = base_fit(rough)
     left, problem = remainder_of(fit), fit.problem
-    predicted, columns = fit.model.predict_with_sensitivities(problem.situation)
+    predicted, columns = fit.model.predict_with_sensitivities(problem.load_cases)
     assert left.rms < np.sqrt(np.mean((problem.measured - predicted) ** 2))
-    axes = problem.situation.reading_axes
+    axes = problem.load_cases.reading_axes
     added = np.einsum("nji,nj->ni", axes, rough.displacement - clean.displacement)
     white = problem.whitener.apply(np.concatenate([columns, added[:, :, None]], axis=2))
     taken = np.linalg.lstsq(white[:, :-1], white[:, -1], rcond=None)[0]

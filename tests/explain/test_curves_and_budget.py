@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import InputError, base_model, load_robot
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.budget import error_budget
@@ -76,8 +76,8 @@ def test_no_gear_has_no_curve(skewed):
 
 def test_the_budget_adds_up_as_vectors(skewed):
     fitted = skewed.final
-    _, derivative = fitted.model.predict_with_sensitivities(fitted.problem.situation)
-    whole = fitted.model.predict(fitted.problem.situation)
+    _, derivative = fitted.model.predict_with_sensitivities(fitted.problem.load_cases)
+    whole = fitted.model.predict(fitted.problem.load_cases)
     first_order = derivative @ fitted.model.values
     assert np.abs(first_order - whole).max() < 2e-3 * np.abs(whole).max()
     found = {share.name: share for share in skewed.budget}
@@ -96,7 +96,7 @@ def test_the_error_of_a_share_is_that_of_drawn_readings(springs):
     sizes, told = [], []
     for _ in range(30):
         drawn = hidden(seed=int(rng.integers(1 << 30)), poses=4, loads=3)
-        shares = error_budget(fit(springs, drawn, noise=NOISE), situation_of(springs.robot, clean))
+        shares = error_budget(fit(springs, drawn, noise=NOISE), load_cases_of(springs.robot, clean))
         (own,) = (share for share in shares if share.name == "joint_springs:joint_2_l")
         sizes.append(own.rms)
         told.append(own.std)

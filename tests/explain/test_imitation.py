@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.judge import imitation
@@ -16,7 +16,7 @@ from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.imitation import _Lineup as Lineup
 from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
 from sk120stiff.explain.localise.suspects import Suspect
-from sk120stiff.explain.select.stepwise import attempt, refit
+from sk120stiff.explain.select.stepwise import refit, selection
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, ModelForm
 from tests.explain.readings import NOISE, hidden
@@ -90,9 +90,9 @@ def test_a_cause_beside_another_of_another_place_stands(springs):
 def test_constants_along_the_turn_of_a_joint_are_no_zero_offsets(springs, along):
     """A drive that does not begin every pose alike; and a tracker that moved, any way."""
     clean = hidden(poses=20, loads=3)
-    situation = situation_of(springs.robot, clean)
+    load_cases = load_cases_of(springs.robot, clean)
     rng = np.random.default_rng(4)
-    turn = situation.nominal.linear_jacobian[:, :, 0]  # of joint_1_s
+    turn = load_cases.nominal.linear_jacobian[:, :, 0]  # of joint_1_s
     twist = dict(zip(clean.poses, 6e-5 * rng.normal(size=20), strict=True))
     moved = dict(zip(clean.poses, 5e-5 * rng.normal(size=(20, 3)), strict=True))
     offset = np.array([twist[p] * turn[k] if along else moved[p] for k, p in enumerate(clean.pose)])
@@ -145,7 +145,7 @@ def test_beside_model_form_error_a_name_is_at_few_places(springs):
     """What fits at many joints is part of what has no name."""
     for noise, stands in ((NOISE, True), (ROUGH, False)):
         candidates = [effect(springs.robot, *where) for where in PLACES]
-        found = attempt(springs, hidden(TILT), noise, candidates, max_effects=1, alpha=0.01)
+        found = selection(springs, hidden(TILT), noise, candidates, max_effects=1, alpha=0.01)
         findings, _ = findings_of(found, seed=0)
         many = replace(findings[0], alternatives=tuple(each.id for each in candidates))
         assert (objection(found, many, [], -np.inf) is None) == stands

@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 
 from sk120stiff import Model, base_model, load_robot
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.effects.gear.hardening import STEPS
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.candidates.regression import regression_at
@@ -98,11 +98,11 @@ def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
 
 def test_the_two_laws_of_a_gear_lead_to_each_other(springs):
     series = effect(springs.robot, "gear_hardening", "joint_2_l")
-    situation = situation_of(springs.robot, hidden())
-    (steps,) = series.other_laws(situation)
+    load_cases = load_cases_of(springs.robot, hidden())
+    (steps,) = series.other_laws(load_cases)
     assert steps.id == series.id
     assert len(steps.parameters) == len(STEPS)
-    assert steps.other_laws(situation) == (series,)
+    assert steps.other_laws(load_cases) == (series,)
 
 
 def test_a_gear_that_stiffens_needs_a_spring_to_stiffen(springs):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sk120stiff.effects import CATALOGUE, situation_of
+from sk120stiff.effects import CATALOGUE, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import Explanation, Options, explain
 from sk120stiff.measurements import Measurements
@@ -83,11 +83,11 @@ def test_it_is_simulated_as_elsewhere(model: Model, stretched: Measurements) -> 
     moved = hidden(AxialLink("link_3_u", {"compliance": 1.0 / STIFFNESS}), sigma=1e-12)
     assert still.displacement is not None and moved.displacement is not None
     more = model + EVERYTHING.effect(model.robot, "link_stretch", "link_3_u")
-    situation = situation_of(model.robot, still)
-    made = more.with_public(**{"link_stretch:link_3_u.stiffness": STIFFNESS}).predict(situation)
+    load_cases = load_cases_of(model.robot, still)
+    made = more.with_public(**{"link_stretch:link_3_u.stiffness": STIFFNESS}).predict(load_cases)
     theirs = moved.displacement - still.displacement
     assert np.abs(theirs).max() > 2e-5
-    ours = made - model.predict(situation)
+    ours = made - model.predict(load_cases)
     np.testing.assert_allclose(ours, theirs, atol=2e-4 * np.abs(theirs).max())
 
 
@@ -126,11 +126,11 @@ def test_a_movement_that_no_load_makes_is_simulated_as_elsewhere(model: Model) -
     """The law of `Imposed` against finite rotations of the benchmark's generator."""
     still, moved = crept(0.0), crept(RATE)
     assert still.displacement is not None and moved.displacement is not None
-    situation = situation_of(model.robot, still)
+    load_cases = load_cases_of(model.robot, still)
     creep = EVERYTHING.effect(model.robot, "joint_creep", "joint_2_l")
     more = model + creep
     values = np.append(model.values, RATE)
-    ours = more.predict(situation, values) - model.predict(situation)
+    ours = more.predict(load_cases, values) - model.predict(load_cases)
     theirs = moved.displacement - still.displacement
     assert np.abs(theirs).max() > 1e-5
     np.testing.assert_allclose(ours, theirs, atol=2e-4 * np.abs(theirs).max())

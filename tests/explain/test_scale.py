@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import load_robot
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.measurements import Measurements, NoiseStatement
 from sk120stiff.model import joint_spring_model
@@ -47,7 +47,7 @@ def test_an_arm_a_hundred_times_softer_has_the_same_name(ur10, softer, largest):
         zero="separate",
         noise=NoiseStatement(sigma=SIGMA),
     )
-    moved = true.predict(situation_of(ur10, plan))
+    moved = true.predict(load_cases_of(ur10, plan))
     assert np.linalg.norm(moved, axis=1).max() == pytest.approx(largest, rel=0.5)
     noise = np.sqrt(2.0) * SIGMA * rng.normal(size=moved.shape)
     readings = replace(plan, displacement=moved + noise)

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from sk120stiff.effects import all_effects, situation_of
+from sk120stiff.effects import all_effects, load_cases_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.judge.steps import gap_steps, nested
 from sk120stiff.explain.options import candidates_for
-from sk120stiff.explain.select.stepwise import Attempt, attempt
+from sk120stiff.explain.select.stepwise import Selection, selection
 from sk120stiff.identify import fit, held_out, refitted
 from sk120stiff.measurements import NoiseModel
 from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
@@ -17,12 +17,12 @@ ROCKING = BaseRocking("base_link", {"x": 2e-7, "y": 2e-7})
 
 
 @pytest.fixture(scope="module")
-def clean() -> Attempt:
+def clean() -> Selection:
     """Readings with nothing missing, but noise."""
     readings = hidden(poses=12, loads=2)
     model = base_fit(readings).problem.model
     effects = candidates_for(model, readings, Options())
-    return attempt(model, readings, NOISE, effects, max_effects=1, alpha=0.01)
+    return selection(model, readings, NOISE, effects, max_effects=1, alpha=0.01)
 
 
 def test_explain_and_identify_give_one_number_for_one_model() -> None:
@@ -71,4 +71,4 @@ def test_the_candidates_are_those_of_the_robot(clean) -> None:
     robot = clean.base.model.robot
     known = {e.id for e in all_effects(robot, poses=measured.poses, timed=False)}
     assert {e.id for e in clean.candidates} <= known
-    assert situation_of(robot, measured).count == measured.n_readings
+    assert load_cases_of(robot, measured).count == measured.n_readings

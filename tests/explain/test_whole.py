@@ -35,7 +35,7 @@ def test_no_noise_is_made_up(found) -> None:
 
 def test_poses_stand_in_the_order_of_their_gaps(fitted, found) -> None:
     square = (fitted.gap**2).sum(axis=1)
-    share = dict(zip(fitted.problem.situation.poses, square / square.sum(), strict=True))
+    share = dict(zip(fitted.problem.load_cases.poses, square / square.sum(), strict=True))
     assert {p.label: p.share for p in found.poses} == pytest.approx(share)
     worst = max(found.poses, key=lambda pose: pose.share)
     assert worst.share > 2.0 / 30

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.effects import CATALOGUE, effect, situation_of_load
+from sk120stiff.effects import CATALOGUE, effect, load_case
 from sk120stiff.exports import FORMATS, Exported, Request
 from sk120stiff.model import Model, base_model
 from sk120stiff.robot import Robot, load_robot
@@ -43,7 +43,7 @@ def exported(model: Model, kind: str, out: Path | str = "arm", **request: object
 
 def standing(model: Model, a: np.ndarray) -> np.ndarray:
     """(N, 4, 4) measured frame of the unloaded arm, by the model's own mechanism."""
-    start = model.assembly.start(situation_of_load(model.robot, a, np.zeros(6)), model.values)
+    start = model.assembly.start(load_case(model.robot, a, np.zeros(6)), model.values)
     screws = model.assembly.mechanism.screws(start)
     T = np.tile(np.eye(4), (len(a), 1, 1))
     T[:, :3, :3], T[:, :3, 3] = screws.rotation, screws.position

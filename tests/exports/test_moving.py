@@ -7,7 +7,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.errors import InputError
 from sk120stiff.exports import export
 from sk120stiff.model import Model, base_model, joint_spring_model
@@ -54,8 +54,8 @@ def settled(
 
 def resting(model: Model, a: np.ndarray, wrench: np.ndarray) -> np.ndarray:
     """(3,) where the model says that the loaded tool stands."""
-    situation = situation_of_load(model.robot, a, wrench)
-    return model.physical().solve(situation).rest.screws.position[0]
+    load_cases = load_case(model.robot, a, wrench)
+    return model.physical().solve(load_cases).rest.screws.position[0]
 
 
 def heavy(name: str) -> Model:

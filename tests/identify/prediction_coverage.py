@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.identify import fit, known_model
 from sk120stiff.measurements import read_measurements
@@ -181,8 +181,8 @@ def _predicted(kind: Kind, data: Path, asked: Path, truth: Array, file: Path) ->
         found = fit(joint_spring_model(robot, kind.springs), readings)
         write_model(known_model(found), file)
         model = read_model(file)
-        situation = situation_of(robot, read_measurements(asked, robot.actuated))
-        predicted = predict_with_uncertainty(model, situation)
+        load_cases = load_cases_of(robot, read_measurements(asked, robot.actuated))
+        predicted = predict_with_uncertainty(model, load_cases)
     known = model.uncertainty
     assert known is not None and predicted.std_parameters is not None
     left = np.zeros((1, 3)) if predicted.std_remainder is None else predicted.std_remainder

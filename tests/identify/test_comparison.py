@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify import Problem, compare, held_out, refitted, solve
 from sk120stiff.measurements import NoiseModel
@@ -24,7 +24,7 @@ def test_leaving_out_by_hand(springs, table2, robot) -> None:
         rest = table2.select(np.setdiff1d(np.arange(table2.n_readings), out))
         other = solve(Problem(springs, rest, NOISE))
         left = table2.select(out)
-        gap = left.displacement - other.model.predict(situation_of(robot, left))
+        gap = left.displacement - other.model.predict(load_cases_of(robot, left))
         squares.append((gap**2).mean())
     np.testing.assert_allclose(error.squares, squares, rtol=1e-9)
     assert error.rms == pytest.approx(np.sqrt(np.mean(squares)), rel=1e-9)

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 from scipy.optimize import minimize
 
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify import Problem, fit, lack_of_fit, solve
 from sk120stiff.measurements import NoiseModel
@@ -40,10 +40,10 @@ def test_the_minimum_is_a_minimum(robot, springs, table2) -> None:
     """Generalised least squares with the dense covariance, minimised without derivatives."""
     found = solve(Problem(springs, table2, NOISE))
     V = np.linalg.inv(NOISE.covariance(table2))  # (3, N, N)
-    situation = situation_of(robot, table2)
+    load_cases = load_cases_of(robot, table2)
 
     def misfit(x: np.ndarray) -> float:
-        gap = table2.displacement - springs.predict(situation, 1e-6 * x)
+        gap = table2.displacement - springs.predict(load_cases, 1e-6 * x)
         return float(np.einsum("ni,inm,mi->", gap, V, gap))
 
     oracle = minimize(misfit, [1.0, 2.0, 1.0], method="Nelder-Mead", options={"xatol": 1e-9})

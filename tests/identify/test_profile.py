@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, least_squares
 
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.identify import Problem, profile_intervals, solve
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
@@ -15,7 +15,7 @@ NOISE = NoiseModel(10e-6)
 
 def scanned_end(problem: Problem, found, k: int, side: float, goal: float) -> float:
     """How far to the internal value where the least misfit over the others has risen by goal²."""
-    situation = situation_of(problem.model.robot, problem.measurements)
+    load_cases = load_cases_of(problem.model.robot, problem.measurements)
     L = np.linalg.cholesky(problem.noise.covariance(problem.measurements))
     best = np.array([p.internal for p in found.parameters])
     others = [j for j in range(len(best)) if j != k]
@@ -25,7 +25,7 @@ def scanned_end(problem: Problem, found, k: int, side: float, goal: float) -> fl
         def residual(part: np.ndarray) -> np.ndarray:
             x = best.copy()
             x[k], x[others] = value, part * unit
-            gap = problem.measured - problem.model.predict(situation, x)
+            gap = problem.measured - problem.model.predict(load_cases, x)
             return np.linalg.solve(L, gap.T[..., None]).ravel()
 
         return 2.0 * float(least_squares(residual, np.ones(len(others))).cost)

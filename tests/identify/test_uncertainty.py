@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from sk120stiff.effects import effect, situation_of, situation_of_load
+from sk120stiff.effects import effect, load_case, load_cases_of
 from sk120stiff.identify import fit, known_model
 from sk120stiff.measurements import NoiseStatement
 from sk120stiff.model import (
@@ -58,7 +58,7 @@ def test_a_remainder_is_found_with_its_size(truth: Model) -> None:
     for label in readings.poses:
         own = np.array([pose == label for pose in readings.pose])
         without = fit(truth, replace(readings, use=~own), noise=found.problem.noise)
-        gap = readings.displacement[own] - without.model.predict(found.problem.situation.rows(own))
+        gap = readings.displacement[own] - without.model.predict(found.problem.load_cases.rows(own))
         squares.append((gap**2).mean(axis=0))
     held_out = np.sqrt(np.mean(squares, axis=0) - 2.0 * SIGMA**2)
     assert left.significant and left.grows
@@ -70,7 +70,7 @@ def test_a_spring_that_does_not_show_makes_what_depends_on_it_unknown(robot: Rob
     """Forces at a point on the last joint's axis put no torque on it."""
     six = joint_spring_model(robot, [1.4e6, 4e5, 9e5, 3e5, 3e5, 3e5])
     readings = replace(stated(six), point=np.zeros(3), force_point=np.zeros(3))
-    readings = replace(readings, displacement=six.predict(situation_of(robot, readings)))
+    readings = replace(readings, displacement=six.predict(load_cases_of(robot, readings)))
     rng = np.random.default_rng(2)
     noisy = readings.displacement + SIGMA * rng.normal(size=readings.displacement.shape)
     known = known_model(fit(six, replace(readings, displacement=noisy, zero="separate")))
@@ -80,9 +80,9 @@ def test_a_spring_that_does_not_show_makes_what_depends_on_it_unknown(robot: Rob
     again = model_from_text(model_text(known)).uncertainty
     np.testing.assert_allclose(again.std, known.uncertainty.std, rtol=1e-8)
     load = np.array([[100.0, 200.0, -300.0, 0.0, 0.0, 0.0]])
-    on_axis = predict_with_uncertainty(known, situation_of_load(robot, robot.rest, load))
+    on_axis = predict_with_uncertainty(known, load_case(robot, robot.rest, load))
     assert np.isfinite(on_axis.std_parameters).all() and on_axis.blame == ((),)
-    away = situation_of_load(robot, robot.rest, load, point=[0.2, 0.1, 0.0])
+    away = load_case(robot, robot.rest, load, point=[0.2, 0.1, 0.0])
     off_axis = predict_with_uncertainty(known, away)
     assert np.isinf(off_axis.std_parameters).any()
     assert off_axis.blame == (("joint_springs:joint_6_t.stiffness",),)

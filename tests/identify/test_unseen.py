@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import fit, joint_spring_model, load_robot
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.identify import unseen_reasons, weak_directions, why_unseen
 from sk120stiff.measurements import Measurements, NoiseModel
 from tests.corpus.robots import example
@@ -18,8 +18,8 @@ def pushed(point: np.ndarray, force_point: np.ndarray | None = None) -> Measurem
     a = rng.uniform(np.maximum(robot.lower, -1.5), np.minimum(robot.upper, 1.5), (20, robot.n))
     wrench = np.concatenate([rng.normal(0.0, 60.0, (20, 3)), np.zeros((20, 3))], axis=1)
     force_at = point if force_point is None else force_point
-    situation = situation_of_load(robot, a, wrench, point=point, force_point=force_at)
-    exact = joint_spring_model(robot, SPRINGS).predict(situation)
+    load_cases = load_case(robot, a, wrench, point=point, force_point=force_at)
+    exact = joint_spring_model(robot, SPRINGS).predict(load_cases)
     return Measurements(
         pose=tuple(str(k) for k in range(20)), joint_names=robot.actuated,
         joint_kinds=("angle",) * robot.n, joints=a, wrench=wrench,
@@ -52,5 +52,5 @@ def test_a_point_off_the_axis_shows_it() -> None:
     readings = pushed(np.array([0.1, 0.0, 0.05]))
     found = fit(joint_spring_model(load_robot(example("panda.urdf"))), readings)
     assert not unseen_reasons(found)
-    situation = found.problem.situation
-    assert all(why_unseen(situation, p) is None for p in found.parameters)
+    load_cases = found.problem.load_cases
+    assert all(why_unseen(load_cases, p) is None for p in found.parameters)

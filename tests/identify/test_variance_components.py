@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.identify import Fit, fit
 from sk120stiff.identify.uncertainty.variance_components import Deviance, variance_components
 from sk120stiff.measurements import Measurements, ModelForm, NoiseModel
@@ -34,7 +34,7 @@ def fits(springs: Model, form: ModelForm, *, noise: NoiseModel, count: int) -> l
     for seed in range(count):
         data = readings_of(springs, poses=15, sigma=SIGMA, seed=seed)
         data = with_form(data, form, np.random.default_rng((seed, 2)))
-        assert len(situation_of(springs.robot, data).poses) == 15
+        assert len(load_cases_of(springs.robot, data).poses) == 15
         found.append(fit(springs, data, noise=replace(noise, zero=data.zero)))
     return found
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sk120stiff.effects import all_effects, effect, situation_of_load
+from sk120stiff.effects import all_effects, effect, load_case
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.model.model import BLOCK
@@ -94,13 +94,13 @@ def test_blocks_are_seamless(robot, model):
     rng = np.random.default_rng(0)
     poses = rng.uniform(-1, 1, (count, 6))
     wrench = 300 * rng.normal(size=(count, 6)) * [1, 1, 1, 0.1, 0.1, 0.1]
-    situation = situation_of_load(robot, poses, wrench)
-    predicted, slope = model.predict_with_sensitivities(situation)
+    load_cases = load_case(robot, poses, wrench)
+    predicted, slope = model.predict_with_sensitivities(load_cases)
     assert predicted.shape == (count, 3) and slope.shape == (count, 3, 3)
-    tail, tail_slope = model.predict_with_sensitivities(situation.rows(slice(BLOCK - 3, None)))
+    tail, tail_slope = model.predict_with_sensitivities(load_cases.rows(slice(BLOCK - 3, None)))
     assert np.allclose(predicted[BLOCK - 3 :], tail, rtol=0, atol=1e-15)
     assert np.allclose(slope[BLOCK - 3 :], tail_slope, rtol=1e-9)
-    assert model.predict(situation.rows(slice(0, 0))).shape == (0, 3)
+    assert model.predict(load_cases.rows(slice(0, 0))).shape == (0, 3)
 
 
 def test_instruments_have_no_say_in_what_really_moves(robot, model):
@@ -109,13 +109,13 @@ def test_instruments_have_no_say_in_what_really_moves(robot, model):
         **{"reading_scale:tracker.scale": 0.5, "force_bias:sensor.offset_x": 100.0}
     )
     assert np.allclose(whole.deflect(POSE, WRENCH), model.deflect(POSE, WRENCH), rtol=0, atol=1e-16)
-    read = whole.predict(situation_of_load(robot, POSE, WRENCH))
+    read = whole.predict(load_case(robot, POSE, WRENCH))
     assert np.abs(read - model.deflect(POSE, WRENCH)).max() > 1e-4
 
 
 def test_a_robot_without_effects_does_not_move(robot):
     assert not Model(robot).deflect(POSE, WRENCH).any()
-    exact = Model(robot).predict_with_sensitivities(situation_of_load(robot, POSE, WRENCH))[1]
+    exact = Model(robot).predict_with_sensitivities(load_case(robot, POSE, WRENCH))[1]
     assert exact.shape == (1, 3, 0)
 
 

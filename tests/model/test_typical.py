@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import base_model, fit, joint_spring_model, load_robot
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import typical_model, typical_parameters
 from sk120stiff.model.typical import typical_stiffness
@@ -52,9 +52,7 @@ def test_the_base_model_of_an_unknown_arm_can_be_fitted() -> None:
     wrench = np.hstack([rng.normal(0.0, 60.0, (15, 3)), np.zeros((15, 3))])
     point = np.array([0.05, 0.0, 0.1])
     truth = np.array([5e4, 4e4, 3e4, 2e4, 1e4, 1e4])
-    exact = joint_spring_model(robot, truth).predict(
-        situation_of_load(robot, a, wrench, point=point)
-    )
+    exact = joint_spring_model(robot, truth).predict(load_case(robot, a, wrench, point=point))
     readings = Measurements(
         pose=tuple(map(str, range(15))), joint_names=robot.actuated, joint_kinds=("angle",) * 6,
         joints=a, wrench=wrench, displacement=exact, point=point, force_point=point,

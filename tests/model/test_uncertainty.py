@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import (
     Model,
@@ -154,34 +154,34 @@ def test_a_changed_model_keeps_no_uncertainty(model: Model) -> None:
 
 def test_std_of_a_prediction_is_that_of_predictions_over_drawn_parameters(model: Model) -> None:
     """First order against exact predictions at 600 draws; springs known to a tenth."""
-    situation = situation_of_load(model.robot, POSES, LOADS)
-    found = predict_with_uncertainty(model, situation)
+    load_cases = load_case(model.robot, POSES, LOADS)
+    found = predict_with_uncertainty(model, load_cases)
     rng = np.random.default_rng(3)
     drawn = rng.multivariate_normal(model.values, model.uncertainty.covariance, size=600)
-    exact = np.array([model.predict(situation, values) for values in drawn])
+    exact = np.array([model.predict(load_cases, values) for values in drawn])
     np.testing.assert_allclose(found.std_parameters, exact.std(axis=0), rtol=0.1)
-    np.testing.assert_allclose(found.displacement, model.predict(situation))
+    np.testing.assert_allclose(found.displacement, model.predict(load_cases))
 
 
 def test_the_remainder_turns_with_the_axes_of_the_readings_and_grows_with_the_load(
     model: Model,
 ) -> None:
-    situation = situation_of_load(model.robot, POSES, LOADS)
-    base = predict_with_uncertainty(model, situation)
+    load_cases = load_case(model.robot, POSES, LOADS)
+    base = predict_with_uncertainty(model, load_cases)
     size = np.linalg.norm(LOADS[:, :3], axis=1, keepdims=True)
     np.testing.assert_allclose(base.std_remainder, np.array([[2e-5, 3e-5, 1e-5]]) * size / 250.0)
     moments = np.concatenate([np.zeros((2, 3)), 2.0 * LOADS[:, :3]], axis=1)  # at a lever of 2 m
-    found = predict_with_uncertainty(model, situation_of_load(model.robot, POSES, moments))
+    found = predict_with_uncertainty(model, load_case(model.robot, POSES, moments))
     np.testing.assert_allclose(found.std_remainder, base.std_remainder)
     quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    turned = replace(situation, reading_axes=np.broadcast_to(quarter, (2, 3, 3)))
+    turned = replace(load_cases, reading_axes=np.broadcast_to(quarter, (2, 3, 3)))
     found = predict_with_uncertainty(model, turned)
     np.testing.assert_allclose(found.std_remainder, base.std_remainder[:, [1, 0, 2]])
     steady = replace(model.uncertainty.remainder, grows=False)
-    found = predict_with_uncertainty(model.known(knowledge(model, remainder=steady)), situation)
+    found = predict_with_uncertainty(model.known(knowledge(model, remainder=steady)), load_cases)
     np.testing.assert_allclose(found.std_remainder, np.tile([2e-5, 3e-5, 1e-5], (2, 1)))
     nothing = replace(model.uncertainty.remainder, significant=False)
-    found = predict_with_uncertainty(model.known(knowledge(model, remainder=nothing)), situation)
+    found = predict_with_uncertainty(model.known(knowledge(model, remainder=nothing)), load_cases)
     assert not found.std_remainder.any()
 
 
@@ -190,8 +190,8 @@ def test_what_does_not_show_is_unknown_only_where_it_matters(model: Model) -> No
     size = model.values
     blind = np.array([[0.0, size[1], -size[2]]])
     told = model.known(knowledge(model, unseen=blind))
-    situation = situation_of_load(model.robot, POSES, LOADS)
-    found = predict_with_uncertainty(told, situation)
+    load_cases = load_case(model.robot, POSES, LOADS)
+    found = predict_with_uncertainty(told, load_cases)
     assert np.isinf(found.std_parameters).any(axis=1).all()
     assert found.blame[0] == tuple(model.names[1:])
     known = told.uncertainty
@@ -203,6 +203,6 @@ def test_what_does_not_show_is_unknown_only_where_it_matters(model: Model) -> No
 
 def test_a_model_without_uncertainty_predicts_as_before(model: Model) -> None:
     plain = model.with_values(model.values)
-    found = predict_with_uncertainty(plain, situation_of_load(model.robot, POSES, LOADS))
+    found = predict_with_uncertainty(plain, load_case(model.robot, POSES, LOADS))
     assert found.std is None and found.std_parameters is None and found.std_remainder is None
     assert "uncertainty" not in yaml.safe_load(model_text(plain))

@@ -150,7 +150,7 @@ def campaigns(bench: Bench, seed: int, *, ask: bool, policies=POLICIES) -> Itera
     rng = np.random.default_rng([seed, len(bench.arm)])
     cause = CAUSES[rng.integers(len(CAUSES))]
     model, name, visible = bench.truth(cause, rng)
-    exact = model.predict(bench.campaign.pool.situation)
+    exact = model.predict(bench.campaign.pool.load_cases)
     noise = rng.normal(size=exact.shape) * SIGMA * np.sqrt(2.0)
     for policy in policies:
         order = bench.order(policy, np.random.default_rng([seed, 7]))

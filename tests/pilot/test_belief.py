@@ -102,7 +102,7 @@ def test_a_campaign_finds_a_hidden_cause_sooner_than_chance() -> None:
 def test_what_no_reading_separates_is_called_hopeless() -> None:
     """Loaded straight down alone, a base that rocks is not told from what sags like it."""
     made = bench().campaign
-    robot, point = made.model.robot, made.pool.situation.point
+    robot, point = made.model.robot, made.pool.load_cases.point
     down = Cell(rig=Rig("a weight", directions=np.array([[0.0, 0.0, -1.0]])))
     pool = feasible_pool(robot, poses=30, directions=1, force=400.0, point=point, cell=down)
     campaign = Campaign.of(made.model, pool, SIGMA, most=40)

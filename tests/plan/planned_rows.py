@@ -38,7 +38,7 @@ def rows_of(name: str, poses: int, seed: int = 7) -> tuple[int, list[str], float
     cell = Cell(floor=floor)
     pool = feasible_pool(
         robot, poses=poses, directions=2, force=200.0, point=POINT, seed=seed, cell=cell
-    ).situation
+    ).load_cases
     standing = [_values(robot, a) for a in drawn]
     path = robot.document.path
     assert path is not None

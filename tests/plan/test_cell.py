@@ -77,7 +77,7 @@ def test_limits_efforts_and_what_to_do_about_them_are_told(arm: Robot) -> None:
     said = faults(arm, Cell(), [0.0, 0.0], [0, 0, -100.0, 0, 0, 0])
     assert "b must give 60 of 45 N*m" in said and "a must give 209 of 90 N*m" in said
     pool = feasible_pool(arm, poses=20, directions=3, force=100.0, point=np.zeros(3))
-    verdict = feasible(arm, Cell(), pool.situation.a, pool.situation.wrench)
+    verdict = feasible(arm, Cell(), pool.load_cases.a, pool.load_cases.wrench)
     assert verdict.ok.all()
 
 
@@ -96,7 +96,7 @@ def test_rigs(arm: Robot, rig: Rig, good, bad) -> None:
     for force, ok in ((good, True), (bad, False)):
         assert feasible(arm, cell, [0.0, 0.0], [*force, 0, 0, 0]).ok[0] == ok
     pool = feasible_pool(arm, poses=15, directions=4, force=40.0, point=np.zeros(3), cell=cell)
-    assert feasible(arm, cell, pool.situation.a, pool.situation.wrench).ok.all()
+    assert feasible(arm, cell, pool.load_cases.a, pool.load_cases.wrench).ok.all()
 
 
 def test_data_tell_floor_and_directions(arm: Robot) -> None:

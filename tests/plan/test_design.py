@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseModel
@@ -31,11 +31,11 @@ SIGMA = 10e-6
 
 
 def small(pool: Pool, count: int) -> Pool:
-    return Pool(pool.situation.rows(np.arange(count)))
+    return Pool(pool.load_cases.rows(np.arange(count)))
 
 
 def sensitivities(model, pool: Pool) -> np.ndarray:
-    return model.predict_with_sensitivities(pool.situation)[1][:, :, model.free]
+    return model.predict_with_sensitivities(pool.load_cases)[1][:, :, model.free]
 
 
 def test_the_best_of_all_choices(springs, pool) -> None:
@@ -151,7 +151,7 @@ def test_what_cannot_be_chosen_is_refused(springs, robot, pool) -> None:
 
 def test_spread_poses_lie_far_apart(robot, pool) -> None:
     rng = np.random.default_rng(0)
-    place = (pool.situation.a - robot.lower) / (robot.upper - robot.lower)
+    place = (pool.load_cases.a - robot.lower) / (robot.upper - robot.lower)
 
     def nearest(rows: list[int]) -> float:
         gaps = np.linalg.norm(place[rows][:, None] - place[rows][None], axis=-1)
@@ -165,7 +165,7 @@ def test_spread_poses_lie_far_apart(robot, pool) -> None:
 def test_regions_are_kept(robot) -> None:
     cell = Cell(floor=-0.5, low=np.array([0.5, -1.0, 0.0]), high=np.array([2.5, 1.0, 1.5]))
     found = random_pool(robot, poses=50, directions=1, force=1.0, point=POINT, cell=cell, seed=4)
-    a = found.situation.a
+    a = found.load_cases.a
     T = robot.placement(a)
     at = T[:, :3, :3] @ POINT + T[:, :3, 3]
     assert np.all((at >= cell.low) & (at <= cell.high))
@@ -193,14 +193,14 @@ def test_coupled_joints_keep_their_limits(tmp_path) -> None:
     )
     robot = load_robot(str(tmp_path / "arm.urdf"))
     found = random_pool(robot, poses=40, directions=1, force=1.0, point=np.zeros(3), cell=Cell())
-    assert np.abs(found.situation.a).max() <= 0.5 + 1e-9
+    assert np.abs(found.load_cases.a).max() <= 0.5 + 1e-9
 
 
 def test_pools_hold_loads_of_one_size(robot, pool) -> None:
-    np.testing.assert_allclose(np.linalg.norm(pool.situation.wrench[:, :3], axis=1), 400.0)
+    np.testing.assert_allclose(np.linalg.norm(pool.load_cases.wrench[:, :3], axis=1), 400.0)
     assert pool.count == 120
-    again = situation_of_load(robot, pool.situation.a, pool.situation.wrench, point=POINT)
-    np.testing.assert_array_equal(again.a, pool.situation.a)
+    again = load_case(robot, pool.load_cases.a, pool.load_cases.wrench, point=POINT)
+    np.testing.assert_array_equal(again.a, pool.load_cases.a)
 
 
 def test_exchanges_mend_what_greed_took() -> None:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.explain.advise.consequences import next_poses
 from sk120stiff.measurements import NoiseModel
@@ -45,18 +45,18 @@ def test_no_motor_is_asked_for_more_than_it_has(name: str) -> None:
     tree = UrdfTree(example(name).read_text(encoding="utf-8"))
     limit = efforts(name, robot)
     tight = 0
-    for a, wrench in zip(pool.situation.a[::7], pool.situation.wrench[::7], strict=True):
+    for a, wrench in zip(pool.load_cases.a[::7], pool.load_cases.wrench[::7], strict=True):
         values = dict(zip(robot.actuated, a, strict=True))
         J = tree.jacobian(values, ARMS[name], list(robot.actuated), POINT)
         asked = np.abs(J.T @ wrench + robot.gravity_torque(a))
         assert (asked <= 0.9 * limit + 1e-6).all()
         tight += bool((asked > 0.88 * limit).any())
     assert tight  # loads are as large as they may be
-    sizes = np.linalg.norm(pool.situation.wrench[:, :3], axis=1)
+    sizes = np.linalg.norm(pool.load_cases.wrench[:, :3], axis=1)
     assert sizes.max() <= 400.0 + 1e-9 and sizes.min() < 300.0
     assert any("400 N" in said and "effort" in said for said in pool.remarks)
     small = feasible_pool(robot, poses=20, directions=2, force=5.0, point=POINT, seed=3)
-    np.testing.assert_allclose(np.linalg.norm(small.situation.wrench[:, :3], axis=1), 5.0)
+    np.testing.assert_allclose(np.linalg.norm(small.load_cases.wrench[:, :3], axis=1), 5.0)
     assert not any("effort" in said for said in small.remarks)
 
 
@@ -97,7 +97,7 @@ def test_wrist_and_tool_stay_out_of_the_pedestal(name: str) -> None:
     drawn = random_poses(robot, 150, np.random.default_rng(0))
     assert 0.01 < np.mean([inside(a) for a in drawn]) < 0.5 or name == "panda.urdf"
     pool = feasible_pool(robot, poses=60, directions=1, force=10.0, point=POINT, seed=1)
-    assert not any(inside(a) for a in pool.situation.a)
+    assert not any(inside(a) for a in pool.load_cases.a)
 
 
 def test_a_floor_holds_for_every_moving_link() -> None:
@@ -106,11 +106,11 @@ def test_a_floor_holds_for_every_moving_link() -> None:
     pool = feasible_pool(robot, poses=40, directions=1, force=10.0, point=POINT, cell=cell)
     tree = UrdfTree(example("ur10_robot.urdf").read_text(encoding="utf-8"))
     moving = [joint.child for joint in robot.document.joints if joint.name in robot.actuated]
-    for a in pool.situation.a:
+    for a in pool.load_cases.a:
         values = dict(zip(robot.actuated, a, strict=True))
         assert min(tree.point(values, link, np.zeros(3))[2] for link in moving) >= 0.0
         assert tree.point(values, "tool0", POINT)[2] >= 0.0
-    assert lowest_points(robot, pool.situation.a, POINT).min() >= cell.clearance
+    assert lowest_points(robot, pool.load_cases.a, POINT).min() >= cell.clearance
     assert not any("No floor" in said for said in pool.remarks)
 
 
@@ -121,14 +121,16 @@ def test_the_next_poses_of_an_explanation_are_feasible_too() -> None:
     rng = np.random.default_rng(2)
     measured = random_poses(robot, 400, rng)
     measured = measured[lowest_points(robot, measured, POINT) > 0.02][:12]
-    situation = situation_of_load(robot, measured, [0, 0, -300.0, 0, 0, 0], point=POINT)
+    load_cases = load_case(robot, measured, [0, 0, -300.0, 0, 0, 0], point=POINT)
     finding = SimpleNamespace(
         effect=effect(robot, "joint_tilt", robot.actuated[1]),
         alternatives=(f"joint_tilt:{robot.actuated[2]}",),
         exact=(),
     )
     final = SimpleNamespace(
-        problem=SimpleNamespace(situation=situation), model=model + finding.effect, noise_factor=1.0
+        problem=SimpleNamespace(load_cases=load_cases),
+        model=model + finding.effect,
+        noise_factor=1.0,
     )
     answer = SimpleNamespace(
         findings=(finding,),

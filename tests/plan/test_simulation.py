@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sk120stiff.effects import effect, situation_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import NoiseModel, read_measurements, write_measurements
 from sk120stiff.plan import Schedule, as_positions, scheduled, simulate
@@ -17,7 +17,7 @@ STEPS = Schedule("ascending", 4)
 def test_without_noise_it_is_the_prediction(springs, plan) -> None:
     made = simulate(springs, plan, schedule=STEPS)
     readings = scheduled(plan, STEPS)
-    expected = springs.predict(situation_of(springs.robot, readings))
+    expected = springs.predict(load_cases_of(springs.robot, readings))
     np.testing.assert_array_equal(made.measurements.displacement, expected)
     assert made.measurements.noise.sigma is None
 

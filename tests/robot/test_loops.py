@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sk120stiff.effects import Elastic, all_effects, situation_of_load
+from sk120stiff.effects import Elastic, all_effects, load_case
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import load_robot
@@ -81,15 +81,15 @@ def test_bent_links_inside_the_loop_move_what_the_rod_holds(loop, coupled):
             if found.id in names and isinstance(found, Elastic) and found.name != "joint_springs":
                 model = model + found
         values = np.array([0.3 * p.spec.typical for p in model.parameters])
-        situation = situation_of_load(robot, poses, WRENCH, point=POINT)
-        predicted.append(model.predict_with_sensitivities(situation, values))
+        load_cases = load_case(robot, poses, WRENCH, point=POINT)
+        predicted.append(model.predict_with_sensitivities(load_cases, values))
     (one, _), (two, _) = predicted
     assert np.abs(one).max() > 3e-4
     # to first order alike; a tilted arm shifts the rod's end across the plane, which the coupled
     # joints do not know
     assert np.abs(one - two).max() < 2e-3 * np.abs(one).max()
-    small = situation_of_load(loop, poses, 1e-4 * WRENCH, point=POINT)
-    there = situation_of_load(coupled, poses, 1e-4 * WRENCH, point=POINT)
+    small = load_case(loop, poses, 1e-4 * WRENCH, point=POINT)
+    there = load_case(coupled, poses, 1e-4 * WRENCH, point=POINT)
     model_one = joint_spring_model(loop, SPRINGS)
     model_two = joint_spring_model(coupled, SPRINGS)
     for found in all_effects(loop):

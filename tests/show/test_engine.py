@@ -64,8 +64,8 @@ class Bent(GearHardening):
 
     name: ClassVar[str] = "bent"
 
-    def elongation(self, torques, situation, values) -> Elongation:
-        return super().elongation(np.sinh(1e-3 * torques), situation, values)
+    def elongation(self, torques, load_cases, values) -> Elongation:
+        return super().elongation(np.sinh(1e-3 * torques), load_cases, values)
 
 
 SK120 = "motoman_sk120"

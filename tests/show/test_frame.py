@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.errors import InputError
 from sk120stiff.model import (
     LoadedStiffness,
@@ -45,7 +45,7 @@ def test_a_heavy_arm_is_shown_where_it_sags_to() -> None:
     request = Request(a, WRENCH, np.zeros(3))
     frame = compute_frame(link_tree(model.robot), Elastic.of_model(model), request)
     agrees(frame, loaded_stiffness(model, a, WRENCH))
-    rest = model.solve(situation_of_load(model.robot, a, np.zeros(6))).rest.screws.position[0]
+    rest = model.solve(load_case(model.robot, a, np.zeros(6))).rest.screws.position[0]
     tool = link_tree(model.robot).names.index("tool")
     np.testing.assert_allclose(frame.links[tool, :3, 3], rest, atol=1e-12)
     assert np.linalg.norm(rest - model.robot.screws(a).position) > 1e-3

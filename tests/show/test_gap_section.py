@@ -8,7 +8,7 @@ import pytest
 from sk120stiff.show.stories import gap_section
 
 FIT = SimpleNamespace(
-    problem=SimpleNamespace(situation=SimpleNamespace(poses=tuple(map(str, range(400)))))
+    problem=SimpleNamespace(load_cases=SimpleNamespace(poses=tuple(map(str, range(400)))))
 )
 
 

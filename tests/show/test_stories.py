@@ -45,7 +45,7 @@ def answer(verdict: str) -> Explanation:
         return found
     if verdict == "ambiguous":
         rival = replace(finding, alternatives=("link_torsion:link_1_s",), exact=())
-        a = found.base.problem.situation.a[:3]
+        a = found.base.problem.load_cases.a[:3]
         return replace(
             found, verdict="ambiguous", findings=(rival,), next_poses=(a, np.full((3, 6), 10.0))
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.effects import all_effects, situation_of_load
+from sk120stiff.effects import all_effects, load_case
 from sk120stiff.effects.base import Elastic
 from sk120stiff.errors import Refusal
 from sk120stiff.measurements import Measurements, NoiseStatement
@@ -71,11 +71,11 @@ def _with_something_missing(
 ) -> np.ndarray:
     """The displacements with an elastic effect of random kind, place and size."""
     names = {"joint_springs", "gravity_compensator"}
-    situation = situation_of_load(arm.robot, q, wrench, point=point)
+    load_cases = load_case(arm.robot, q, wrench, point=point)
     offered = [
         e
         for e in all_effects(arm.robot)
-        if isinstance(e, Elastic) and e.name not in names and e.applies_to(situation)
+        if isinstance(e, Elastic) and e.name not in names and e.applies_to(load_cases)
     ]
     for _ in range(20):
         chosen = offered[rng.integers(len(offered))]
@@ -87,12 +87,12 @@ def _with_something_missing(
         wished = rng.uniform(*SHARE)
         try:
             for _ in range(3):
-                found = more.predict(situation, values)
+                found = more.predict(load_cases, values)
                 share = np.linalg.norm(found - moved) / np.linalg.norm(moved)
                 if share == 0.0:
                     break
                 values[len(arm.values) :] *= wished / share
-            found = more.predict(situation, values)
+            found = more.predict(load_cases, values)
         except Refusal:
             continue
         if np.linalg.norm(found - moved) > 0.05 * np.linalg.norm(moved):

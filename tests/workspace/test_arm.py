@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model, base_model, joint_spring_model, loaded_stiffness
 from sk120stiff.robot import load_robot
@@ -132,8 +132,8 @@ def test_a_heavy_arm_sags_before_the_load_comes(extra: tuple[str, ...]) -> None:
             expected = loaded_stiffness(model, a, load).compliance_enhanced[:3, :3]
             ours = found.of("compliance")[number, k]
             np.testing.assert_allclose(ours, expected, atol=1e-10 * np.abs(expected).max())
-    situation = situation_of_load(robot, POSES, np.zeros(6))
-    rest = model.solve(situation).rest.screws.position
+    load_cases = load_case(robot, POSES, np.zeros(6))
+    rest = model.solve(load_cases).rest.screws.position
     np.testing.assert_allclose(found.of("position"), rest, atol=1e-12)
 
 

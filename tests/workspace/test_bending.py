@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect, situation_of_load
+from sk120stiff.effects import effect, load_case
 from sk120stiff.errors import InputError
 from sk120stiff.model import (
     Model,
@@ -69,7 +69,7 @@ def check_against_equilibrium(model: Model, job: MapJob, rtol: float) -> None:
     found = job.compute(0, job.points.grid.size)
     a = poses_of(job)
     for number, load in enumerate(LOADS):
-        exact = predict_with_uncertainty(model, situation_of_load(model.robot, a, load))
+        exact = predict_with_uncertainty(model, load_case(model.robot, a, load))
         length = np.linalg.norm(exact.displacement, axis=1)
         off = np.linalg.norm(found["deflection"][number] - exact.displacement, axis=1)
         assert (off < 3e-3 * length).all()
@@ -78,7 +78,7 @@ def check_against_equilibrium(model: Model, job: MapJob, rtol: float) -> None:
         along = exact.displacement / length[:, None]
         # ± of a length: the covariance along the displacement, from the derivatives of prediction
         L, _ = model.uncertainty.factors(model.names)
-        _, derivative = model.predict_with_sensitivities(situation_of_load(model.robot, a, load))
+        _, derivative = model.predict_with_sensitivities(load_case(model.robot, a, load))
         std = np.linalg.norm(np.einsum("ni,nip->np", along, derivative) @ L, axis=1)
         np.testing.assert_allclose(
             found["deflection_std_parameters"][number], std, rtol=rtol, atol=1e-9

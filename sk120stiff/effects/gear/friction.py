@@ -19,8 +19,8 @@ from sk120stiff.effects.base import (
 )
 from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
 from sk120stiff.effects.gear.lost_motion import LostMotion
+from sk120stiff.effects.load_cases import IDLE, LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import IDLE, Situation
 from sk120stiff.robot import Robot
 
 REACHES = (0.02, 0.06, 0.15, 0.4)  # of the largest torque: after which a gear may start to slip
@@ -82,13 +82,13 @@ class FrictionHysteresis(GearEffect, Switching):
             for r in self.reaches
         )
 
-    def other_laws(self, situation: Situation) -> tuple[FrictionHysteresis, ...]:
+    def other_laws(self, load_cases: LoadCases) -> tuple[FrictionHysteresis, ...]:
         """Pre-sliding over each of `REACHES` of the largest torque, and over all of them.
 
         Where no load is taken off step by step, nothing tells one from another.
         """
-        largest = float(np.abs(self.load_torque(situation)).max(initial=0.0))
-        if largest <= 0.0 or not (situation.branch < 0.0).any():
+        largest = float(np.abs(self.load_torque(load_cases)).max(initial=0.0))
+        if largest <= 0.0 or not (load_cases.branch < 0.0).any():
             return ()
         reaches = tuple(float(f"{share * largest:.3g}") for share in REACHES)
         single = [replace(self, reaches=(r,)) for r in reaches]
@@ -109,18 +109,18 @@ class FrictionHysteresis(GearEffect, Switching):
         own = f"{self.id}.half_width"
         return (Alias(own, own.replace(self.name, LostMotion.name), LOADS_GROW),)
 
-    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+    def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""
         shapes = [
-            -held_back(torques[:, 0], r, situation) / r
+            -held_back(torques[:, 0], r, load_cases) / r
             if r
-            else -situation.branch * np.sign(torques[:, 0])
+            else -load_cases.branch * np.sign(torques[:, 0])
             for r in self.reaches
         ]
         return constant_in_torque(np.stack(shapes, axis=-1), values)
 
 
-def held_back(torque: Array, reach: float, situation: Situation) -> Array:
+def held_back(torque: Array, reach: float, load_cases: LoadCases) -> Array:
     """(N,) what friction holds back at every reading beyond its zero reading [N·m].
 
     Every pose begins without load and without memory; its loads follow one another in the order of
@@ -130,18 +130,18 @@ def held_back(torque: Array, reach: float, situation: Situation) -> Array:
     Args:
         torque: (N,) torque of the load [N·m].
         reach: Torque after which it slips [N·m].
-        situation: The readings, in whose order the torques came.
+        load_cases: The readings, in whose order the torques came.
     """
-    steps, zero, own = situation.history
+    steps, zero, own = load_cases.history
     before = np.zeros(steps.shape[1])
     held = np.zeros(steps.shape[1])
     idle = np.ones(steps.shape[1], dtype=bool)
-    falls = situation.branch < 0.0
+    falls = load_cases.branch < 0.0
     seen = np.zeros(steps.shape)
     for k, rows in enumerate(steps):
         now = np.where(rows == IDLE, 0.0, torque[rows])
         fresh = idle & (rows != IDLE) & falls[rows]
         held = np.where(fresh, -reach * np.sign(now), np.clip(held + now - before, -reach, reach))
         seen[k], before, idle = held, now, rows == IDLE
-    pose = situation.pose_column
+    pose = load_cases.pose_column
     return np.asarray(seen[own, pose] - seen[zero, pose])

@@ -11,8 +11,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Elongation, Options, scale_of
 from sk120stiff.effects.gear.law import GearEffect, torques_told
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 
 # of the largest torque: where the gear may change its stiffness
@@ -79,11 +79,11 @@ class GearHardening(GearEffect):
             ),
         )  # fmt: skip
 
-    def other_laws(self, situation: Situation) -> tuple[GearHardening, ...]:
+    def other_laws(self, load_cases: LoadCases) -> tuple[GearHardening, ...]:
         """The series, or steps at `STEPS` of the largest torque among the readings."""
         if self.breaks:
             return (replace(self, breaks=()),)
-        largest = self.largest_torque(situation)
+        largest = self.largest_torque(load_cases)
         if largest <= 0.0:
             return ()
         return (replace(self, breaks=tuple(float(f"{share * largest:.3g}") for share in STEPS)),)
@@ -92,9 +92,9 @@ class GearHardening(GearEffect):
         """What happens."""
         return f"The gear of {self.where} gets stiffer as its torque grows."
 
-    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+    def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""
-        weight = self.weight_torque(situation)
+        weight = self.weight_torque(load_cases)
         total = torques + weight
         by_parameter = self._shapes(total) - self._shapes(weight)
         return Elongation(

@@ -10,7 +10,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Elastic, Elongation
-from sk120stiff.effects.situation import Situation
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 
@@ -31,22 +31,22 @@ class GearEffect(Elastic):
         """The actuated joint itself."""
         return (self.where,)
 
-    def weight_torque(self, situation: Situation) -> Array:
+    def weight_torque(self, load_cases: LoadCases) -> Array:
         """(N, 1) torque of the arm's weight on the joint, before the load came [N·m]."""
-        index = situation.robot.actuated.index(self.where)
-        torque = situation.gravity_torque[:, index : index + 1]
+        index = load_cases.robot.actuated.index(self.where)
+        torque = load_cases.gravity_torque[:, index : index + 1]
         # About a vertical axis only rounding is left, and its sign must not count.
-        return np.where(np.abs(torque) > 1e-9 * situation.robot.total_mass, torque, 0.0)
+        return np.where(np.abs(torque) > 1e-9 * load_cases.robot.total_mass, torque, 0.0)
 
-    def load_torque(self, situation: Situation) -> Array:
+    def load_torque(self, load_cases: LoadCases) -> Array:
         """(N, 1) torque of the load on the joint at the unloaded pose [N·m]."""
-        index = situation.robot.actuated.index(self.where)
-        load = situation.nominal.at(situation.force_point).torques(situation.wrench)
+        index = load_cases.robot.actuated.index(self.where)
+        load = load_cases.nominal.at(load_cases.force_point).torques(load_cases.wrench)
         return np.asarray(load[:, index : index + 1])
 
-    def largest_torque(self, situation: Situation) -> float:
+    def largest_torque(self, load_cases: LoadCases) -> float:
         """Largest total torque on the joint among the readings [N·m]."""
-        total = self.load_torque(situation) + self.weight_torque(situation)
+        total = self.load_torque(load_cases) + self.weight_torque(load_cases)
         return float(np.abs(total).max(initial=0.0))
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Elongation, Options, Switching, scale_of
 from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
+from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.situation import Situation
 from sk120stiff.robot import Robot
 
 FLANKS = (0.02, 0.06, 0.15)  # of the largest torque: over which teeth may take hold
@@ -88,12 +88,12 @@ class LostMotion(GearEffect, Switching):
             for side, T in self._terms
         )
 
-    def other_laws(self, situation: Situation) -> tuple[LostMotion, ...]:
+    def other_laws(self, load_cases: LoadCases) -> tuple[LostMotion, ...]:
         """Flanks of `FLANKS` of the largest torque, sides that differ, and all of these together.
 
         Together they come near any curve that flattens, as one law with non-negative parts.
         """
-        largest = self.largest_torque(situation)
+        largest = self.largest_torque(load_cases)
         if largest <= 0.0:
             return ()
         flanks = tuple(float(f"{share * largest:.3g}") for share in FLANKS)
@@ -109,11 +109,11 @@ class LostMotion(GearEffect, Switching):
         """What happens."""
         return f"The gear of {self.where} has lost motion: it jumps when its torque turns round."
 
-    def elongation(self, torques: Array, situation: Situation, values: Array) -> Elongation:
+    def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`. A position has no zero reading to be subtracted."""
-        weight = self.weight_torque(situation)
+        weight = self.weight_torque(load_cases)
         shapes = self._shapes(torques + weight)
-        if not situation.absolute:
+        if not load_cases.absolute:
             shapes = shapes - self._shapes(weight)
         return constant_in_torque(shapes, values)
 

@@ -99,16 +99,16 @@ def next_poses(
     """
     problem = final.problem
     robot, readings = problem.model.robot, problem.measurements
-    situation = problem.situation
-    at = situation.point[0]
-    cell = cell_from_data(robot, Cell(), situation.a, np.zeros((1, 6)), at)
+    load_cases = problem.load_cases
+    at = load_cases.point[0]
+    cell = cell_from_data(robot, Cell(), load_cases.a, np.zeros((1, 6)), at)
     try:
         pool = random_pool(
             robot, poses=POOL, directions=1, force=1.0, point=at, seed=seed, cell=cell
         )  # fmt: skip
     except Refusal:
         return None  # no other pose can be driven as far as is known
-    a = pool.situation.a
+    a = pool.load_cases.a
     rows = np.random.default_rng(seed).integers(readings.n_readings, size=len(a))
     like = readings.select(rows)
     drawn = replace(

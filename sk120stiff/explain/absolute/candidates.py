@@ -16,10 +16,10 @@ from sk120stiff.effects import (
     Geometric,
     Imposed,
     LinearElastic,
+    LoadCases,
     LoadError,
     ReadingError,
-    Situation,
-    situation_of,
+    load_cases_of,
 )
 from sk120stiff.effects.gear import LostMotion
 from sk120stiff.effects.joint_frame import JointFrame
@@ -40,10 +40,10 @@ _ONLY_LOADED = ("reading_rotation", "zero_offset", "joint_offset", "link_length"
 
 def candidates_at(
     model_robot: Robot,
-    situation: Situation,
+    load_cases: LoadCases,
     readings: Measurements,
     present: Sequence[str],
-    wish: Options,
+    options: Options,
     catalogue: Catalogue,
 ) -> tuple[Effect, ...]:
     """Every effect at every place that could show in these positions and is not in the model.
@@ -63,23 +63,23 @@ def candidates_at(
         for where in kind.places(model_robot):
             effect = kind.at(model_robot, where, told)
             named = {effect.id, effect.name}
-            if effect.id in present or named & set(wish.exclude):
+            if effect.id in present or named & set(options.exclude):
                 continue
-            if wish.only and not named & set(wish.only):
+            if options.only and not named & set(options.only):
                 continue
-            if effect.parameters and effect.applies_to(situation):
+            if effect.parameters and effect.applies_to(load_cases):
                 out.append(effect)
     return tuple(out)
 
 
 def linear_at(
-    base: Calibration, wish: Options, catalogue: Catalogue, at: Calibration | None = None
+    base: Calibration, options: Options, catalogue: Catalogue, at: Calibration | None = None
 ) -> tuple[Linear, tuple[Effect, ...]]:
     """Positions linearised, and candidates that do not show in them.
 
     Args:
         base: The calibration beside which candidates are judged.
-        wish: Which candidates are wanted.
+        options: Which candidates are wanted.
         catalogue: Where they come from.
         at: A calibration with some of the candidates, about which to linearise: sag and errors of
             geometry together are more than their sum. None: about the base.
@@ -88,7 +88,7 @@ def linear_at(
     problem, model = seen.problem, seen.fit.model
     readings = problem.measurements
     present = [effect.id for effect in base.fit.model.effects]
-    effects = candidates_at(model.robot, problem.situation, readings, present, wish, catalogue)
+    effects = candidates_at(model.robot, problem.load_cases, readings, present, options, catalogue)
     sigma = problem.of_channels.sigma
     residual = seen.fit.residual
     own = [k for k, p in enumerate(seen.fit.parameters) if p.effect.id in present]
@@ -132,8 +132,8 @@ def linear_at(
         positive += [spec.lower == 0.0 for spec in effect.parameters]
     ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
     rows = problem.rows
-    pose = situation_of(model.robot, readings).pose
-    fold = pose_parts(readings, folds=FOLDS, seed=wish.seed)[pose]
+    pose = load_cases_of(model.robot, readings).pose
+    fold = pose_parts(readings, folds=FOLDS, seed=options.seed)[pose]
     linear = Linear(
         residual=residual - Q @ (Q.T @ residual),
         base=Q,

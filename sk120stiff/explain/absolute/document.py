@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.arrays import Mask
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.run import Explained, Named
 from sk120stiff.explain.answer.document import parameter_entry
@@ -112,7 +112,7 @@ def save_positions(
 
 def gaps_table(model: Model, readings: Measurements, wild: Mask | None = None) -> Columns:
     """Predicted position, measured one and gap of every row, in axes of the instrument."""
-    seen = read_poses(model, situation_of(model.robot, readings))
+    seen = read_poses(model, load_cases_of(model.robot, readings))
     columns: dict[str, object] = {"pose": list(readings.pose)}
     for k, axis in enumerate("xyz"):
         columns[f"predicted_{axis}[mm]"] = seen.position[:, k] * 1e3

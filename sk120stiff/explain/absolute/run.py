@@ -143,7 +143,7 @@ def explain_positions(
         InputError: No such robot gave these positions, or too few poses.
         Refusal: The fit did not converge.
     """
-    wish = options or Options()
+    options = options or Options()
     tell = progress or (lambda _phrase, _share: None)
     if len(readings.masked().poses) < FEWEST:
         raise InputError(
@@ -155,14 +155,14 @@ def explain_positions(
     tell("registering the tracker", 0.05)
     base = calibrate(model, readings, geometry=False, waves=False, catalogue=catalogue)
     tell("searching the catalogue", 0.2)
-    linear, hidden = linear_at(base, wish, catalogue)
+    linear, hidden = linear_at(base, options, catalogue)
     found = choose(linear)
     tell("fitting exactly", 0.5)
     final = refined(base, _picked(linear, found), readings, catalogue=catalogue)
     seen = base
     for _ in range(ROUNDS):
         before, seen = _picked(linear, found), final
-        linear, hidden = linear_at(base, wish, catalogue, seen)
+        linear, hidden = linear_at(base, options, catalogue, seen)
         found = choose(linear)
         again = _picked(linear, found)
         if set(again) == set(before):
@@ -198,7 +198,7 @@ def explain_positions(
         where=_where(linear, gap, seen, readings),
         smallest=detectable(linear, found),
         probabilities=probabilities(linear, found),
-        following=None if pair is None else next_poses(final, *pair, seed=wish.seed),
+        following=None if pair is None else next_poses(final, *pair, seed=options.seed),
     )
 
 

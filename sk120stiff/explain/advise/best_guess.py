@@ -9,7 +9,7 @@ import numpy as np
 from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.findings import Contender
-from sk120stiff.explain.select.stepwise import Attempt, refit
+from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit, Problem, held_out, solve_near
 from sk120stiff.measurements import Measurements
 
@@ -17,12 +17,12 @@ MOST = 4  # contenders that are left out pose by pose
 
 
 def contenders(
-    found: Attempt, names: Sequence[str], *, seed: int
+    found: Selection, names: Sequence[str], *, seed: int
 ) -> tuple[tuple[Contender, ...], Fit | None]:
     """How much the held-out gap falls with each, best first, and the fit with the best.
 
     Args:
-        found: The attempt; its base model is what each is added to.
+        found: The selection; its base model is what each is added to.
         names: Effects (``name:where``) that fitted and are not named, the likeliest first.
         seed: Of the parts in which poses are left out.
     """
@@ -37,7 +37,7 @@ def contenders(
     return tuple(ranked), fits[ranked[0].id] if good else None
 
 
-def _added(found: Attempt, effect: Effect) -> Fit | None:
+def _added(found: Selection, effect: Effect) -> Fit | None:
     try:
         return refit(found.base, [effect])
     except Refusal:

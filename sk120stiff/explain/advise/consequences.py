@@ -47,25 +47,27 @@ def next_poses(
         rivals = [name for name in finding.alternatives if name not in finding.exact]
         if not rivals:
             continue
-        situation = answer.final.problem.situation
+        load_cases = answer.final.problem.load_cases
         model = answer.final.model
-        force = float(np.linalg.norm(situation.wrench[:, :3], axis=1).max())
-        cell = cell_from_data(model.robot, Cell(), situation.a, situation.wrench, situation.point)
+        force = float(np.linalg.norm(load_cases.wrench[:, :3], axis=1).max())
+        cell = cell_from_data(
+            model.robot, Cell(), load_cases.a, load_cases.wrench, load_cases.point
+        )
         pool = feasible_pool(
             model.robot,
             poses=400,
             directions=3,
             force=max(force, 1.0),
-            point=situation.point,
-            force_point=situation.force_point,
+            point=load_cases.point,
+            force_point=load_cases.force_point,
             seed=seed,
             cell=cell,
         )
         rival = answer.effect(rivals[0])
         sigma = answer.noise.sigma * answer.final.noise_factor
         for share in SHARES_OF_LOAD:
-            weaker = replace(pool.situation, wrench=share * pool.situation.wrench)
-            held = replace(pool, situation=weaker)
+            weaker = replace(pool.load_cases, wrench=share * pool.load_cases.wrench)
+            held = replace(pool, load_cases=weaker)
             try:
                 choice = discriminating_readings(
                     model, finding.effect, rival, held, count=count, sigma=sigma

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.explain.answer.document import BEST_GUESS, verdict_document
 from sk120stiff.files import csv_text, together, write_atomically
@@ -76,7 +76,7 @@ def replacing_results(out: Path) -> AbstractContextManager[None]:
 def _gaps(fitted: Model, readings: Measurements) -> str | None:
     """Prediction and gap of every row; None, with a warning, where there is none."""
     try:
-        predicted = predict_what_holds(fitted, situation_of(fitted.robot, readings))
+        predicted = predict_what_holds(fitted, load_cases_of(fitted.robot, readings))
         return csv_text(prediction_table(readings, predicted).items())
     except Exception as error:  # noqa: BLE001  (an answer is never lost to its table)
         warnings.warn(

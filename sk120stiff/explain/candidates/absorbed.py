@@ -51,7 +51,7 @@ def absorbed(fit: Fit, effects: Sequence[Effect]) -> tuple[Absorbed, ...]:
     full = fit.model
     for effect in effects:
         full = full + effect
-    _, derivative = full.predict_with_sensitivities(problem.situation)
+    _, derivative = full.predict_with_sensitivities(problem.load_cases)
     moving = problem.free[~fit.at_bound]
     own = derivative[:, :, moving] * problem.scale[~fit.at_bound]
     white = problem.whitener.apply(own)

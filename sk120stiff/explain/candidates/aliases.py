@@ -33,7 +33,7 @@ def exact_aliases(
     for other in others:
         if other.id not in present:
             full = full + other
-    _, derivative = full.predict_with_sensitivities(pool.situation)
+    _, derivative = full.predict_with_sensitivities(pool.load_cases)
     typical = np.array([parameter.spec.typical for parameter in full.parameters])
     X = (derivative * typical).reshape(-1, len(typical))
     owner = np.array([parameter.effect.id for parameter in full.parameters])

@@ -300,12 +300,12 @@ def regression_at(
         if effect.id not in present:
             full = full + effect
     chosen = [effect for effect in full.effects if effect.id not in base_effects]
-    others = [effect.other_laws(problem.situation) for effect in chosen]
+    others = [effect.other_laws(problem.load_cases) for effect in chosen]
     extra = tuple(Parameter(e, spec) for e in chain.from_iterable(others) for spec in e.parameters)
     full = replace(full, parameters=full.parameters + extra)  # two laws of one effect, so no sum
     specs = [parameter.spec for parameter in full.parameters]
     typical = np.array([spec.typical for spec in specs])
-    predicted, derivative = full.predict_with_sensitivities(problem.situation)
+    predicted, derivative = full.predict_with_sensitivities(problem.load_cases)
     X = problem.whitener.apply(derivative * typical)
     gap = problem.whitener.apply(problem.measured - predicted)
     fixed = np.array([not p.free for p in full.parameters])
@@ -339,7 +339,7 @@ def regression_at(
     return Regression(
         y=y,
         X=whole,
-        group=np.repeat(problem.situation.pose, 3),
+        group=np.repeat(problem.load_cases.pose, 3),
         base=np.concatenate([*base, np.zeros(0, dtype=np.intp)]),
         candidates=tuple(chosen),
         columns=columns,

@@ -18,7 +18,7 @@ from sk120stiff.explain.localise.localisation import OwnAtPoses
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.select.beam import gains
 from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set
-from sk120stiff.explain.select.stepwise import Attempt, refit, with_effects
+from sk120stiff.explain.select.stepwise import Selection, refit, with_effects
 from sk120stiff.robot.anatomy import arm_joints
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
@@ -78,14 +78,14 @@ class Named:
         return tuple(each.reason for each in self.fallen)
 
 
-def judged(found: Attempt, *, seed: int, least: float = -np.inf) -> tuple[Attempt, Named]:
-    """The attempt with those effects alone that may be named, and what was said of each.
+def judged(found: Selection, *, seed: int, least: float = -np.inf) -> tuple[Selection, Named]:
+    """The selection with those effects alone that may be named, and what was said of each.
 
     Where some may not, the weakest of them falls, and the others are judged anew without it: names
     that overlap spoil each other's evidence, and theirs is that of the model that is written.
 
     Args:
-        found: The attempt.
+        found: The selection.
         seed: Of folds and resampling.
         least: Gain of score that an effect has to bring.
     """
@@ -99,13 +99,13 @@ def judged(found: Attempt, *, seed: int, least: float = -np.inf) -> tuple[Attemp
         found = _without_the_weakest(found, kept)
 
 
-def _in_order(found: Attempt) -> list[Effect]:
+def _in_order(found: Selection) -> list[Effect]:
     """The chosen effects, the strongest first."""
     return [found.regression.candidates[e] for e in by_weight(found.regression, found.scored)]
 
 
-def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
-    """The attempt with these effects, or with as many of the strongest as a fit holds."""
+def _without_the_weakest(found: Selection, effects: list[Effect]) -> Selection:
+    """The selection with these effects, or with as many of the strongest as a fit holds."""
     while True:
         try:
             return with_effects(found, effects)
@@ -114,7 +114,7 @@ def _without_the_weakest(found: Attempt, effects: list[Effect]) -> Attempt:
 
 
 def findings_of(
-    found: Attempt, *, seed: int, least: float = -np.inf
+    found: Selection, *, seed: int, least: float = -np.inf
 ) -> tuple[tuple[Finding, ...], Fallen | None]:
     """Judge the chosen effects, each beside all the others, from the weakest up.
 
@@ -136,7 +136,7 @@ def findings_of(
 
 
 def _objection(
-    found: Attempt, finding: Finding, before: list[Finding], least: float
+    found: Selection, finding: Finding, before: list[Finding], least: float
 ) -> Fallen | None:
     """Why an effect may not be named beside the stronger ones; None if it may."""
     name = finding.effect.id
@@ -156,7 +156,7 @@ def _objection(
             "likely its drive does not begin every pose alike. It is not named.",
             misspecification=any(other.effect.where == turns for other in before),
         )
-    if finding.effect.exchangeable and not _constant(found, finding.effect):
+    if finding.effect.random_effects and not _constant(found, finding.effect):
         return Fallen(
             name,
             f"{name} fits, but something in proportion to the load at every pose would fit as "
@@ -179,7 +179,7 @@ def _objection(
     return None
 
 
-def _confirmed(found: Attempt, effect: int, finding: Finding, seed: int) -> Finding:
+def _confirmed(found: Selection, effect: int, finding: Finding, seed: int) -> Finding:
     """The finding with what other poses say of it."""
     regression = found.regression
     same = [e for e, other in enumerate(regression.candidates) if other.id in finding.alternatives]
@@ -194,30 +194,32 @@ def unit(regression: Regression, model: Scored) -> float:
     return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
 
 
-def _joint_that_turns(found: Attempt, effect: Effect) -> str | None:
+def _joint_that_turns(found: Selection, effect: Effect) -> str | None:
     """The joint along whose turn the draws of an effect lie; None: of no joint.
 
     A gear that rubs begins a pose with what the pose before left in it, and one whose stiffness
     goes with its angle yields more at some poses. Draws of the tracker know no joint: a third of
     their square lies along its turn.
     """
-    if not effect.exchangeable:
+    if not effect.random_effects:
         return None
     fit = found.final
-    situation = fit.problem.situation
+    load_cases = fit.problem.load_cases
     own = np.array([parameter.effect == effect for parameter in fit.model.parameters])
-    _, full = fit.model.predict_with_sensitivities(situation)
-    drawn = np.einsum("nij,nj->ni", situation.reading_axes, full[:, :, own] @ fit.model.values[own])
-    ways = situation.nominal.linear_jacobian
+    _, full = fit.model.predict_with_sensitivities(load_cases)
+    drawn = np.einsum(
+        "nij,nj->ni", load_cases.reading_axes, full[:, :, own] @ fit.model.values[own]
+    )
+    ways = load_cases.nominal.linear_jacobian
     length = np.maximum(np.linalg.norm(ways, axis=1), 1e-300)
     along = (np.einsum("ni,nij->nj", drawn, ways) / length) ** 2
     joint = int(np.argmax(along.sum(axis=0)))
     if along[:, joint].sum() > ALONG * (drawn**2).sum():
-        return situation.robot.actuated[joint]
+        return load_cases.robot.actuated[joint]
     return None
 
 
-def _constant(found: Attempt, effect: Effect) -> bool:
+def _constant(found: Selection, effect: Effect) -> bool:
     """Is what single poses have of their own a constant, and not in proportion to the load?
 
     Draws, one for every pose, can imitate part of any cause that the catalogue lacks.
@@ -247,7 +249,7 @@ def _unconfirmed(finding: Finding) -> str:
     )
 
 
-def _stronger(found: Attempt, finding: Finding, before: list[Finding]) -> Finding | None:
+def _stronger(found: Selection, finding: Finding, before: list[Finding]) -> Finding | None:
     """The stronger effect whose law leaves over what this one explains.
 
     No gear follows a cubic to the last digit; what is left looks like play or friction there. No
@@ -267,7 +269,7 @@ def _stronger(found: Attempt, finding: Finding, before: list[Finding]) -> Findin
     return None
 
 
-def _beside(found: Attempt, effect: Effect, link: Effect) -> bool:
+def _beside(found: Selection, effect: Effect, link: Effect) -> bool:
     """Does this yield in proportion to its load, at the link or at a neighbour of it?"""
     if not isinstance(effect, Elastic) or effect.of_gear:
         return False
@@ -278,7 +280,7 @@ def _beside(found: Attempt, effect: Effect, link: Effect) -> bool:
     return both and abs(place[effect.where] - place[link.where]) <= NEIGHBOURS
 
 
-def _length_alone(found: Attempt, effect: Effect) -> float:
+def _length_alone(found: Selection, effect: Effect) -> float:
     """Fall of the misfit that one effect alone brings, as a length √λ in units of the noise."""
     regression, sums = found.regression, found.regression.sums()
     place = next(k for k, e in enumerate(regression.candidates) if e.id == effect.id)
@@ -294,7 +296,7 @@ def _of_one_gear(finding: Finding, other: Finding) -> float:
     return MISSPECIFICATION if gears and finding.effect.where == other.effect.where else 0.0
 
 
-def _finding(found: Attempt, effect: int) -> Finding:
+def _finding(found: Selection, effect: int) -> Finding:
     """An effect with its evidence; other poses were not yet asked."""
     regression = found.regression
     with_it = found.scored
@@ -339,10 +341,10 @@ def _finding(found: Attempt, effect: int) -> Finding:
 
 
 def _aliases(
-    found: Attempt, effect: int, with_it: Scored, rivals: list[tuple[int, Scored]]
+    found: Selection, effect: int, with_it: Scored, rivals: list[tuple[int, Scored]]
 ) -> tuple[str, ...]:
     """Names that no readings of this kind could tell from the effect."""
-    regression, situation = found.regression, found.final.problem.situation
+    regression, load_cases = found.regression, found.final.problem.load_cases
     chosen = regression.candidates[effect]
     close = [
         regression.candidates[e]
@@ -354,7 +356,7 @@ def _aliases(
         found.final.model,
         chosen,
         close,
-        point=situation.point,
+        point=load_cases.point,
     )
     X = regression.X
     here = aliases_by_design(

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged
 from sk120stiff.explain.judge.imitation import imitated
-from sk120stiff.explain.select.stepwise import Attempt, with_effects
+from sk120stiff.explain.select.stepwise import Selection, with_effects
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
@@ -22,20 +22,20 @@ from sk120stiff.measurements import NoiseModel
 ROUNDS = 3  # of estimating, searching and judging
 WORTH = 2.0  # gain in -2 ln L by which structure has to beat noise that is merely larger
 
-Try = Callable[[NoiseModel], Attempt]
+Try = Callable[[NoiseModel], Selection]
 
 
 def beside_model_form(
     at: Fit, under: Try, *, names: Collection[str] = (), seed: int
-) -> tuple[Attempt, Named]:
-    """The attempt beside model-form error, with the effects alone that may be named.
+) -> tuple[Selection, Named]:
+    """The selection beside model-form error, with the effects alone that may be named.
 
     What confirmed names explain is no model-form error: the search begins beside what they leave.
 
     Args:
         at: Fit under the noise of the readings, of the base model with the effects that stand
             against the noise alone.
-        under: Makes an attempt under one noise model.
+        under: Makes a selection under one noise model.
         names: Ids of these effects.
         seed: Of folds and resampling.
     """
@@ -49,7 +49,7 @@ def beside_model_form(
     return unless_imitating(found, named, seed)
 
 
-def unless_imitating(found: Attempt, named: Named, seed: int) -> tuple[Attempt, Named]:
+def unless_imitating(found: Selection, named: Named, seed: int) -> tuple[Selection, Named]:
     """The same without names that imitate part of a cause that the catalogue lacks.
 
     They fall one at a time, the weakest first, and the others are judged anew; those that stand do

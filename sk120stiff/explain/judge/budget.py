@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.effects import Situation
+from sk120stiff.effects import LoadCases
 from sk120stiff.identify import Fit
 from sk120stiff.model import Share, shares
 
 
-def error_budget(fit: Fit, situation: Situation | None = None) -> tuple[Share, ...]:
+def error_budget(fit: Fit, load_cases: LoadCases | None = None) -> tuple[Share, ...]:
     """Shares of all effects of a fitted model, the largest first.
 
     Args:
         fit: The fitted model.
-        situation: Poses and loads of a task; None: those that were measured.
+        load_cases: Poses and loads of a task; None: those that were measured.
     """
-    at = fit.problem.situation if situation is None else situation
+    at = fit.problem.load_cases if load_cases is None else load_cases
     _, derivative = fit.model.predict_with_sensitivities(at)
     covariance = np.zeros((len(fit.model.values),) * 2)
     free = np.ix_(fit.problem.free, fit.problem.free)

@@ -63,7 +63,7 @@ def confirm(
         gain_error=error / axes,
         frequency=own / count,
         rival_frequency=max(rivals, default=0) / count,
-        foretells=not regression.candidates[effect].exchangeable,
+        foretells=not regression.candidates[effect].random_effects,
     )
 
 
@@ -111,7 +111,7 @@ def _winner(
     beside = score_set(regression, sums, rest, start=start, only=())
     promised = promises(regression, sums, beside.solved)
     order = [int(e) for e in np.argsort(-largest(promised)) if int(e) not in rest][:RIVALS]
-    contenders = {*same, *(e for e in order if not regression.candidates[e].exchangeable)}
+    contenders = {*same, *(e for e in order if not regression.candidates[e].random_effects)}
     scored = {}
     for e in contenders:
         likely = {e: likeliest(regression, sums, e, promised[e])}

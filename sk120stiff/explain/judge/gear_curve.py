@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import Elastic, Options, Situation
+from sk120stiff.effects import Elastic, LoadCases, Options
 from sk120stiff.effects.gear.law import GearEffect
 from sk120stiff.identify import Fit
 from sk120stiff.identify.checks.left_over import orthonormal
@@ -64,14 +64,14 @@ def gear_curves(fit: Fit, named: Sequence[str]) -> tuple[GearCurve, ...]:
 
 
 def _curve(fit: Fit, where: str, gears: Sequence[GearEffect]) -> GearCurve:
-    situation = fit.problem.situation
+    load_cases = fit.problem.load_cases
     springs = [e for e in fit.model.effects if e.joint_spring and e.where == where]
     parts = [e for e in (*springs, *gears) if isinstance(e, Elastic)]
-    bench, applied = _bench(situation, gears[0].largest_torque(situation))
+    bench, applied = _bench(load_cases, gears[0].largest_torque(load_cases))
     shapes = np.hstack([_shapes(part, applied, bench) for part in parts])
     own = np.array([p.effect in parts for p in fit.model.parameters])
     twist = shapes @ fit.model.values[own]
-    plain = type(gears[0]).at(situation.robot, where, Options())
+    plain = type(gears[0]).at(load_cases.robot, where, Options())
     ideal = orthonormal(np.hstack([applied, _shapes(plain, applied, bench)]))
     return GearCurve(
         where=where,
@@ -85,7 +85,7 @@ def _curve(fit: Fit, where: str, gears: Sequence[GearEffect]) -> GearCurve:
     )
 
 
-def _shapes(effect: Elastic, torque: Array, bench: Situation) -> Array:
+def _shapes(effect: Elastic, torque: Array, bench: LoadCases) -> Array:
     """(K, p) twist per unit of each parameter; laws of gears are linear in these."""
     count = len(effect.parameters)
     return effect.elongation(torque, bench, np.zeros(count)).by_parameter[:, 0, :]
@@ -104,21 +104,21 @@ def _band(fit: Fit, shapes: Array, own: Array) -> Array | None:
     return np.asarray(fit.reach() * np.sqrt(np.maximum(variance, 0.0)))
 
 
-def _bench(situation: Situation, largest: float) -> tuple[Situation, Array]:
+def _bench(load_cases: LoadCases, largest: float) -> tuple[LoadCases, Array]:
     """One joint on a bench: readings of one pose without weight, their torques (K, 1) [N·m]."""
     up = np.linspace(0.0, 1.0, STEPS)
     way = np.concatenate([up, up[-2::-1], -up[1:], -up[-2::-1], up[1:]]) * largest
     rising = np.concatenate([[1.0], np.diff(np.abs(way))])
-    first = situation.rows(np.zeros(len(way), dtype=np.intp))
+    first = load_cases.rows(np.zeros(len(way), dtype=np.intp))
     return _weightless(first, rising, np.zeros(len(way), dtype=np.intp)), way[:, None]
 
 
-def _weightless(situation: Situation, rising: Array, pose: Index) -> Situation:
+def _weightless(load_cases: LoadCases, rising: Array, pose: Index) -> LoadCases:
     """The same readings of an arm without weight, at these poses (N,), one after the other."""
     return replace(
-        situation,
-        robot=replace(situation.robot, gravity=np.zeros(3)),
-        order=np.arange(1.0, situation.count + 1.0),
+        load_cases,
+        robot=replace(load_cases.robot, gravity=np.zeros(3)),
+        order=np.arange(1.0, load_cases.count + 1.0),
         time=None,
         branch=np.where(rising < 0.0, -1.0, 1.0),
         pose=pose,
@@ -130,18 +130,18 @@ def _weightless(situation: Situation, rising: Array, pose: Index) -> Situation:
 
 def _measured(fit: Fit, gear: GearEffect, parts: Sequence[Elastic]) -> Array:
     """(M, 2) total torque and twist of the readings whose point the joint moves well."""
-    situation = fit.problem.situation
-    lever = situation.nominal.linear_jacobian[:, :, situation.robot.actuated.index(gear.where)]
-    axes = situation.reading_axes
-    gap = np.einsum("nij,nj->ni", axes, fit.problem.measured - fit.model.predict(situation))
+    load_cases = fit.problem.load_cases
+    lever = load_cases.nominal.linear_jacobian[:, :, load_cases.robot.actuated.index(gear.where)]
+    axes = load_cases.reading_axes
+    gap = np.einsum("nij,nj->ni", axes, fit.problem.measured - fit.model.predict(load_cases))
     square = (lever**2).sum(axis=1)
     told = square > SEEN**2 * square.max(initial=0.0)
     twist = (lever * gap).sum(axis=1) / np.where(told, square, 1.0)
-    load, weight = gear.load_torque(situation), gear.weight_torque(situation)
-    count = situation.count
-    alone = _weightless(situation, np.ones(count), np.arange(count, dtype=np.intp))
+    load, weight = gear.load_torque(load_cases), gear.weight_torque(load_cases)
+    count = load_cases.count
+    alone = _weightless(load_cases, np.ones(count), np.arange(count, dtype=np.intp))
     for part in parts:  # from no torque at all to the weight's, and from there to the load's
         values = fit.model.values[[p.effect == part for p in fit.model.parameters]]
         twist = twist + _shapes(part, weight, alone) @ values
-        twist = twist + part.elongation(load, situation, values).value[:, 0]
+        twist = twist + part.elongation(load, load_cases, values).value[:, 0]
     return np.asarray(np.stack([(load + weight)[:, 0], twist], axis=1)[told])

@@ -63,7 +63,7 @@ def own_columns(fit: Fit, effect: Effect) -> Mask:
 
 def _displacement(fit: Fit, effects: Sequence[Effect]) -> Array:
     """(N, 3) what some effects bring, reading axes [m]."""
-    full = fit.model.predict_with_sensitivities(fit.problem.situation)[1]
+    full = fit.model.predict_with_sensitivities(fit.problem.load_cases)[1]
     ids = {effect.id for effect in effects}
     own = np.array([parameter.effect.id in ids for parameter in fit.model.parameters], dtype=bool)
     return np.asarray(full[:, :, own] @ fit.model.values[own])
@@ -76,7 +76,7 @@ def spread_over_poses(fit: Fit, effect: Effect) -> tuple[float, float]:
         spread, gain: Standard deviation κ over the poses, relative to the size; and the fall of
             -2 ln L against a size that is the same everywhere.
     """
-    full = fit.model.predict_with_sensitivities(fit.problem.situation)[1]
+    full = fit.model.predict_with_sensitivities(fit.problem.load_cases)[1]
     own = np.array([parameter.effect.id == effect.id for parameter in fit.model.parameters])
     sums = Deviance.of(fit, signature=full[:, :, own] @ fit.model.values[own])
     form = fit.problem.noise.form
@@ -185,7 +185,7 @@ def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
     look = look_at(fit, yardstick(fit))
     # Without the names nothing of theirs is read, or misread.
     explained = np.einsum(
-        "nij,nj->ni", fit.problem.situation.reading_axes, _displacement(fit, names)
+        "nij,nj->ni", fit.problem.load_cases.reading_axes, _displacement(fit, names)
     )
     lineup = line_up(replace(look, predicted=look.predicted - explained))
     own = [own_columns(fit, effect) for effect in names]

@@ -18,10 +18,10 @@ def unlike_scatter(fit: Fit) -> dict[str, tuple[float, float]]:
 
     Empty where fewer than two poses have readings enough.
     """
-    situation = fit.problem.situation
-    basis = load_basis(situation, jump=True, cubic=True, branches=True)
+    load_cases = fit.problem.load_cases
+    basis = load_basis(load_cases, jump=True, cubic=True, branches=True)
     columns = fit.problem.whitener.apply(pose_columns(basis))
-    group = np.repeat(situation.pose, 3)
+    group = np.repeat(load_cases.pose, 3)
     squares, freedom = [], []
     for rows in rows_by_label(group):
         block = orthonormal(columns[rows])

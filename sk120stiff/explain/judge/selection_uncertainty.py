@@ -20,7 +20,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.attribution import unit
 from sk120stiff.explain.select.score import score_set
-from sk120stiff.explain.select.stepwise import Attempt, refit
+from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.fit import with_values
 
@@ -29,11 +29,11 @@ LOOKED_AT = 8  # alternatives of one name
 LAWS = 3  # other laws of one name
 
 
-def with_selection_uncertainty(found: Attempt, findings: Sequence[Finding]) -> Fit:
+def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) -> Fit:
     """The final fit, its standard errors and intervals widened by the models that remain possible.
 
     Args:
-        found: The attempt with its final fit.
+        found: The selection with its final fit.
         findings: The named effects with their alternatives.
     """
     final = found.final
@@ -56,20 +56,20 @@ def with_selection_uncertainty(found: Attempt, findings: Sequence[Finding]) -> F
 
 def _at_no_load(fit: Fit) -> Array:
     """(P_free,) the estimates; of springs that a law bends, the whole compliance at no load."""
-    x, model, situation = fit.x.copy(), fit.model, fit.problem.situation
-    rest = np.zeros((situation.count, 1))
+    x, model, load_cases = fit.x.copy(), fit.model, fit.problem.load_cases
+    rest = np.zeros((load_cases.count, 1))
     for effect in model.effects:
         if not (effect.bends_a_spring and isinstance(effect, Elastic)):
             continue
         values = np.array([p.internal for p in model.parameters if p.effect == effect])
-        slope = float(effect.elongation(rest, situation, values).by_torque.mean())
+        slope = float(effect.elongation(rest, load_cases, values).by_torque.mean())
         for k, parameter in enumerate(fit.parameters):
             if parameter.effect.joint_spring and parameter.effect.where == effect.where:
                 x[k] += slope / fit.problem.scale[k]
     return np.asarray(x)
 
 
-def _others(found: Attempt, findings: Sequence[Finding]) -> Iterator[tuple[list[Effect], bool]]:
+def _others(found: Selection, findings: Sequence[Finding]) -> Iterator[tuple[list[Effect], bool]]:
     """Sets of effects that may be meant as well; and whether they have to prove that they fit."""
     regression = found.regression
     where = {effect.id: k for k, effect in enumerate(regression.candidates)}
@@ -81,7 +81,7 @@ def _others(found: Attempt, findings: Sequence[Finding]) -> Iterator[tuple[list[
             yield [*rest, law], True
 
 
-def _other_laws(found: Attempt, effect: int) -> list[Effect]:
+def _other_laws(found: Selection, effect: int) -> list[Effect]:
     """Laws of one effect that the readings do not refute, the likeliest first."""
     regression, sums, now = found.regression, found.regression.sums(), found.scored
     laws = regression.laws[effect]

@@ -12,7 +12,7 @@ from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import with_model_form
 from sk120stiff.explain.select.beam import beam_search
-from sk120stiff.explain.select.stepwise import Attempt, laws_of, refit
+from sk120stiff.explain.select.stepwise import Selection, laws_of, refit
 from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
 from sk120stiff.measurements import Measurements
 
@@ -21,7 +21,7 @@ NARROW = 4  # models kept at each size of a search in one part: it is there to c
 
 
 def gap_steps(
-    found: Attempt, effects: Sequence[Effect], holdout: Measurements | None, *, seed: int
+    found: Selection, effects: Sequence[Effect], holdout: Measurements | None, *, seed: int
 ) -> tuple[Step, ...]:
     """The base model, then one effect more at each step.
 
@@ -59,7 +59,7 @@ def gap_steps(
     )
 
 
-def nested(found: Attempt, counts: Sequence[int]) -> Learn:
+def nested(found: Selection, counts: Sequence[int]) -> Learn:
     """Learning as `explain` learns: noise, effects and values from the readings at hand alone.
 
     It gives the base model, and for every count the best model with so many effects at most; the
@@ -105,11 +105,11 @@ def _base_name(base: Fit) -> str:
 def _on_file(found: Fit, holdout: Measurements) -> float:
     """Gap on a hold-out file, per axis [m]."""
     other = Problem(found.model, holdout.masked(), found.problem.noise)
-    gap = other.measured - found.model.predict(other.situation)
+    gap = other.measured - found.model.predict(other.load_cases)
     return float(np.sqrt(np.mean(gap**2)))
 
 
-def _on_poses_left_out(found: Attempt, counts: Sequence[int], seed: int) -> list[float]:
+def _on_poses_left_out(found: Selection, counts: Sequence[int], seed: int) -> list[float]:
     """Gap on poses left out in turn, per axis [m]; NaN where the others do not hold the model."""
     try:
         errors = held_out(found.base.problem.measurements, nested(found, counts), seed=seed)

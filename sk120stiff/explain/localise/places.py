@@ -52,7 +52,7 @@ def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
     """
     look = look_at(fit, noise or yardstick(fit))
     test = lack_of_fit(fit)
-    situation = fit.problem.situation
+    load_cases = fit.problem.load_cases
     poses = _poses(look)
     suspects, beside = _suspicions(look)
     return Localisation(
@@ -70,8 +70,8 @@ def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
         own=look.within.own,
         suspects=suspects,
         beside=beside,
-        clocked=situation.order is not None or situation.time is not None,
-        branched=len(np.unique(situation.branch)) > 1,
+        clocked=load_cases.order is not None or load_cases.time is not None,
+        branched=len(np.unique(load_cases.branch)) > 1,
     )
 
 
@@ -123,8 +123,8 @@ class Look:
 def look_at(fit: Fit, noise: Yardstick) -> Look:
     """The gap of a fitted model, whitened, and all that its own parameters can do of it."""
     problem = fit.problem
-    axes = problem.situation.reading_axes
-    predicted, full = fit.model.predict_with_sensitivities(problem.situation)
+    axes = problem.load_cases.reading_axes
+    predicted, full = fit.model.predict_with_sensitivities(problem.load_cases)
     drawn = RandomEffects(fit, full)
     moving = ~fit.at_bound & ~drawn.columns[problem.free]
     derivative = full[:, :, problem.free[moving]] * problem.scale[moving]
@@ -149,13 +149,13 @@ def look_at(fit: Fit, noise: Yardstick) -> Look:
 
 
 def _poses(look: Look) -> tuple[PoseShare, ...]:
-    situation = look.fit.problem.situation
+    load_cases = look.fit.problem.load_cases
     square = (look.gap**2).sum(1)
-    rows = [np.flatnonzero(situation.pose == k) for k in range(len(situation.poses))]
+    rows = [np.flatnonzero(load_cases.pose == k) for k in range(len(load_cases.poses))]
     white = (look.white.reshape(-1, 3) ** 2).sum(1)
     chance = [_chance_of_pose(look, white, r) for r in rows]
     found = []
-    for label, r, p in zip(situation.poses, rows, holm(chance), strict=True):
+    for label, r, p in zip(load_cases.poses, rows, holm(chance), strict=True):
         if not len(r):
             continue
         share = float(square[r].sum() - 3.0 * look.floor[r].sum()) / look.raw_whole
@@ -183,7 +183,7 @@ def _noise(look: Look, rows: Index | slice) -> float | None:
 
 def _levels(look: Look) -> tuple[LoadLevel, ...]:
     """The gap at the lower, the middle and the upper third of the loads."""
-    size = np.linalg.norm(look.fit.problem.situation.wrench[:, :3], axis=1)
+    size = np.linalg.norm(look.fit.problem.load_cases.wrench[:, :3], axis=1)
     edges = np.quantile(size, [1 / 3, 2 / 3])
     third = np.searchsorted(edges, size, side="left")
     square = (look.gap**2).mean(1)
@@ -202,7 +202,7 @@ def _levels(look: Look) -> tuple[LoadLevel, ...]:
 
 def _directions(look: Look) -> tuple[DirectionShare, ...]:
     out = []
-    for axes in axes_of(look.fit.problem.situation):
+    for axes in axes_of(look.fit.problem.load_cases):
         along = np.einsum("nij,ni->nj", axes.directions, look.gap)
         parts = (along**2).sum(0) - look.floor.sum()
         for word, part in zip(axes.words, parts, strict=True):
@@ -212,16 +212,16 @@ def _directions(look: Look) -> tuple[DirectionShare, ...]:
 
 def _postures(look: Look, poses: Sequence[PoseShare]) -> tuple[PostureTrend, ...]:
     """Does the gap grow with reach, height, or the position of a joint?"""
-    situation = look.fit.problem.situation
+    load_cases = look.fit.problem.load_cases
     if len(poses) < FEWEST_POSES:
         return ()
-    _, first = np.unique(situation.pose, return_index=True)
+    _, first = np.unique(load_cases.pose, return_index=True)
     variables = {
-        "the reach": reach_of(situation)[first],
-        "the height of the point": situation.nominal.position[first, 2],
+        "the reach": reach_of(load_cases)[first],
+        "the height of the point": load_cases.nominal.position[first, 2],
     }
-    for k, joint in enumerate(situation.robot.actuated):
-        variables[f"the position of {joint}"] = situation.a[first, k]
+    for k, joint in enumerate(load_cases.robot.actuated):
+        variables[f"the position of {joint}"] = load_cases.a[first, k]
     variables = {name: v for name, v in variables.items() if np.ptp(v) > 1e-6}
     rms = np.array([pose.rms for pose in poses])
     if not np.ptp(rms):
@@ -248,9 +248,9 @@ class Lineup:
 
 def line_up(look: Look) -> Lineup:
     """Everything that the gap may go with."""
-    situation = look.fit.problem.situation
-    suspects = suspects_of(look.fit.model, situation, look.predicted)
-    reading = [np.swapaxes(situation.reading_axes, 1, 2) @ s.columns for s in suspects]
+    load_cases = look.fit.problem.load_cases
+    suspects = suspects_of(look.fit.model, load_cases, look.predicted)
+    reading = [np.swapaxes(load_cases.reading_axes, 1, 2) @ s.columns for s in suspects]
     ends = np.cumsum([0, *(s.columns.shape[2] for s in suspects)])
     return Lineup(
         suspects=suspects,
@@ -341,19 +341,19 @@ def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: 
     problem = look.fit.problem
     S = reading.reshape(len(look.white), -1)
     both = np.hstack([look.derivative, S])
-    white = look.whiten(both.reshape(problem.situation.count, 3, -1))
+    white = look.whiten(both.reshape(problem.load_cases.count, 3, -1))
     norms = np.maximum(np.linalg.norm(white, axis=0), 1e-300)
     values = np.linalg.lstsq(white / norms, look.white, rcond=INDISTINCT)[0] / norms
     own = values[look.derivative.shape[1] :]
     signature = (S @ own).reshape(-1, 3)
     covered = (look.derivative @ values[: look.derivative.shape[1]]).reshape(-1, 3)
-    raw = np.einsum("nji,nj->ni", problem.situation.reading_axes, look.gap)
+    raw = np.einsum("nji,nj->ni", problem.load_cases.reading_axes, look.gap)
     freed = raw - covered
     if suspect.direction is None:
         size = np.linalg.norm(signature, axis=1, keepdims=True)
         along = signature / np.where(size > 0.0, size, 1.0)
     else:
-        along = np.einsum("nji,nj->ni", problem.situation.reading_axes, suspect.direction)
+        along = np.einsum("nji,nj->ni", problem.load_cases.reading_axes, suspect.direction)
     return replace(
         suspicion, abscissa=suspect.abscissa, partial=np.einsum("ni,ni->n", along, freed)
     )

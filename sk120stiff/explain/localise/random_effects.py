@@ -1,4 +1,4 @@
-"""Whitening in which the draws of exchangeable effects count as noise.
+"""Whitening in which the draws of random_effects effects count as noise.
 
 Zero offsets, one for every pose, can imitate whatever is constant at single poses. As free
 parameters they leave nothing of it to look at; as draws of one size they must be as irregular as
@@ -19,7 +19,7 @@ from sk120stiff.measurements.poses import rows_by_label
 
 @dataclass(frozen=True, eq=False)
 class RandomEffects:
-    """The exchangeable parameters of a fitted model as part of its noise.
+    """The random_effects parameters of a fitted model as part of its noise.
 
     Attributes:
         fit: The fitted model.
@@ -32,7 +32,7 @@ class RandomEffects:
     @cached_property
     def columns(self) -> Mask:
         """(P,) which parameters are draws; offsets that are known and held are none."""
-        return np.array([p.effect.exchangeable and p.free for p in self.fit.model.parameters])
+        return np.array([p.effect.random_effects and p.free for p in self.fit.model.parameters])
 
     def covered(self) -> Array:
         """(N, 3) what the draws explain of the readings [m]."""
@@ -56,7 +56,7 @@ class RandomEffects:
         size = float(np.sqrt(np.mean(self.fit.model.values[self.columns] ** 2)))
         spread = self.fit.problem.whitener.apply(size * self.derivative[:, :, self.columns])
         blocks = []
-        for rows in rows_by_label(np.repeat(self.fit.problem.situation.pose, 3)):
+        for rows in rows_by_label(np.repeat(self.fit.problem.load_cases.pose, 3)):
             part = spread[rows]
             part = part[:, np.abs(part).max(axis=0) > 0.0]
             U, singular, _ = np.linalg.svd(part, full_matrices=False)

@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Situation
+from sk120stiff.effects import LoadCases
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import ArmJoint, arm_joints
 
@@ -62,22 +62,22 @@ class Axes:
     directions: Array
 
 
-def axes_of(situation: Situation) -> tuple[Axes, ...]:
+def axes_of(load_cases: LoadCases) -> tuple[Axes, ...]:
     """The axes in which a cause may live: world, arm plane, forearm, tool."""
-    count = situation.count
+    count = load_cases.count
     world = np.broadcast_to(np.eye(3), (count, 3, 3))
     out = [Axes("world", ("x of the base", "y of the base", "z of the base"), world)]
-    plane = _arm_plane(situation)
+    plane = _arm_plane(load_cases)
     if plane is not None:
         out.append(Axes("arm plane", ("outwards", "sideways", "along the first axis"), plane))
-    joints = arm_joints(situation.robot)
+    joints = arm_joints(load_cases.robot)
     longest = max((joint.length for joint in joints), default=0.0)
     long = [joint for joint in joints if joint.length > SHARE_OF_LONGEST * longest]
     if len(long) > 1:
-        out.append(Axes("forearm", _words(long[-1]), _frames(situation, long[-1])))
-    tool = situation.robot.tool_frame
+        out.append(Axes("forearm", _words(long[-1]), _frames(load_cases, long[-1])))
+    tool = load_cases.robot.tool_frame
     words = (f"x of {tool}", f"y of {tool}", f"z of {tool}")
-    out.append(Axes("tool", words, situation.rotation))
+    out.append(Axes("tool", words, load_cases.rotation))
     return tuple(out)
 
 
@@ -90,71 +90,71 @@ def _words(joint: ArmJoint) -> tuple[str, str, str]:
     )
 
 
-def suspects_of(model: Model, situation: Situation, predicted: Array) -> tuple[Suspect, ...]:
+def suspects_of(model: Model, load_cases: LoadCases, predicted: Array) -> tuple[Suspect, ...]:
     """Everything that the gap of a model may go with.
 
     Args:
         model: The model whose gap is looked at.
-        situation: Its N readings.
+        load_cases: Its N readings.
         predicted: (N, 3) what it predicts, base axes [m].
     """
     return (
-        *_places(situation),
-        *_laws(situation),
-        *_bent_places(situation),
-        *_angles(model, situation),
-        *_loads_in_axes(situation),
-        *_instruments(model, situation, predicted),
-        *_series(situation),
+        *_places(load_cases),
+        *_laws(load_cases),
+        *_bent_places(load_cases),
+        *_angles(model, load_cases),
+        *_loads_in_axes(load_cases),
+        *_instruments(model, load_cases, predicted),
+        *_series(load_cases),
     )
 
 
-def _places(situation: Situation) -> Iterator[Suspect]:
+def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     """The arm yields somewhere from base to tool, under the moment or force it carries there."""
-    robot, count = situation.robot, situation.count
+    robot, count = load_cases.robot, load_cases.count
     base = np.broadcast_to(robot.foundation, (count, 3))
     world = np.broadcast_to(np.eye(3), (count, 3, 3))
-    tips = _turning("place", "the moment that tips the base", situation, base, world[..., :2])
+    tips = _turning("place", "the moment that tips the base", load_cases, base, world[..., :2])
     yield replace(tips, frees=("base_rocking",))
     name = "the moment that turns the base about z"
-    yield _turning("place", name, situation, base, world[..., 2:])
-    pushes = _pushing("place", "the force that pushes the base", situation, world)
+    yield _turning("place", name, load_cases, base, world[..., 2:])
+    pushes = _pushing("place", "the force that pushes the base", load_cases, world)
     yield replace(pushes, frees=("base_sliding",))
-    screws = situation.nominal
-    yield from _drives(situation)
+    screws = load_cases.nominal
+    yield from _drives(load_cases)
     for joint in arm_joints(robot):
         at = screws.origins[:, joint.index]
-        frames = _frames(situation, joint)
-        across = _rotation(situation, joint) @ np.stack(joint.tilt_axes(), axis=-1)
+        frames = _frames(load_cases, joint)
+        across = _rotation(load_cases, joint) @ np.stack(joint.tilt_axes(), axis=-1)
         name = f"the moment that {joint.name} carries across its axis"
-        tilts = _turning("place", name, situation, at, across)
+        tilts = _turning("place", name, load_cases, at, across)
         yield replace(tilts, frees=(f"joint_tilt:{joint.name}",))
         if joint.length > 0.1 * max(j.length for j in arm_joints(robot)):
             middle = at + 0.5 * joint.length * frames[..., 0]
             name = f"the moment that bends {joint.link} halfway"
-            bends = _turning("place", name, situation, middle, frames[..., 1:])
+            bends = _turning("place", name, load_cases, middle, frames[..., 1:])
             yield replace(bends, frees=(f"link_bending:{joint.link}",))
             name = f"the moment that twists {joint.link}"
-            twists = _turning("place", name, situation, at, frames[..., :1])
+            twists = _turning("place", name, load_cases, at, frames[..., :1])
             yield replace(twists, frees=(f"link_torsion:{joint.link}",))
-        yield _pushing("place", f"the force that {joint.link} carries", situation, frames)
+        yield _pushing("place", f"the force that {joint.link} carries", load_cases, frames)
     tip = screws.frame_position
     at_tool = (
-        _turning("place", "the moment that the tool carries", situation, tip, situation.rotation),
-        _pushing("place", "the force that the tool carries", situation, situation.rotation),
+        _turning("place", "the moment that the tool carries", load_cases, tip, load_cases.rotation),
+        _pushing("place", "the force that the tool carries", load_cases, load_cases.rotation),
     )
     yield from (replace(each, frees=("tool_compliance",)) for each in at_tool)
 
 
-def _bent_places(situation: Situation) -> Iterator[Suspect]:
+def _bent_places(load_cases: LoadCases) -> Iterator[Suspect]:
     """Base and tool yield, but not in proportion: more and more, less and less, or one way only."""
-    base = np.broadcast_to(situation.robot.foundation, (situation.count, 3))
-    world = np.broadcast_to(np.eye(3), (situation.count, 3, 3))
-    rotation, tip = situation.rotation, situation.nominal.frame_position
-    tips = _turning("law", "the moment that tips the base", situation, base, world[..., :2])
-    pushes = _pushing("law", "the force that pushes the base", situation, world)
-    turns = _turning("law", "the moment that the tool carries", situation, tip, rotation)
-    shifts = _pushing("law", "the force that the tool carries", situation, rotation)
+    base = np.broadcast_to(load_cases.robot.foundation, (load_cases.count, 3))
+    world = np.broadcast_to(np.eye(3), (load_cases.count, 3, 3))
+    rotation, tip = load_cases.rotation, load_cases.nominal.frame_position
+    tips = _turning("law", "the moment that tips the base", load_cases, base, world[..., :2])
+    pushes = _pushing("law", "the force that pushes the base", load_cases, world)
+    turns = _turning("law", "the moment that the tool carries", load_cases, tip, rotation)
+    shifts = _pushing("law", "the force that the tool carries", load_cases, rotation)
     for straight, frees in (
         (tips, "base_rocking"),
         (pushes, "base_sliding"),
@@ -170,37 +170,37 @@ def _bent_places(situation: Situation) -> Iterator[Suspect]:
         yield replace(straight, name=name, columns=columns, frees=(frees,))
 
 
-def _drives(situation: Situation) -> Iterator[Suspect]:
+def _drives(load_cases: LoadCases) -> Iterator[Suspect]:
     """Drives that yield in proportion to their torque; those with a spring are the model's own."""
-    J = situation.nominal.linear_jacobian
-    load = situation.nominal.at(situation.force_point).torques(situation.wrench)
-    for i, joint in enumerate(situation.robot.actuated):
-        what, unit = _effort(situation, i)
+    J = load_cases.nominal.linear_jacobian
+    load = load_cases.nominal.at(load_cases.force_point).torques(load_cases.wrench)
+    for i, joint in enumerate(load_cases.robot.actuated):
+        what, unit = _effort(load_cases, i)
         columns = (J[:, :, i] * load[:, i, None])[..., None]
         label = f"{what} of {joint} [{unit}]"
         yield Suspect("place", f"the {what} of {joint}", columns, load[:, i], label)
 
 
-def _effort(situation: Situation, joint: int) -> tuple[str, str]:
-    return ("force", "N") if situation.robot.prismatic[joint] else ("torque", "N·m")
+def _effort(load_cases: LoadCases, joint: int) -> tuple[str, str]:
+    return ("force", "N") if load_cases.robot.prismatic[joint] else ("torque", "N·m")
 
 
-def _laws(situation: Situation) -> Iterator[Suspect]:
+def _laws(load_cases: LoadCases) -> Iterator[Suspect]:
     """A drive whose law is not a straight line, or two drives that a linkage ties together."""
-    J = situation.nominal.linear_jacobian  # (N, 3, n)
-    at_force = situation.nominal.at(situation.force_point)
-    torque = at_force.torques(situation.wrench) + situation.gravity_torque
-    load = at_force.torques(situation.wrench)
-    both = len(np.unique(situation.branch)) > 1
-    names = situation.robot.actuated
+    J = load_cases.nominal.linear_jacobian  # (N, 3, n)
+    at_force = load_cases.nominal.at(load_cases.force_point)
+    torque = at_force.torques(load_cases.wrench) + load_cases.gravity_torque
+    load = at_force.torques(load_cases.wrench)
+    both = len(np.unique(load_cases.branch)) > 1
+    names = load_cases.robot.actuated
     for i, joint in enumerate(names):
         tau, push = torque[:, i], J[:, :, i]
-        what, unit = _effort(situation, i)
+        what, unit = _effort(load_cases, i)
         label = f"{what} of {joint} [{unit}]"
         largest = float(np.abs(tau).max(initial=0.0)) or 1.0
         size = np.linalg.norm(push, axis=1, keepdims=True)
         along = push / np.where(size > 0.0, size, 1.0)
-        sign = np.sign(tau) - np.sign(situation.gravity_torque[:, i])
+        sign = np.sign(tau) - np.sign(load_cases.gravity_torque[:, i])
         jump = f"the sign of the {what} of {joint}"
         bent = (f"gear_hardening:{joint}", f"lost_motion:{joint}")
         columns = (push * sign[:, None])[..., None]
@@ -210,7 +210,7 @@ def _laws(situation: Situation) -> Iterator[Suspect]:
         columns = push[:, :, None] * curved[:, None, :]
         yield Suspect("law", name, columns, tau, label, along, frees=bent)
         if both:
-            turn = -situation.branch * np.sign(load[:, i])
+            turn = -load_cases.branch * np.sign(load[:, i])
             name = f"loading or unloading of {joint}"
             columns = (push * turn[:, None])[..., None]
             rubs = (f"friction_hysteresis:{joint}",)
@@ -218,22 +218,22 @@ def _laws(situation: Situation) -> Iterator[Suspect]:
     for i, k in combinations(range(len(names)), 2):
         column = J[:, :, i] * load[:, k, None] + J[:, :, k] * load[:, i, None]
         name = f"the torques of {names[i]} and {names[k]}, each moving the other joint"
-        what, unit = _effort(situation, i)
+        what, unit = _effort(load_cases, i)
         label = f"{what} of {names[i]} [{unit}]"
         yield Suspect("linkage", name, column[..., None], load[:, i], label)
 
 
-def _angles(model: Model, situation: Situation) -> Iterator[Suspect]:
+def _angles(model: Model, load_cases: LoadCases) -> Iterator[Suspect]:
     """Drives whose stiffness changes with the angle of a joint."""
-    J = situation.nominal.linear_jacobian
-    load = situation.nominal.at(situation.force_point).torques(situation.wrench)
+    J = load_cases.nominal.linear_jacobian
+    load = load_cases.nominal.at(load_cases.force_point).torques(load_cases.wrench)
     soft = np.flatnonzero(np.isfinite(model.joint_stiffness()))
     yielding = J[:, :, soft] * load[:, None, soft]  # (N, 3, s)
-    for i, joint in enumerate(situation.robot.actuated):
-        q = situation.a[:, i]
+    for i, joint in enumerate(load_cases.robot.actuated):
+        q = load_cases.a[:, i]
         if np.ptp(q) < 1e-6:
             continue
-        if situation.robot.prismatic[i]:
+        if load_cases.robot.prismatic[i]:
             factors, shown, unit = [q / np.ptp(q)], 1e3 * q, "mm"
         else:
             factors, shown, unit = [np.cos(q), np.sin(q)], np.degrees(q), "deg"
@@ -242,11 +242,11 @@ def _angles(model: Model, situation: Situation) -> Iterator[Suspect]:
         yield Suspect("angle", name, columns, shown, f"position of {joint} [{unit}]")
 
 
-def _loads_in_axes(situation: Situation) -> Iterator[Suspect]:
+def _loads_in_axes(load_cases: LoadCases) -> Iterator[Suspect]:
     """The gap in proportion to the load, by a matrix that is constant in some axes."""
-    force = situation.wrench[:, :3]
+    force = load_cases.wrench[:, :3]
     size = np.linalg.norm(force, axis=1)
-    for axes in axes_of(situation):
+    for axes in axes_of(load_cases):
         load = np.einsum("nij,ni->nj", axes.directions, force)
         columns = np.einsum("nij,nk->nijk", axes.directions, load).reshape(len(force), 3, 9)
         where = {"world": "the base", "arm plane": "the arm's plane", "tool": "the tool"}.get(
@@ -255,19 +255,19 @@ def _loads_in_axes(situation: Situation) -> Iterator[Suspect]:
         yield Suspect("axes", f"the load in axes of {where}", columns, size, "load [N]")
 
 
-def _instruments(model: Model, situation: Situation, predicted: Array) -> Iterator[Suspect]:
+def _instruments(model: Model, load_cases: LoadCases, predicted: Array) -> Iterator[Suspect]:
     """A load or a displacement that was misread, in the axes of the instrument."""
-    J = situation.nominal.jacobian
+    J = load_cases.nominal.jacobian
     soft = model.joint_stiffness()
     C = (J[:, :3] / soft) @ np.swapaxes(J[:, :3], 1, 2)  # infinite where rigid: no part
-    R = situation.rotation
-    force = np.einsum("nij,ni->nj", R, situation.wrench[:, :3])
+    R = load_cases.rotation
+    force = np.einsum("nij,ni->nj", R, load_cases.wrench[:, :3])
     size = np.linalg.norm(force, axis=1)
     wrong = np.einsum("nij,nk->nijk", R, force).reshape(len(force), 3, 9)
     yield Suspect("instrument", "a misread load in tool axes", C @ wrong, size, "load [N]")
     bias = C @ R
     yield Suspect("instrument", "a constant error of the load in tool axes", bias, size, "load [N]")
-    axes = situation.reading_axes
+    axes = load_cases.reading_axes
     d = np.einsum("nij,ni->nj", axes, predicted)
     columns = np.einsum("nij,nk->nijk", axes, d).reshape(len(d), 3, 9)
     moved = 1e6 * np.linalg.norm(d, axis=1)
@@ -275,25 +275,25 @@ def _instruments(model: Model, situation: Situation, predicted: Array) -> Iterat
     yield Suspect("instrument", "a misread displacement in reading axes", columns, moved, label)
 
 
-def _series(situation: Situation) -> Iterator[Suspect]:
+def _series(load_cases: LoadCases) -> Iterator[Suspect]:
     """What goes on whatever the load is: a constant, the order, the time, the branch."""
-    axes = situation.reading_axes
-    size = np.linalg.norm(situation.wrench[:, :3], axis=1)
+    axes = load_cases.reading_axes
+    size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
     yield Suspect("series", "a constant that no load changes", axes, size, "load [N]")
     clocks = (
-        (situation.order, "the order of the readings", "readings since the zero"),
-        (situation.time, "the time since the zero reading", "time since the zero [s]"),
+        (load_cases.order, "the order of the readings", "readings since the zero"),
+        (load_cases.time, "the time since the zero reading", "time since the zero [s]"),
     )
     for clock, name, label in clocks:
         if clock is not None and np.ptp(clock) > 0.0:
             yield Suspect("series", name, axes * clock[:, None, None], clock, label)
-    if len(np.unique(situation.branch)) > 1:
-        columns = axes * situation.branch[:, None, None]
+    if len(np.unique(load_cases.branch)) > 1:
+        columns = axes * load_cases.branch[:, None, None]
         name, label = "the branch, loading or unloading", "branch (+1 loading, −1 unloading)"
-        yield Suspect("series", name, columns, situation.branch, label)
+        yield Suspect("series", name, columns, load_cases.branch, label)
 
 
-def _turning(family: str, name: str, at: Situation, origin: Array, about: Array) -> Suspect:
+def _turning(family: str, name: str, at: LoadCases, origin: Array, about: Array) -> Suspect:
     """A turn about the directions `about` (N, 3, k) through `origin`, under the moment there."""
     screws = at.nominal
     pull = screws.at(at.force_point).position
@@ -305,7 +305,7 @@ def _turning(family: str, name: str, at: Situation, origin: Array, about: Array)
     return Suspect(family, name, columns, size, "moment there [N·m]", carried=carried)
 
 
-def _pushing(family: str, name: str, at: Situation, along: Array) -> Suspect:
+def _pushing(family: str, name: str, at: LoadCases, along: Array) -> Suspect:
     """A shift along the directions `along` (N, 3, k) under the force."""
     carried = np.einsum("nik,ni->nk", along, at.wrench[:, :3])
     columns = along * carried[:, None, :]
@@ -313,28 +313,28 @@ def _pushing(family: str, name: str, at: Situation, along: Array) -> Suspect:
     return Suspect(family, name, columns, size, "force there [N]", carried=carried)
 
 
-def _rotation(situation: Situation, joint: ArmJoint) -> Array:
+def _rotation(load_cases: LoadCases, joint: ArmJoint) -> Array:
     """(N, 3, 3) frame of the link that a joint moves, in base axes."""
-    _, first, back = np.unique(situation.pose, return_index=True, return_inverse=True)
-    placed = situation.robot.placement(situation.a[first], joint.link)
+    _, first, back = np.unique(load_cases.pose, return_index=True, return_inverse=True)
+    placed = load_cases.robot.placement(load_cases.a[first], joint.link)
     return np.asarray(placed[back, :3, :3])
 
 
-def _frames(situation: Situation, joint: ArmJoint) -> Array:
+def _frames(load_cases: LoadCases, joint: ArmJoint) -> Array:
     """(N, 3, 3) along the link and two directions across it, as columns, base axes."""
     along, across, other = joint.directions()
-    return _rotation(situation, joint) @ np.stack([along, across, other], axis=-1)
+    return _rotation(load_cases, joint) @ np.stack([along, across, other], axis=-1)
 
 
-def reach_of(situation: Situation) -> Array:
+def reach_of(load_cases: LoadCases) -> Array:
     """(N,) distance of the point from the first turning axis, else from the base [m]."""
-    out, _ = _from_first_axis(situation)
+    out, _ = _from_first_axis(load_cases)
     return np.asarray(np.linalg.norm(out, axis=1))
 
 
-def _from_first_axis(situation: Situation) -> tuple[Array, Array | None]:
+def _from_first_axis(load_cases: LoadCases) -> tuple[Array, Array | None]:
     """(N, 3) from the first turning axis to the point, square to it; and the axis (N, 3)."""
-    screws = situation.nominal
+    screws = load_cases.nominal
     turning = np.flatnonzero(screws.revolute)
     if not len(turning):
         return screws.position, None
@@ -343,9 +343,9 @@ def _from_first_axis(situation: Situation) -> tuple[Array, Array | None]:
     return out - up * np.einsum("ni,ni->n", up, out)[:, None], up
 
 
-def _arm_plane(situation: Situation) -> Array | None:
+def _arm_plane(load_cases: LoadCases) -> Array | None:
     """(N, 3, 3) outwards, sideways and along the first axis; None where there is no such plane."""
-    out, up = _from_first_axis(situation)
+    out, up = _from_first_axis(load_cases)
     length = np.linalg.norm(out, axis=1, keepdims=True)
     if up is None or (length < 1e-3).any():
         return None

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Situation
+from sk120stiff.effects import LoadCases
 from sk120stiff.explain.localise.localisation import OrderShare, OwnAtPoses
 from sk120stiff.identify import Fit, Yardstick
 from sk120stiff.identify.checks.left_over import left_over
@@ -52,12 +52,12 @@ def within_poses(
         whiten: Whitens (N, 3, ...) in reading axes, noise and draws together.
         noise: What to hold it against.
     """
-    situation, scale = fit.problem.situation, noise.scale
-    group = np.repeat(situation.pose, 3)
+    load_cases, scale = fit.problem.load_cases, noise.scale
+    group = np.repeat(load_cases.pose, 3)
     left = [float(white @ white)]
     rank = [inside.shape[1]]
     for options in ({}, {"jump": True}, {"jump": True, "cubic": True}):
-        basis = whiten(pose_columns(load_basis(situation, **options)))
+        basis = whiten(pose_columns(load_basis(load_cases, **options)))
         square, used = left_over(white, inside, basis, group)
         left.append(square)
         rank.append(used)
@@ -75,22 +75,22 @@ def within_poses(
     if noise.freedom:
         taken, more = steps[0]
         own.append(OwnAtPoses("proportional", taken / scale, more, noise.tail(taken, more)))
-        drawn = any(effect.exchangeable for effect in fit.model.effects)
-        for name, basis in _of_own(situation, drawn=drawn):
+        drawn = any(effect.random_effects for effect in fit.model.effects)
+        for name, basis in _of_own(load_cases, drawn=drawn):
             square, used = left_over(white, inside, whiten(pose_columns(basis)), group)
             taken, more = left[0] - square, used - rank[0]
             own.append(OwnAtPoses(name, taken / scale, more, noise.tail(taken, more)))
     return WithinPoses(noise, orders, tuple(own))
 
 
-def _of_own(situation: Situation, *, drawn: bool) -> Iterator[tuple[Own, Array]]:
+def _of_own(load_cases: LoadCases, *, drawn: bool) -> Iterator[tuple[Own, Array]]:
     """(N, k) what a pose may have of its own; `drawn` constants are noise already."""
     if not drawn:
-        yield "constant", np.ones((situation.count, 1))
-    clock = situation.order if situation.order is not None else situation.time
+        yield "constant", np.ones((load_cases.count, 1))
+    clock = load_cases.order if load_cases.order is not None else load_cases.time
     if clock is not None and np.ptp(clock) > 0.0:
         yield "drift", clock[:, None] / np.abs(clock).max()
-    turned = situation.branch[:, None] < 0.0
+    turned = load_cases.branch[:, None] < 0.0
     if turned.any() and not turned.all():
-        size = np.linalg.norm(situation.wrench[:, :3], axis=1, keepdims=True)
+        size = np.linalg.norm(load_cases.wrench[:, :3], axis=1, keepdims=True)
         yield "branches", np.hstack([turned, turned * size / max(float(size.max()), 1e-300)])

@@ -109,9 +109,9 @@ def _at(
     parts = [
         regression.variants[e][k]
         for e, k in variants.items()
-        if not regression.candidates[e].exchangeable
+        if not regression.candidates[e].random_effects
     ]
-    drawn = [regression.columns[e] for e in chosen if regression.candidates[e].exchangeable]
+    drawn = [regression.columns[e] for e in chosen if regression.candidates[e].random_effects]
     if drawn:
         solved, score = _with_draws(regression, sums, parts, drawn)
     else:
@@ -167,7 +167,7 @@ def _deviance(regression: Regression, sums: Sums, solved: Solved) -> float:
 def _with_draws(
     regression: Regression, sums: Sums, parts: Sequence[Index], drawn: Sequence[Index]
 ) -> tuple[Solved, float]:
-    """Best solution and score over the common size of exchangeable parameters.
+    """Best solution and score over the common size of random_effects parameters.
 
     Such parameters (`drawn`, beside the `parts` of other effects) pay by their marginal likelihood;
     that they exist at all is held against chance like one parameter, their size τ.

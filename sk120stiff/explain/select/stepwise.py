@@ -1,4 +1,4 @@
-"""One attempt at an answer: under one noise model, linearise, search and refit until it settles."""
+"""Stepwise selection under one noise model: linearise, search and refit until it settles."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ ROUNDING = 1e-12  # of the largest column: what is smaller is no first-order eff
 
 
 @dataclass(frozen=True, eq=False)
-class Attempt:
+class Selection:
     """A base model, the model that the search settled on, and everything to judge it by.
 
     Attributes:
         base, final: Fits of the base model and of the model with the chosen effects.
         regression: Readings linearised at `final`.
         chosen: Candidates in `final`.
-        aside: Rows (of the readings given) that were set aside as outliers.
+        outliers: Rows (of the readings given) that were set aside as outliers.
         candidates: All effects considered.
-        total: Score of the whole, noise included; attempts under other zero readings compare by it.
+        total: Score of the whole, noise included; those under other zeros compare by it.
     """
 
     base: Fit
     final: Fit
     regression: Regression
     chosen: tuple[int, ...]
-    aside: Index
+    outliers: Index
     candidates: tuple[Effect, ...]
     total: float
 
@@ -57,7 +57,7 @@ class Attempt:
         return score_set(self.regression, self.regression.sums(), self.chosen)
 
 
-def attempt(
+def select(
     model: Model,
     measurements: Measurements,
     noise: NoiseModel,
@@ -66,7 +66,7 @@ def attempt(
     max_effects: int,
     alpha: float,
     prior: Mapping[str, float] | None = None,
-) -> Attempt:
+) -> Selection:
     """Settle on a set of effects under one noise model.
 
     Args:
@@ -82,40 +82,40 @@ def attempt(
     ids = tuple(effect.id for effect in model.effects)
     regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
     whole = base.problem.whitener.logdet
-    aside = outlying_rows(regression, base.problem.whitener)
-    if len(aside):
+    outliers = outlying_rows(regression, base.problem.whitener)
+    if len(outliers):
         keep = np.ones(measurements.n_readings, dtype=bool)
-        keep[aside] = False
+        keep[outliers] = False
         base = fit(model, measurements.select(keep), noise=noise)
         regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     axes = np.log(3.0 * measurements.n_readings)
-    return Attempt(
+    return Selection(
         base=base,
         final=final,
         regression=regression,
         chosen=chosen,
-        aside=aside,
+        outliers=outliers,
         candidates=tuple(candidates),
-        total=score + whole + 3.0 * axes * len(aside),
+        total=score + whole + 3.0 * axes * len(outliers),
     )
 
 
-def with_effects(found: Attempt, effects: Sequence[Effect]) -> Attempt:
-    """The same attempt with other effects chosen, refitted and linearised anew."""
+def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
+    """The same selection with other effects chosen, refitted and linearised anew."""
     ids = tuple(effect.id for effect in found.base.model.effects)
     final = refit(found.base, effects)
     regression = regression_at(
         final, found.candidates, ids, alpha=found.regression.alpha, prior=found.regression.prior
     )
     chosen = positions(regression, effects)
-    return Attempt(
+    return Selection(
         base=found.base,
         final=final,
         regression=regression,
         chosen=chosen,
-        aside=found.aside,
+        outliers=found.outliers,
         candidates=found.candidates,
         total=np.nan,
     )

@@ -147,14 +147,14 @@ class PoseProblem(Problem):
 
     def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction."""
-        seen = read_poses(self.model, self.situation, values, derivative=derivative)
-        shape = (self.situation.count, 3)
+        seen = read_poses(self.model, self.load_cases, values, derivative=derivative)
+        shape = (self.load_cases.count, 3)
         moved, moving = np.zeros(shape), np.zeros((*shape, seen.columns.shape[-1]))
         if self.channels.shift is not None:
             if derivative:
-                moved, moving = self.model.predict_with_sensitivities(self.situation, values)
+                moved, moving = self.model.predict_with_sensitivities(self.load_cases, values)
             else:
-                moved = self.model.predict(self.situation, values)
+                moved = self.model.predict(self.load_cases, values)
         tilted = None
         if self.channels.level is not None:
             turning = seen.turning if derivative else moving

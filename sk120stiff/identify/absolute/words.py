@@ -27,7 +27,7 @@ def known_calibration(found: Calibration) -> Model:
     fit = found.fit
     problem = found.problem
     sigma = problem.stated_sigma or fit.rms if len(problem.lengths) else None
-    source = f"{found.problem.situation.count} readings of positions"
+    source = f"{found.problem.load_cases.count} readings of positions"
     return fit.model.known(known_estimates(fit, sigma, source))
 
 
@@ -42,7 +42,7 @@ def gap_sentence(found: Calibration) -> str:
     ]
     said = (
         f"Gap {', '.join(sizes)}, over {len(problem.rows)} numbers of "
-        f"{problem.situation.count} readings; {fit.estimated} values estimated."
+        f"{problem.load_cases.count} readings; {fit.estimated} values estimated."
     )
     unstated = [kind for kind in problem.channels.present if not problem.channels.stated(kind)]
     if unstated:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Integers
-from sk120stiff.effects import situation_of
+from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify.estimate import fit
 from sk120stiff.identify.fit import Fit
@@ -114,7 +114,7 @@ def held_out(
         for place, found in enumerate(learn(used.select(~rows))):
             if place == len(squares):
                 squares.append(np.full(len(part), np.nan))
-            gap = measured[rows] - found.model.predict(situation_of(found.model.robot, test))
+            gap = measured[rows] - found.model.predict(load_cases_of(found.model.robot, test))
             squares[place][rows] = (gap**2).mean(axis=1)
         if progress is not None:
             progress(k + 1, count)

@@ -149,7 +149,7 @@ def _blind_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
 def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
     parameters = [fit.parameters[k] for k in group]
     if len(group) == 1:
-        why = why_unseen(fit.problem.situation, parameters[0])
+        why = why_unseen(fit.problem.load_cases, parameters[0])
         return f"{parameters[0].name} does not show in these readings: " + (
             f"{why}." if why else "no plausible value would change them by a tenth of their noise."
         )

@@ -39,10 +39,10 @@ def one_gain(model: Model, fit: Fit) -> OneGain:
         fit: Gives readings and noise.
     """
     problem = fit.problem
-    situation = problem.situation
+    load_cases = problem.load_cases
 
     def gap(gain: float) -> np.ndarray:
-        loaded = replace(situation, wrench=gain * situation.wrench)
+        loaded = replace(load_cases, wrench=gain * load_cases.wrench)
         return np.asarray(problem.measured - model.predict(loaded))
 
     def misfit(gain: float) -> float:

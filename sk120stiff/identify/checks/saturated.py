@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import Situation
+from sk120stiff.effects import LoadCases
 from sk120stiff.measurements.poses import rows_by_label
 
 
 def load_basis(
-    situation: Situation, *, jump: bool = False, cubic: bool = False, branches: bool = False
+    load_cases: LoadCases, *, jump: bool = False, cubic: bool = False, branches: bool = False
 ) -> Array:
     """(N, k) the loads of every pose in their own principal directions, sizes of order one.
 
@@ -25,10 +25,10 @@ def load_basis(
     (hardening), and `branches` a constant and a slope for unloading (friction).
     """
     scale = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # a moment of 1 N·m counts like 2 N
-    loads = situation.wrench * scale
+    loads = load_cases.wrench * scale
     size = max(float(np.abs(loads).max(initial=0.0)), 1e-300)
     parts: list[tuple[Index, Array]] = []
-    for rows in rows_by_label(situation.pose):
+    for rows in rows_by_label(load_cases.pose):
         _, singular, Vt = np.linalg.svd(loads[rows] / size, full_matrices=False)
         rank = int((singular > 0.02 * singular[0]).sum()) if singular[0] > 0.0 else 0
         basis = loads[rows] / size @ Vt[:rank].T
@@ -38,12 +38,12 @@ def load_basis(
         if cubic and rank and len(rows) >= rank + 4:
             basis = np.hstack([basis, basis[:, :1] * along**2])
         if branches and rank and len(rows) >= rank + 5:
-            turned = situation.branch[rows, None] < 0.0
+            turned = load_cases.branch[rows, None] < 0.0
             if turned.any() and not turned.all():
                 basis = np.hstack([basis, turned, turned * basis[:, :1]])
         parts.append((rows, basis))
     width = max((basis.shape[1] for _, basis in parts), default=0)
-    out = np.zeros((situation.count, width))
+    out = np.zeros((load_cases.count, width))
     for rows, basis in parts:
         out[rows, : basis.shape[1]] = basis
     return out

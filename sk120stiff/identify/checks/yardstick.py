@@ -138,10 +138,10 @@ def left_within_poses(fit: Fit, white: Array, inside: Array) -> tuple[float, int
         white: (3N,) whitened gap.
         inside: (3N, k) orthonormal basis of what the model's parameters can do.
     """
-    situation = fit.problem.situation
-    basis = load_basis(situation, jump=True, cubic=True, branches=True)
+    load_cases = fit.problem.load_cases
+    basis = load_basis(load_cases, jump=True, cubic=True, branches=True)
     columns = fit.problem.whitener.apply(pose_columns(basis))
-    square, rank = left_over(white, inside, columns, np.repeat(situation.pose, 3))
+    square, rank = left_over(white, inside, columns, np.repeat(load_cases.pose, 3))
     return square, rank, columns
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import situation_of_load
+from sk120stiff.effects import load_case
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.polish import seen_directions
 from sk120stiff.identify.solve.problem import Problem
@@ -133,21 +133,19 @@ def separating(problem: Problem, group: Overlay, jacobian: Array) -> Separating 
         group: Parameters that lie on one another.
         jacobian: (R, P) whitened derivative at the fit.
     """
-    rigid, situation = problem.model, problem.situation
+    rigid, load_cases = problem.model, problem.load_cases
     robot = rigid.robot
-    rows = np.unique(np.linspace(0, situation.count - 1, READINGS).astype(int))
+    rows = np.unique(np.linspace(0, load_cases.count - 1, READINGS).astype(int))
     choice = [
         (row, joint, position)
         for row in rows
         for joint in range(robot.n)
         for position in _stations(robot.lower[joint], robot.upper[joint])
     ]
-    a = np.array([situation.a[row] for row, _, _ in choice])
+    a = np.array([load_cases.a[row] for row, _, _ in choice])
     a[np.arange(len(choice)), [joint for _, joint, _ in choice]] = [c[2] for c in choice]
-    wrench = situation.wrench[[row for row, _, _ in choice]]
-    there = situation_of_load(
-        robot, a, wrench, point=situation.point, force_point=situation.force_point
-    )
+    wrench = load_cases.wrench[[row for row, _, _ in choice]]
+    there = load_case(robot, a, wrench, point=load_cases.point, force_point=load_cases.force_point)
     _, derivative = rigid.predict_with_sensitivities(there, np.zeros_like(rigid.values))
     own = list(group.members)
     columns = derivative[:, :, problem.free[own]] * problem.scale[own] / problem.noise.sigma
@@ -163,7 +161,7 @@ def separating(problem: Problem, group: Overlay, jacobian: Array) -> Separating 
     if gain < WORTHWHILE:
         return None
     row, joint, position = choice[best]
-    return Separating(situation.poses[situation.pose[row]], joint, float(position), gain)
+    return Separating(load_cases.poses[load_cases.pose[row]], joint, float(position), gain)
 
 
 def _overlay(jacobian: Array, at_bound: Mask, group: list[int]) -> Overlay:

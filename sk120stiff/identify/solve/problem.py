@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import Situation, situation_of
+from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import FormWhitener, Measurements, NoiseModel, Whitener
 from sk120stiff.model import Model
@@ -53,9 +53,9 @@ class Problem:
             )
 
     @cached_property
-    def situation(self) -> Situation:
+    def load_cases(self) -> LoadCases:
         """The readings as the model sees them."""
-        return situation_of(self.model.robot, self.measurements)
+        return load_cases_of(self.model.robot, self.measurements)
 
     @cached_property
     def measured(self) -> Array:
@@ -117,12 +117,12 @@ class Problem:
 
     def gap(self, x: Array) -> Array:
         """(N, 3) measured minus predicted [m]."""
-        return self.measured - self.model.predict(self.situation, self.values(x))
+        return self.measured - self.model.predict(self.load_cases, self.values(x))
 
     def evaluate(self, x: Array) -> tuple[Array, Array]:
         """Whitened gap (3N,) and its derivative (3N, P_free) by `x`, at exact equilibrium."""
         predicted, derivative = self.model.predict_with_sensitivities(
-            self.situation, self.values(x)
+            self.load_cases, self.values(x)
         )
         residual = self.whitener.apply(self.measured - predicted)
         return residual, -self.whitener.apply(derivative[:, :, self.free] * self.scale)

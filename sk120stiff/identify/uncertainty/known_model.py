@@ -84,7 +84,7 @@ def _remainder(fit: Fit) -> Remainder | None:
     """What the fit leaves over, as predictions need it; None where no load tells its size."""
     problem = fit.problem
     length = arm_length(problem.model.robot) or 1.0
-    load = float(np.sqrt(np.mean(load_size(problem.situation.wrench, length) ** 2)))
+    load = float(np.sqrt(np.mean(load_size(problem.load_cases.wrench, length) ** 2)))
     left = left_over(fit)
     if load == 0.0 or not np.isfinite(left.upper):
         return None

@@ -88,7 +88,7 @@ def _left(fit: Fit, form: ModelForm, noise_factor: float) -> tuple[float, float,
     """
     problem = fit.problem
     readings = problem.measurements
-    gap = problem.measured - fit.model.predict(problem.situation)
+    gap = problem.measured - fit.model.predict(problem.load_cases)
     proportional, constant = form_columns(readings)
     Z = np.concatenate([form.proportional * proportional, form.constant * constant], axis=2)
     white = problem.whitener.apply(np.concatenate([Z, gap[:, :, None]], axis=2)) / noise_factor

@@ -188,7 +188,7 @@ class Deviance:
         exact = replace(fit.problem.noise, form=EXACT)
         problem = Problem(fit.model, fit.problem.measurements, exact, fit.problem.weights)
         readings = problem.measurements
-        predicted, full = fit.model.predict_with_sensitivities(problem.situation)
+        predicted, full = fit.model.predict_with_sensitivities(problem.load_cases)
         moving = problem.free[~fit.at_bound]
         both = np.concatenate(
             [

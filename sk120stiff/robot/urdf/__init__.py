@@ -1,6 +1,5 @@
 """URDF files of any origin become a `UrdfDocument`: forms, repairs with warnings, refusals."""
 
-from sk120stiff.robot.urdf.aside import with_arm_only
 from sk120stiff.robot.urdf.document import (
     BALLS,
     HARMLESS,
@@ -18,6 +17,7 @@ from sk120stiff.robot.urdf.mimics import refuse_orphans
 from sk120stiff.robot.urdf.native import CapturedText, captured_stderr
 from sk120stiff.robot.urdf.packages import resolve
 from sk120stiff.robot.urdf.reading import document_tree, read_urdf
+from sk120stiff.robot.urdf.reduced import with_arm_only
 from sk120stiff.robot.urdf.suspicions import locked_on_way, suspicions
 
 __all__ = [

@@ -15,7 +15,7 @@ from sk120stiff.show.scene.elastic import Elastic
 from sk120stiff.show.scene.scene import Reading, Scene, ScenePose
 
 if TYPE_CHECKING:
-    from sk120stiff.effects import Effect, Situation
+    from sk120stiff.effects import Effect, LoadCases
     from sk120stiff.measurements import Measurements
     from sk120stiff.model import Model
     from sk120stiff.robot import Robot
@@ -107,17 +107,17 @@ def poses_of(
     Raises:
         InputError: The data belong to another robot.
     """
-    from sk120stiff.effects import situation_of
+    from sk120stiff.effects import load_cases_of
 
     used = data.masked()
-    situation = situation_of(robot, used)
+    load_cases = load_cases_of(robot, used)
     models = models or {}
-    predicted = {name: _in_base(situation, m.predict(situation)) for name, m in models.items()}
-    measured = None if used.displacement is None else _in_base(situation, used.displacement)
-    wrench = _at_point(situation)
+    predicted = {name: _in_base(load_cases, m.predict(load_cases)) for name, m in models.items()}
+    measured = None if used.displacement is None else _in_base(load_cases, used.displacement)
+    wrench = _at_point(load_cases)
     poses = []
-    for k, pose in enumerate(situation.poses):
-        rows = np.flatnonzero(situation.pose == k)
+    for k, pose in enumerate(load_cases.poses):
+        rows = np.flatnonzero(load_cases.pose == k)
         readings = tuple(
             Reading(
                 wrench=wrench[row],
@@ -127,18 +127,18 @@ def poses_of(
             )
             for number, row in enumerate(rows)
         )
-        poses.append(ScenePose(f"pose {pose}", situation.a[rows[0]], readings))
+        poses.append(ScenePose(f"pose {pose}", load_cases.a[rows[0]], readings))
     return tuple(poses)
 
 
-def _in_base(situation: Situation, values: Array) -> Array:
+def _in_base(load_cases: LoadCases, values: Array) -> Array:
     """(N, 3) displacements in base axes."""
-    return np.asarray(np.einsum("nij,nj->ni", situation.reading_axes, values))
+    return np.asarray(np.einsum("nij,nj->ni", load_cases.reading_axes, values))
 
 
-def _at_point(situation: Situation) -> Array:
+def _at_point(load_cases: LoadCases) -> Array:
     """(N, 6) loads moved to the measured point: the same wrench, seen from there."""
-    arm = situation.rotation @ (situation.force_point - situation.point)
-    wrench = situation.wrench.copy()
+    arm = load_cases.rotation @ (load_cases.force_point - load_cases.point)
+    wrench = load_cases.wrench.copy()
     wrench[:, 3:] += np.cross(arm, wrench[:, :3])
     return wrench

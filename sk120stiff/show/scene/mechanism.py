@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import LinearElastic, situation_of_load
+from sk120stiff.effects import LinearElastic, load_case
 from sk120stiff.errors import InputError
 from sk120stiff.model import ModelCompliance, probing_poses
 from sk120stiff.robot import LinearCoupling
@@ -115,7 +115,7 @@ def _series(arm: ModelCompliance) -> list[Term] | None:
         values = model.values[part]
 
         def own(a: Array, effect: LinearElastic = effect, values: Array = values) -> Array:
-            patterns = effect.patterns(situation_of_load(model.robot, a, np.zeros(6)))
+            patterns = effect.patterns(load_case(model.robot, a, np.zeros(6)))
             block = np.tensordot(values, patterns, axes=1)
             return np.asarray(np.broadcast_to(block, (len(a), *block.shape[-2:])))
 

@@ -70,7 +70,7 @@ class Demo:
     def rms(self, model: Model) -> float:
         """Gap of a model on the readings, rms per axis [m]."""
         problem = self.found.problem
-        gap = problem.measured - model.predict(problem.situation)
+        gap = problem.measured - model.predict(problem.load_cases)
         return float(np.sqrt(np.mean(gap**2)))
 
     @property

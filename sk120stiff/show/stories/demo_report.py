@@ -68,9 +68,9 @@ def demo_report(
         next_poses: Address of the file with poses to measure next; empty where there is none.
         reproducibility: Name → text, shown last.
     """
-    situation = demo.found.problem.situation
+    load_cases = demo.found.problem.load_cases
     following = next_section(demo.answer, next_poses)
-    counts = f"{counted(situation.count, 'reading')} at {counted(len(situation.poses), 'pose')}"
+    counts = f"{counted(load_cases.count, 'reading')} at {counted(len(load_cases.poses), 'pose')}"
     return Report(
         title="How stiff is a Motoman SK120, and what is missing from its model?",
         subtitle=f"Measured deflections of Table II of the 2005 paper, {counts}",
@@ -94,7 +94,7 @@ def demo_report(
 def demo_lead(demo: Demo) -> str:
     """What the demo found in the paper's data, in one sentence."""
     before, after = (um(demo.rms(model)) for model in (demo.paper, demo.found.model))
-    poses = counted(len(demo.found.problem.situation.poses), "pose")
+    poses = counted(len(demo.found.problem.load_cases.poses), "pose")
     moved = (
         f"Springs identified from the paper's readings bring its gap from {before} to {after} µm "
         "rms per axis"
@@ -159,7 +159,7 @@ def _first_act(demo: Demo) -> Section:
 def per_pose_table(demo: Demo) -> Table:
     """Gap of both models at every pose."""
     found = demo.found
-    poses = found.problem.situation.poses
+    poses = found.problem.load_cases.poses
     before, after = (pose_rms(found, model) for model in demo.models.values())
     rows: list[tuple[object, ...]] = [
         (f"pose {label}", 1e6 * b, 1e6 * a)
@@ -170,13 +170,13 @@ def per_pose_table(demo: Demo) -> Table:
 
 
 def _curves(demo: Demo) -> list[LoadCurve]:
-    situation = demo.found.problem.situation
+    load_cases = demo.found.problem.load_cases
     measured = demo.found.problem.measured
-    size = np.linalg.norm(situation.wrench[:, :3], axis=1)
-    predicted = {name: model.predict(situation) for name, model in demo.models.items()}
+    size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
+    predicted = {name: model.predict(load_cases) for name, model in demo.models.items()}
     curves = []
-    for k, label in enumerate(situation.poses):
-        rows = np.flatnonzero(situation.pose == k)
+    for k, label in enumerate(load_cases.poses):
+        rows = np.flatnonzero(load_cases.pose == k)
         rows = rows[np.argsort(size[rows])]
         models = {name: values[rows] for name, values in predicted.items()}
         curves.append(LoadCurve(f"pose {label}", size[rows], measured[rows], models=models))
@@ -228,7 +228,7 @@ def _second_act(demo: Demo) -> Section:
                 caption="Identified springs as multiples of the paper's (grey).",
             ),
             Picture(
-                lambda: gap_per_pose(found.problem.situation.poses, gaps, noise_floor=floor),
+                lambda: gap_per_pose(found.problem.load_cases.poses, gaps, noise_floor=floor),
                 alt="Bars of the gap at every pose: "
                 + "; ".join(f"{n} {listed([um(float(v)) for v in g])} µm" for n, g in gaps.items()),
                 caption="The gap of every pose, before and after."
@@ -240,7 +240,7 @@ def _second_act(demo: Demo) -> Section:
 
 
 def _in_space(demo: Demo, scene: str, link: str) -> Section:
-    poses = counted(len(demo.found.problem.situation.poses), "pose")
+    poses = counted(len(demo.found.problem.load_cases.poses), "pose")
     title = f"The SK120 at its {poses}, with ellipsoids and gap vectors"
     return Section(
         "The arm in three dimensions",
@@ -267,13 +267,13 @@ def _third_act(demo: Demo) -> Section:
                 f"The springs leave {um(first.fit_rms)} µm where the noise alone makes "
                 f"{um(demo.noise)} µm (p = {chance(demo.chance)}). Something may well be missing. "
                 "But a name must predict poses that it has not seen, and be told from its rivals; "
-                f"with {counted(len(demo.found.problem.situation.poses), 'pose')} none is.",
+                f"with {counted(len(demo.found.problem.load_cases.poses), 'pose')} none is.",
                 "caution",
                 "What 'none' means here",
             )
         )
     if answer.findings:
-        poses = counted(len(demo.found.problem.situation.poses), "pose")
+        poses = counted(len(demo.found.problem.load_cases.poses), "pose")
         blocks.append(
             Note(
                 "Folds and resamplings have no more to go by than "

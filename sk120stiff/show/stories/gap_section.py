@@ -43,7 +43,7 @@ def gap_section(
     models = models_of(answer)
     blocks += [_per_pose(answer.base, models, floor), on_the_arm(answer.base, models)]
     if scene:
-        title = f"The arm at its {counted(len(answer.base.problem.situation.poses), 'pose')}"
+        title = f"The arm at its {counted(len(answer.base.problem.load_cases.poses), 'pose')}"
         caption = "Choose a pose and a load: measured, predicted and gap vectors, before and after."
         blocks.append(SceneFrame(scene, title, caption if answer.findings else "", scene_link))
     return Section("The gap, step by step", blocks)
@@ -86,7 +86,7 @@ def waterfall(answer: Explanation) -> Picture:
 
 
 def _per_pose(fit: Fit, models: dict[str, Model], floor: float | None) -> Picture | str:
-    poses = fit.problem.situation.poses
+    poses = fit.problem.load_cases.poses
     gaps = {name: pose_rms(fit, model) for name, model in models.items()}
     if len(poses) > MANY:
         worst = {name: um(float(values.max())) for name, values in gaps.items()}
@@ -126,8 +126,8 @@ def on_the_arm(fit: Fit, models: dict[str, Model]) -> Picture:
 
 def pose_rms(fit: Fit, model: Model) -> Array:
     """(poses,) rms gap per axis of a model on the readings of a fit [m]."""
-    situation = fit.problem.situation
-    square = ((fit.problem.measured - model.predict(situation)) ** 2).mean(axis=1)
-    total = np.bincount(situation.pose, square, minlength=len(situation.poses))
-    count = np.bincount(situation.pose, minlength=len(situation.poses))
+    load_cases = fit.problem.load_cases
+    square = ((fit.problem.measured - model.predict(load_cases)) ** 2).mean(axis=1)
+    total = np.bincount(load_cases.pose, square, minlength=len(load_cases.poses))
+    count = np.bincount(load_cases.pose, minlength=len(load_cases.poses))
     return np.sqrt(total / np.maximum(count, 1))

@@ -76,7 +76,7 @@ def hidden_section(cause: HiddenCause, link: str) -> Section:
     """The proof as a part of a report, with the address of the campaign's own."""
     answer = cause.answer
     first, last = answer.steps[0], answer.steps[-1]
-    poses = len(answer.base.problem.situation.poses)
+    poses = len(answer.base.problem.load_cases.poses)
     return Section(
         "4. The proof: a hidden cause",
         [

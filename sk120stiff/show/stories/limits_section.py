@@ -91,9 +91,9 @@ def _grouped(names: Sequence[str]) -> list[str]:
 
 def _sizes(answer: Explanation, visible: Sequence[Detectable]) -> list[tuple[str, str]]:
     """One row for each effect, whatever dots its place and its parameters have in their names."""
-    situation = answer.base.problem.situation
+    load_cases = answer.base.problem.load_cases
     every = all_effects(
-        answer.base.model.robot, poses=situation.poses, timed=True, catalogue=answer.catalogue
+        answer.base.model.robot, poses=load_cases.poses, timed=True, catalogue=answer.catalogue
     )
     known = [effect.id for effect in every]
     by_effect: dict[str, list[Detectable]] = defaultdict(list)

@@ -50,18 +50,18 @@ def identify_scene(
 
 def arm_views(fit: Fit, models: Mapping[str, Model]) -> list[ArmView]:
     """Every pose as a line through the arm, with the gaps of its largest load."""
-    situation = fit.problem.situation
+    load_cases = fit.problem.load_cases
     measured = fit.problem.measured
-    axes = situation.reading_axes
+    axes = load_cases.reading_axes
     gaps = {
-        name: np.einsum("nij,nj->ni", axes, measured - model.predict(situation))
+        name: np.einsum("nij,nj->ni", axes, measured - model.predict(load_cases))
         for name, model in models.items()
     }
-    size = np.linalg.norm(situation.wrench[:, :3], axis=1)
-    screws = situation.nominal
+    size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
+    screws = load_cases.nominal
     views = []
-    for k, label in enumerate(situation.poses):
-        rows = np.flatnonzero(situation.pose == k)
+    for k, label in enumerate(load_cases.poses):
+        rows = np.flatnonzero(load_cases.pose == k)
         if not len(rows):
             continue
         row = int(rows[np.argmax(size[rows])])

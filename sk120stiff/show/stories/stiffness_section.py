@@ -15,14 +15,14 @@ from sk120stiff.show.wording import number
 
 def stiffness_section(fit: Fit) -> Section:
     """Principal stiffness at every measured pose under its largest load, and the ellipses."""
-    situation = fit.problem.situation
-    size = np.linalg.norm(situation.wrench[:, :3], axis=1)
+    load_cases = fit.problem.load_cases
+    size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
     found: dict[str, tuple[LoadedStiffness, Array]] = {}
-    for k, label in enumerate(situation.poses):
-        rows = np.flatnonzero(situation.pose == k)
+    for k, label in enumerate(load_cases.poses):
+        rows = np.flatnonzero(load_cases.pose == k)
         row = int(rows[np.argmax(size[rows])])
-        wrench = situation.wrench[row]
-        found[label] = (loaded_stiffness(fit.model, situation.a[row], wrench), wrench)
+        wrench = load_cases.wrench[row]
+        found[label] = (loaded_stiffness(fit.model, load_cases.a[row], wrench), wrench)
     critical = min(stiff.critical_factor for stiff, _ in found.values())
     change = max(_share_of_K_C(stiff) for stiff, _ in found.values())
     return Section(

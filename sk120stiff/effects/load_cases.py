@@ -21,7 +21,7 @@ IDLE = -1  # in a history: no load, at a zero reading or before a repeat
 
 
 @dataclass(frozen=True, eq=False)
-class Situation:
+class LoadCases:
     """N readings of a robot under load.
 
     Attributes:
@@ -125,7 +125,7 @@ class Situation:
         """`Screws` of the unloaded, rigid robot at the measured point."""
         return self.robot.screws(self.a, point=self.point)
 
-    def rows(self, pick: slice | Index | Mask) -> Situation:
+    def rows(self, pick: slice | Index | Mask) -> LoadCases:
         """Part of the readings."""
 
         def part(x: Any) -> Any:
@@ -151,14 +151,14 @@ class Situation:
         )
 
 
-def situation_of_load(
+def load_case(
     robot: Robot,
     a: ArrayLike,
     wrench: ArrayLike,
     *,
     point: ArrayLike | None = None,
     force_point: ArrayLike | None = None,
-) -> Situation:
+) -> LoadCases:
     """Readings made of coordinates (N, n) and base-axes wrenches (N, 6) alone."""
     coordinates = np.atleast_2d(robot.coordinates(a))
     load = np.atleast_2d(np.asarray(wrench, dtype=float))
@@ -166,7 +166,7 @@ def situation_of_load(
     coordinates = np.broadcast_to(coordinates, (count, robot.n))
     load = np.broadcast_to(load, (count, 6))
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    return Situation(
+    return LoadCases(
         robot=robot,
         a=coordinates,
         wrench=load,
@@ -182,7 +182,7 @@ def situation_of_load(
     )
 
 
-def situation_of(robot: Robot, measurements: Measurements) -> Situation:
+def load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
     """Readings of a measurement file on a robot.
 
     Raises:
@@ -203,7 +203,7 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
     identity = np.broadcast_to(np.eye(3), rotation.shape)
     labels = measurements.poses
     index = {label: k for k, label in enumerate(labels)}
-    plain = Situation(
+    plain = LoadCases(
         robot=robot,
         a=a,
         wrench=wrench,
@@ -225,7 +225,7 @@ def situation_of(robot: Robot, measurements: Measurements) -> Situation:
     return _standing(plain, measurements, measurements.absolute)
 
 
-def _standing(plain: Situation, measurements: Measurements, said: Absolute) -> Situation:
+def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> LoadCases:
     """The same readings as positions: with payload, markers, series, temperature, approach."""
     weight = said.payload[:, None] * plain.robot.gravity_in_base
     wrench, force_point = plain.wrench.copy(), plain.force_point

@@ -1,4 +1,4 @@
-"""The attempt that explains most, and what it is held against.
+"""The selection that explains most, and what it is held against.
 
 What was stated of the noise, or found from repeats, stays the yardstick of every fit, whatever
 else a search took into account (`beside_form.py`).
@@ -14,21 +14,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.explain.select.stepwise import Attempt
+from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
 from sk120stiff.identify.fit import with_values
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.measurements.noise import FINEST
 
-Try = Callable[[NoiseModel], Attempt]
+Try = Callable[[NoiseModel], Selection]
 
 
-def best_attempt(measurements: Measurements, under: Try) -> tuple[Attempt, NoiseModel]:
-    """The best attempt, and the noise that its fits are to be held against.
+def best_selection(measurements: Measurements, under: Try) -> tuple[Selection, NoiseModel]:
+    """The best selection, and the noise that its fits are to be held against.
 
     Args:
         measurements: Readings in use.
-        under: Makes an attempt under one noise model.
+        under: Makes a selection under one noise model.
     """
     tried = [under(noise) for noise in candidates(measurements)]
     found = tried[likelier([-each.total for each in tried])]
