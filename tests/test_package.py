@@ -63,7 +63,8 @@ def test_the_checkout_finds_its_robots() -> None:
     assert bundled_robots()["motoman_sk120"] == ROOT / "robots" / "motoman_sk120"
 
 
-OTHER_NAMES = {"pinocchio": "pin", "yaml": "pyyaml"}  # import → package
+# import → package; Pinocchio brings its collision library, which had another name before
+OTHER_NAMES = {"pinocchio": "pin", "coal": "pin", "hppfcl": "pin", "yaml": "pyyaml"}
 # Not imported here, but without it a library of ours cannot do what we ask of it.
 THROUGH = {"pycollada": "trimesh"}
 

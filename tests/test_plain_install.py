@@ -89,7 +89,7 @@ def test_what_is_optional_stands_in_the_extra_that_is_named() -> None:
         assert library in {Requirement(each).name for each in extras[extra]}
         assert library not in {Requirement(each).name for each in PROJECT["dependencies"]}
     (everything,) = extras["all"]
-    for_the_house = {"all", "corpus", "bench", "test"}
+    for_the_house = {"all", "corpus", "bench", "test", "docs"}
     assert Requirement(everything).extras == set(extras) - for_the_house
 
 

@@ -25,7 +25,7 @@ def test_pages_name_what_exists(page: str) -> None:
     for link in re.findall(r"\]\(([^)]+)\)", text):
         assert "://" in link or (ROOT / page).parent.joinpath(link).is_file(), link
     for name in re.findall(r"`((?:sk120stiff|tests|robots|scripts|docs)/[\w./]*)`", text):
-        assert (ROOT / name).exists(), name
+        assert (ROOT / name).exists() or name == "docs/_build/html", name  # made by .ci/docs
 
 
 def test_contributing_has_the_commands_that_work() -> None:

@@ -12,6 +12,7 @@ import typer
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.plan import Cell, cell_from_data, read_cell
+from sk120stiff.plan.rig import Rig
 from sk120stiff.robot import Robot
 
 CellOption = Annotated[
@@ -45,10 +46,13 @@ def opened_cell(robot: Robot, given: Path | None, *beside: Path | None) -> Cell:
     return Cell()
 
 
-def bare(cell: Cell) -> Cell:
-    """Without a file: what the URDF says alone, and nothing kept clear of what is only guessed."""
+def at_work(cell: Cell) -> Cell:
+    """At work, not measured: neither the rig nor the tracker is asked.
+
+    Without a file: what the URDF says alone, and nothing kept clear of what is only guessed.
+    """
     if cell.source:
-        return cell
+        return replace(cell, rig=Rig(), tracker=None)
     return replace(
         cell, clearance=0.0, angle_margin=0.0, slide_margin=0.0, effort_share=1.0, pedestal=0.0
     )

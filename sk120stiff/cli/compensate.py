@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from sk120stiff.cli.cell import CellOption, bare, opened_cell
+from sk120stiff.cli.cell import CellOption, at_work, opened_cell
 from sk120stiff.cli.compensate_path import (
     CHORD,
     LoadAxes,
@@ -267,7 +267,7 @@ def command(
         )
     given, part, facts, _ = opened
     given = with_load_in_base(given, robot, nominal, load_axes, at)
-    around = bare(opened_cell(robot, cell, path))
+    around = at_work(opened_cell(robot, cell, path))
     held_at = given.wrench if at in (None, robot.tool_frame) else None
     wrong = infeasible(robot, around, nominal, given, held_at)
     branch = branch_of(robot, nominal, ground)

@@ -10,8 +10,8 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from sk120stiff.arrays import Array, Mask
-from sk120stiff.cli.cell import CellOption, bare, opened_cell
+from sk120stiff.arrays import Array
+from sk120stiff.cli.cell import CellOption, at_work, opened_cell
 from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
@@ -20,7 +20,7 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, seen_from
-from sk120stiff.plan import feasible
+from sk120stiff.plan import Verdict, feasible
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import (
     BestPosture,
@@ -159,13 +159,13 @@ def command(
         (margin,) = parse_values(limit_margin, "angle", where="--limit-margin", like="5 deg")
     arm = elastic_arm(believed, frame=at)
     freedom = None if place is None else _placement(place, given.position)
-    around = bare(opened_cell(robot, cell, path))
+    around = at_work(opened_cell(robot, cell, path))
 
     turned_with_it = freedom is not None and bool((freedom.upper > freedom.lower)[3:].any())
     load = given.wrench if at in (None, robot.tool_frame) and not turned_with_it else None
 
-    def admits(a: Array) -> Mask:
-        return feasible(robot, around, a, load).ok
+    def admits(a: Array) -> Verdict:
+        return feasible(robot, around, a, load)
 
     with progress_bar("Searching") as report:
         found = best_posture(

@@ -23,7 +23,7 @@ REACH_OF_UNLIMITED = np.pi  # rad; a joint without limits is used over one turn
 REACH_OF_UNLIMITED_SLIDE = 0.5  # m
 SHARE_OF_RANGE = 0.9  # the ends of the range are left out
 BATCHES = 200  # drawn before closed loops are given up
-DRAWS = 10_000  # poses drawn before a cell is given up
+DRAWS = 50_000  # poses drawn before a cell is given up
 
 
 @dataclass(frozen=True, eq=False)

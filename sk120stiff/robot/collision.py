@@ -1,8 +1,8 @@
 """Does an arm run into itself, its pedestal, its tool, or what stands around it?
 
 Pinocchio places the solids, coal holds convex ones against each other. Neighbours along the chain
-touch at their joint and are not asked; nor are pairs that touch wherever the arm stands, which is
-how their shapes were drawn, and that is said.
+touch at their joint and are not asked; nor are pairs that touch where all joints stand at zero, or
+wherever the arm stands: so they were drawn (as MoveIt's assistant has it), and that is said.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Scene:
         self.remarks: tuple[str, ...] = body.remarks
         if touching:
             names = ", ".join(f"{a} and {b}" for a, b in touching)
-            self.remarks += (f"These touch wherever the arm stands and are not asked: {names}.",)
+            self.remarks += (f"These touch as they were drawn and are not asked: {names}.",)
         for i, j in self.pairs:
             self._geometry.addCollisionPair(pin.CollisionPair(int(i), int(j)))
         self._model, self._data = robot.tree.model, robot.tree.model.createData()
@@ -186,11 +186,16 @@ class Scene:
             request.security_margin = self.clearance
         poses = sample_poses(self.robot, SAMPLES)
         times = np.zeros(len(held))
-        for q in self._values(poses):
+
+        def touching(q: Array) -> Mask:
             pin.computeCollisions(model, data, geometry, found, q, False)
-            times += [result.isCollision() for result in found.collisionResults]
+            return np.array([r.isCollision() for r in found.collisionResults], dtype=bool)
+
+        for q in self._values(poses):
+            times += touching(q)
+        (drawn,) = self._values(self.robot.rest[None])
         own = np.array([j < self._own for _, j in held], dtype=bool)  # a wall is never drawn so
-        always = own & (times >= WHEREVER * len(poses))
+        always = own & ((times >= WHEREVER * len(poses)) | touching(drawn))
         names = [
             (self.solids[i].name, self.solids[j].name)
             for (i, j), touch in zip(held, always, strict=True)

@@ -8,6 +8,8 @@ kept where it is better. Steps grow while they succeed and shrink while they do 
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import islice
@@ -17,12 +19,14 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal
+from sk120stiff.plan.feasible import Verdict
 from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 
 FIRST_STEP, LAST_STEP = 0.5, 1e-6  # rad: radius of the random steps
 GROW, SHRINK = 1.6, 0.6
+ASKED = 20  # of the stiffest postures, what stands against them when none can be
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +124,7 @@ def best_posture(
     children: int = 8,
     rounds: int = 60,
     seed: int = 0,
-    admits: Callable[[Array], Mask] | None = None,
+    admits: Callable[[Array], Verdict] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> BestPosture:
     """Search the posture that serves a path best; the worst point of the path counts.
@@ -139,7 +143,7 @@ def best_posture(
         starts, kept, children, rounds: Effort: random postures in the beginning, those that go on,
             steps of each in a round.
         seed: Of the random numbers.
-        admits: Which of the poses (N, n) can be, as `plan.feasible` says; all by default.
+        admits: Which of the poses (N, n) can be, by `plan.feasible`; all by default.
 
     Raises:
         InputError: Nothing to minimise, or shapes that do not fit.
@@ -170,11 +174,16 @@ def best_posture(
             "leave more freedom.",
         )
     pool = first.best(kept, admits)
-    if not len(pool.objective):
+    if not len(pool.objective) and admits is not None:
+        count = int(np.isfinite(first.objective).sum())
+        best = np.argsort(first.objective)[: min(count, ASKED)]
+        faults = [why for k in best for row in admits(first.path[k]).faults for why in set(row)]
+        kinds = Counter(re.sub(r"[-\d.]+", "", why) for why in faults)
+        (worst, _), *_ = kinds.most_common(1)
+        why = next(each for each in faults if re.sub(r"[-\d.]+", "", each) == worst)
         raise Refusal(
-            f"each of {int(np.isfinite(first.objective).sum())} postures that pass the path runs "
-            "into the arm itself or something else, or asks too much of a motor",
-            remedy="Check the cell (sk120stiff plan --check), or leave more freedom.",
+            f"none of {count} postures that pass the path can be; most often: {why}",
+            remedy="Look at the cell (cell.yaml) and the path, or leave more freedom.",
         )
     passing = first.best(len(first.objective)).path
     admissible = np.sort(first.objective[np.isfinite(first.objective)])
@@ -201,18 +210,18 @@ class Pool:
     placement: Array
     objective: Array
 
-    def best(self, count: int, admits: Callable[[Array], Mask] | None = None) -> Pool:
+    def best(self, count: int, admits: Callable[[Array], Verdict] | None = None) -> Pool:
         """The first `count` that pass, the best first."""
         order = np.argsort(self.objective)
         order = order[np.isfinite(self.objective[order])]
         if admits is not None:
-            fair = (int(k) for k in order if admits(self.path[k]).all())
+            fair = (int(k) for k in order if admits(self.path[k]).ok.all())
             order = np.fromiter(islice(fair, count), dtype=np.intp)
         order = order[:count]
         return Pool(self.path[order], self.placement[order], self.objective[order])
 
     def improve(
-        self, trial: Pool, children: int, admits: Callable[[Array], Mask] | None = None
+        self, trial: Pool, children: int, admits: Callable[[Array], Verdict] | None = None
     ) -> _Improved:
         """Each posture or the best of its children, which stand one after the other in `trial`."""
         k = len(self.objective)
@@ -222,7 +231,7 @@ class Pool:
         improved = trial.objective[pick] < self.objective
         if admits is not None:  # dear, so asked of those alone that would be kept
             for row in np.flatnonzero(improved):
-                improved[row] = admits(trial.path[pick[row]]).all()
+                improved[row] = admits(trial.path[pick[row]]).ok.all()
         return _Improved(
             Pool(
                 np.where(improved[:, None, None], trial.path[pick], self.path),

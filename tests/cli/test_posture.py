@@ -92,3 +92,18 @@ def test_no_posture_is_an_explained_refusal(run: Run, path: str, tmp_path: Path)
     found = run("posture", MODEL, path, "--limit-margin", "80 deg", "--out", str(tmp_path / "b"))
     assert found.code == 1
     assert "margins" in found.stderr
+
+
+def test_rig_and_tracker_are_asked_of_measurements_alone(
+    run: Run, path: str, tmp_path: Path
+) -> None:
+    """The load is the path's own, and nobody looks on; what stands in the way is named."""
+    cell = tmp_path / "cell.yaml"
+    rig = "rig: {kind: cable, anchors: [[1.5, 0, 5]], steps: '100 N'}\n"
+    cell.write_text(rig + "tracker: {xyz: [0, 0, -9], axis: [0, 0, 1], cone: 5 deg}\n")
+    words = ("posture", MODEL, path, "--tool-axis", "0,0,-1", "--out", str(tmp_path / "b.csv"))
+    assert run(*words).code == 0
+    cell.write_text("obstacles:\n- {name: crate, sphere: 0.1, xyz: [1.5, 0, 0.3]}\n")
+    found = run(*words)
+    assert found.code == 1
+    assert "crate" in found.stderr

@@ -14,7 +14,7 @@ from sk120stiff.explain.judge import steps
 from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.options import with_assumed
 from sk120stiff.explain.select import stepwise
-from sk120stiff.explain.select.stepwise import Selection, refit, selection
+from sk120stiff.explain.select.stepwise import Selection, refit, select
 from tests.explain.readings import NOISE, POINT, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 
@@ -83,7 +83,7 @@ def test_drift_taken_for_granted_goes_by_the_clock_where_there_is_one(springs):
 
 def searched(model, readings, *candidates) -> Selection:
     """A selection that was offered these effects and took none."""
-    return selection(model, readings, NOISE, candidates, max_effects=0, alpha=0.01)
+    return select(model, readings, NOISE, candidates, max_effects=0, alpha=0.01)
 
 
 def test_the_first_step_is_called_by_all_effects_of_the_base_model(springs):
@@ -118,7 +118,7 @@ def test_a_step_that_has_no_answer_is_told_together_with_the_next(springs, monke
 def test_rounding_of_the_first_order_is_no_size(springs, monkeypatch):
     """A tracker that is turned shows nothing while nothing yields: its angle starts at zero."""
     readings = hidden(poses=8, loads=3)
-    base = selection(springs, readings, NOISE, [], max_effects=0, alpha=0.01).base
+    base = select(springs, readings, NOISE, [], max_effects=0, alpha=0.01).base
     turned = effect(springs.robot, "reading_rotation")
     plain = refit(base, [turned])
     solver = stepwise.lsq_linear

@@ -16,7 +16,7 @@ from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.imitation import _Lineup as Lineup
 from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
 from sk120stiff.explain.localise.suspects import Suspect
-from sk120stiff.explain.select.stepwise import refit, selection
+from sk120stiff.explain.select.stepwise import refit, select
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, ModelForm
 from tests.explain.readings import NOISE, hidden
@@ -145,7 +145,7 @@ def test_beside_model_form_error_a_name_is_at_few_places(springs):
     """What fits at many joints is part of what has no name."""
     for noise, stands in ((NOISE, True), (ROUGH, False)):
         candidates = [effect(springs.robot, *where) for where in PLACES]
-        found = selection(springs, hidden(TILT), noise, candidates, max_effects=1, alpha=0.01)
+        found = select(springs, hidden(TILT), noise, candidates, max_effects=1, alpha=0.01)
         findings, _ = findings_of(found, seed=0)
         many = replace(findings[0], alternatives=tuple(each.id for each in candidates))
         assert (objection(found, many, [], -np.inf) is None) == stands

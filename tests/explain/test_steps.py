@@ -7,7 +7,7 @@ from sk120stiff.effects import all_effects, load_cases_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.judge.steps import gap_steps, nested
 from sk120stiff.explain.options import candidates_for
-from sk120stiff.explain.select.stepwise import Selection, selection
+from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import fit, held_out, refitted
 from sk120stiff.measurements import NoiseModel
 from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
@@ -22,7 +22,7 @@ def clean() -> Selection:
     readings = hidden(poses=12, loads=2)
     model = base_fit(readings).problem.model
     effects = candidates_for(model, readings, Options())
-    return selection(model, readings, NOISE, effects, max_effects=1, alpha=0.01)
+    return select(model, readings, NOISE, effects, max_effects=1, alpha=0.01)
 
 
 def test_explain_and_identify_give_one_number_for_one_model() -> None:

@@ -1,7 +1,8 @@
 """MuJoCo on the user's own URDF: what touches, and what the motors must give; nothing of ours.
 
 Meshes are handed over as STL, since MuJoCo reads no COLLADA; the tree, the shapes, the masses and
-the limits are the file's. Pairs that touch wherever the arm stands are found by MuJoCo itself.
+the limits are the file's. Pairs that touch with all joints at zero, or wherever the arm stands, are
+found by MuJoCo itself.
 """
 
 import xml.etree.ElementTree as ET
@@ -116,7 +117,8 @@ class MujocoCell:
 
     def _always(self, samples: Sequence[dict[str, float]]) -> set[tuple[str, str]]:
         counts = Counter(pair for values in samples for pair in self._touching(values))
-        return {pair for pair, count in counts.items() if count >= ALWAYS * len(samples)}
+        at_zero = set(self._touching(dict.fromkeys(samples[0], 0.0)))
+        return at_zero | {pair for pair, n in counts.items() if n >= ALWAYS * len(samples)}
 
     def contacts(self, values: dict[str, float]) -> set[tuple[str, str]]:
         """Bodies that touch at joint values [rad or m]."""

@@ -6,7 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from sk120stiff.arrays import Mask
 from sk120stiff.errors import InputError, Refusal
+from sk120stiff.plan import Verdict
 from sk120stiff.stiffness import (
     cartesian_compliance,
     complementary_stiffness,
@@ -183,9 +185,13 @@ def test_a_posture_that_is_not_admitted_is_not_chosen() -> None:
     arm, path = soft_wrist(), PathTask(np.array([[1.5, 0.3, 0.2]]), axis=DOWN)
     free = best_posture(arm, path, rounds=5, starts=64)
     first = float(free.a[0, 5])
+
+    def only(ok: Mask) -> Verdict:
+        return Verdict(ok, ((~ok, lambda _: "it hits the crate"),))
+
     kept = best_posture(
-        arm, path, rounds=5, starts=64, admits=lambda a: np.abs(a[:, 5] - first) > 0.3
+        arm, path, rounds=5, starts=64, admits=lambda a: only(np.abs(a[:, 5] - first) > 0.3)
     )
     assert np.abs(kept.a[:, 5] - first).min() > 0.3 and kept.objective >= 0.999 * free.objective
-    with pytest.raises(Refusal, match="runs into"):
-        best_posture(arm, path, starts=32, admits=lambda a: np.zeros(len(a), dtype=bool))
+    with pytest.raises(Refusal, match="hits the crate"):
+        best_posture(arm, path, starts=32, admits=lambda a: only(np.zeros(len(a), dtype=bool)))

@@ -120,7 +120,7 @@ def _at(
     limits = regression.plausible[solved.columns[added]]
     plausible = bool((np.abs(solved.values[added]) <= limits).all())
     score += sum(price_of_choice(regression, e, k, e != untied) for e, k in variants.items())
-    made = Scored(chosen, score, solved, plausible, tuple(variants.values()))
+    made = Scored(chosen, float(score), solved, plausible, tuple(variants.values()))
     sums.scores[key] = made
     return made
 
