@@ -82,6 +82,7 @@ def command(
         "most": most,
     }  # fmt: skip
     if model is not None:
+        open_model(model)  # before anything is written
         at.begin(_settings({key: value for key, value in stated.items() if value is not None}))
     elif any(value is not None for value in stated.values()):
         raise InputError(
@@ -245,6 +246,14 @@ def _grown(at: Folder) -> Iterator[bool]:
             now = at.readings_file.stat().st_mtime_ns
         except OSError:
             continue  # an editor is just replacing it
-        if now != before:
+        if now != before and _whole(at.readings_file):
             before = now
             yield True
+
+
+def _whole(file: Path) -> bool:
+    """Does it end with its last line? Another program may be in the middle of one."""
+    try:
+        return file.read_bytes()[-1:] == b"\n"
+    except OSError:
+        return False

@@ -59,14 +59,15 @@ def write_route(
     stops = ", ".join(
         f"{labels[pose]} at target {k}" for k, pose in enumerate(found.pose, 1) if pose >= 0
     )
-    count = len(found.a)
+    count, via = len(found.a), bool((found.pose < 0).any())
     program = Program(
         name=out.stem,
         header=(
             f"Written by sk120stiff {__version__}: the way through the poses of a plan.",
-            f"Robot: {robot.name}. Poses: {stops}; the others are via points.",
-            "Stop at each pose, hang on the loads, read. Between targets the joints go straight; "
-            "this way was held against the cell, loads and cables were not.",
+            f"Robot: {robot.name}. Poses: {stops}"
+            + ("; the others are via points." if via else "."),
+            "It waits at each pose: hang on the loads, read, take them off, go on. Between targets "
+            "the joints go straight; the way was held against the cell, loads and cables were not.",
             f"Joints: {convention(robot)}.",
             *language.remarks(settings),
         ),
@@ -81,5 +82,6 @@ def write_route(
         by_joints=True,
         settings=settings,
         date=datetime.now(UTC).strftime("%Y/%m/%d %H:%M"),
+        halts=found.pose >= 0,
     )
     write_atomically(out, language.text(program))

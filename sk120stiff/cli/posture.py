@@ -21,7 +21,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, seen_from
 from sk120stiff.plan import Verdict, feasible
-from sk120stiff.units import parse_values
+from sk120stiff.units import from_si, parse_values
 from sk120stiff.workspace import (
     BestPosture,
     Landscape,
@@ -184,6 +184,11 @@ def command(
             f"{value * 1e6:.6g}" for value in found.per_point
         ]
     }
+    if found.placement.any():  # the path as it was placed, not as it came
+        moved = robot.placement(found.a, at)[:, :3, 3]
+        for k, name in enumerate("xyz"):
+            values = from_si(moved[:, k], given.table.column_units[name], "length")
+            notes[given.table.headers[name]] = [f"{value:.10g}" for value in np.asarray(values)]
     write_joints(out, given, robot, found.a, notes)
     if picture is not None:
         turned = None
@@ -227,7 +232,7 @@ def command(
         "page": page,
     }
     files = [str(file) for file in (out, picture, page) if file is not None]
-    return Answer(document, _parts(found, minimise, files))
+    return Answer(document, _parts(found, minimise, files, any(robot.prismatic)))
 
 
 def _draw(file: Path, found: BestPosture, turned: Landscape | None, minimise: Minimise) -> None:
@@ -316,7 +321,7 @@ def _placement(text: str, position: Array) -> Placement:
     return Placement(position.mean(axis=0), lower, upper)
 
 
-def _parts(found: BestPosture, minimise: Minimise, files: list[str]) -> list[object]:
+def _parts(found: BestPosture, minimise: Minimise, files: list[str], slides: bool) -> list[object]:
     compliance = minimise == Minimise.compliance
     scale, unit = (1e-6, "N/µm") if compliance else (1e6, "µm")
 
@@ -331,11 +336,11 @@ def _parts(found: BestPosture, minimise: Minimise, files: list[str]) -> list[obj
         ("their median", shown(float(np.median(blind)))),
         ("the worst of them", shown(float(blind[-1]))),
     ]
+    or_length = f" (or {1e3 * found.limit_margin:.0f} mm)" if slides else ""
     parts: list[object] = [
         table(f"{title} [{unit}]", ("", unit), rows),
-        f"Closest to a joint limit: {np.degrees(found.limit_margin):.1f}° (or "
-        f"{found.limit_margin * 1e3:.0f} mm). Smallest singular-value ratio: "
-        f"{found.condition.min():.3f}.",
+        f"Closest to a joint limit: {np.degrees(found.limit_margin):.1f}°{or_length}. "
+        f"Smallest singular-value ratio: {found.condition.min():.3f}.",
     ]
     if found.placement.any():
         moved = [

@@ -20,6 +20,7 @@ from sk120stiff.pilot.choosing import best, expected, separation
 from sk120stiff.pilot.linear import LinearMap, Sums
 from sk120stiff.plan import Pool
 from sk120stiff.plan.design import DISPLACEMENT
+from sk120stiff.slips import without_copies
 
 SURE = 0.95
 OPEN = 0.05  # probability from which on a rival counts
@@ -116,7 +117,7 @@ class Campaign:
         size = len(linear.scale)
         if readings is None:
             return Belief(linear, Sums.none(size), self.given)
-        used = readings.masked()
+        used = without_copies(readings)[0].masked()
         zero: Literal["shared", "separate"] = "shared" if used.zero == "shared" else "separate"
         problem = Problem(self.model, used, NoiseModel(self.sigma, zero=zero))
         start = linear.model.values
@@ -139,7 +140,7 @@ class Campaign:
     def state(self, readings: Measurements | None) -> State:
         """What is known, what comes next, or why to stop."""
         belief = self.belief(readings)
-        count = 0 if readings is None else readings.masked().n_readings
+        count = 0 if readings is None else without_copies(readings)[0].masked().n_readings
         taken = self._taken(readings)
         springs = self._springs(belief)
         row, found = best(belief, self.X, ~taken)

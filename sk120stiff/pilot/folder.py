@@ -131,6 +131,10 @@ class Folder:
                 remedy="Leave the options out to go on with it, edit the file, or take another "
                 "folder.",
             )  # fmt: skip
+        if self.path.exists() and not self.path.is_dir():
+            raise InputError(
+                "this is a file, not a folder", where=str(self.path), remedy="Name a folder."
+            )
         self.path.mkdir(parents=True, exist_ok=True)
         said = settings.model_dump(exclude_none=True)
         write_atomically(file, str(yaml.safe_dump(said, sort_keys=False, allow_unicode=True)))

@@ -170,6 +170,7 @@ def poses_in(
     found: list[Array] = []
     missing = count
     why: Counter[str] = Counter()
+    example: dict[str, str] = {}
     drawn_in_all = 0
     while drawn_in_all < DRAWS:
         drawn = random_poses(robot, max(count, 64), rng)
@@ -181,10 +182,12 @@ def poses_in(
             return np.concatenate(found)
         if len(found) == 1:
             said = (faults[0] for faults in verdict.faults if faults)
-            why.update(_kind(text) for text in said)
+            for text in said:
+                why[_kind(text)] += 1
+                example.setdefault(_kind(text), text)
     raise Refusal(
         f"only {count - missing} of {drawn_in_all} poses drawn within the joint limits can be "
-        f"had; the commonest reason: {why.most_common(1)[0][0]}",
+        f"had; the commonest reason: {example[why.most_common(1)[0][0]]}",
         where=cell.source or robot.name,
         remedy="Lower the floor, widen the box, or correct the cell; --check says what is wrong "
         "with single poses.",

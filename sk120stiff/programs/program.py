@@ -29,6 +29,7 @@ class Program:
         by_joints: Move by the joint values instead of in straight lines.
         settings: What the language is told beside this, every key with a value.
         date: Of the writing, ``2026/11/22 09:30``.
+        halts: (N,) does it wait for its operator at the target? None: nowhere.
     """
 
     name: str
@@ -44,6 +45,15 @@ class Program:
     by_joints: bool
     settings: Mapping[str, str]
     date: str
+    halts: Mask | None = None
+
+    def waits(self, target: int) -> bool:
+        """Does the program wait for its operator at a target, counted from 0?"""
+        return self.halts is not None and bool(self.halts[target])
+
+    def waited(self, target: int) -> int:
+        """How often it waits before a target, counted from 0."""
+        return 0 if self.halts is None else int(self.halts[:target].sum())
 
     def __post_init__(self) -> None:
         N, n = self.joints.shape

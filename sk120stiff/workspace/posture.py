@@ -173,8 +173,8 @@ def best_posture(
             remedy="Check that the points are reachable (sk120stiff map), lower the margins, or "
             "leave more freedom.",
         )
-    pool = first.best(kept, admits)
-    if not len(pool.objective) and admits is not None:
+    passing = first.best(len(first.objective), admits)
+    if not len(passing.objective) and admits is not None:
         count = int(np.isfinite(first.objective).sum())
         best = np.argsort(first.objective)[: min(count, ASKED)]
         faults = [why for k in best for row in admits(first.path[k]).faults for why in set(row)]
@@ -185,8 +185,7 @@ def best_posture(
             f"none of {count} postures that pass the path can be; most often: {why}",
             remedy="Look at the cell (cell.yaml) and the path, or leave more freedom.",
         )
-    passing = first.best(len(first.objective)).path
-    admissible = np.sort(first.objective[np.isfinite(first.objective)])
+    pool = Pool(passing.path[:kept], passing.placement[:kept], passing.objective[:kept])
     radius = np.full(len(pool.objective), FIRST_STEP)
     for done in range(rounds):
         noise = rng.normal(size=(children, len(radius), arm.n + 6)) * radius[:, None]
@@ -199,7 +198,7 @@ def best_posture(
         radius = np.clip(radius * np.where(better.improved, GROW, SHRINK), LAST_STEP, FIRST_STEP)
         if progress:
             progress(done + 1, rounds)
-    return judge.report(pool, admissible, passing[len(passing) // 2])
+    return judge.report(pool, passing.objective, passing.path[len(passing.path) // 2])
 
 
 @dataclass(frozen=True, eq=False)

@@ -162,6 +162,8 @@ def test_the_way_is_written_as_a_program(run, tmp_path: Path) -> None:
     assert sorted(way["order"]) == ["p1", "p2", "p3", "p4"]
     assert way["minutes"] == pytest.approx((way["driving_s"] + 4 * 20) / 60)
     assert list(read_measurements(out).poses) == way["order"]
-    assert program.read_text(encoding="ascii").count("PTP") >= 4 + way["via_points"]
+    text = program.read_text(encoding="ascii")
+    assert text.count("PTP") >= 4 + way["via_points"]
+    assert text.count("\nHALT\n") == 4  # nobody hangs on loads while the arm goes on
     wrong = run("plan", "--model", MODEL, "--count", "4", *FEW, "--program", "way.nc")
     assert wrong.code == 2 and "joint values" in wrong.stderr

@@ -36,6 +36,8 @@ def test_the_path_is_passed_with_the_tool_as_asked(run: Run, path: str, tmp_path
         T = robot.placement(a)
         meant = [1.5 + document["placement"]["x"], -0.2 + 0.1 * k, 0.3]
         np.testing.assert_allclose(T[:3, 3], meant, atol=1e-7)
+        told = [1e-3 * float(row[f"{axis}[mm]"]) for axis in "xyz"]
+        np.testing.assert_allclose(told, meant, atol=1e-7)
         np.testing.assert_allclose(T[:3, 2], [0.0, 0.0, -1.0], atol=1e-7)
 
 
