@@ -23,6 +23,8 @@ try:
 except ImportError:  # Pinocchio 2 and 3.0
     import hppfcl as coal
 
+    coal.Transform3s = coal.Transform3f
+
 SAMPLES = 100  # poses that tell which pairs touch wherever the arm stands
 WHEREVER = 0.95  # share of them
 SIGHT_RADIUS = 2e-3  # m; of a laser beam
@@ -63,8 +65,11 @@ class Scene:
             place = pin.SE3(T_body_frame @ solid.T_frame_solid)
             parent = int(self._bodies[k]) + 1
             self._geometry.addGeometryObject(
-                pin.GeometryObject(f"{k}", parent, 0, place, self._shapes[k])
-            )
+                pin.GeometryObject(  # by name: Pinocchio 2 has another order
+                    name=f"{k}", parent_frame=0, parent_joint=parent, placement=place,
+                    collision_geometry=self._shapes[k],
+                )
+            )  # fmt: skip
         self.pairs, touching = self._asked()
         self.remarks: tuple[str, ...] = body.remarks
         if touching:
