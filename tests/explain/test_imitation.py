@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
@@ -14,6 +15,7 @@ from sk120stiff.explain.judge.attribution import _objection as objection
 from sk120stiff.explain.judge.attribution import findings_of
 from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.imitation import _Lineup as Lineup
+from sk120stiff.explain.judge.imitation import _precision as precision
 from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
 from sk120stiff.explain.localise.suspects import Suspect
 from sk120stiff.explain.select.stepwise import refit, select
@@ -166,6 +168,7 @@ def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(sp
         names=[np.array([0])],
         parts=[np.array([1]), np.array([2])],
         unit=1.0,
+        drawn={},
     )
     assert line.score([0], 0) < line.score([], 1) < line.score([0])
     with pytest.MonkeyPatch.context() as patched:
@@ -185,8 +188,67 @@ def test_only_where_something_has_no_name_a_suspect_stands_for_several(springs, 
         names=[np.array([0]), np.array([1])],
         parts=[np.array([2])],
         unit=10.0,
+        drawn={},
     )
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(imitation, "_line_up", lambda *_: line)
         other = instead_of(found, names)
     assert (other is not None and len(other.effects) == 2) == fall
+
+
+@pytest.mark.parametrize("own", [6.0, 40.0])
+def test_what_a_name_does_not_do_anyway_no_suspect_takes_from_it(springs, own):
+    """Its price is saved beside any suspect: that tells nothing of the suspect."""
+    names = [effect(springs.robot, "joint_tilt", where) for where in ("joint_2_l", "joint_3_u")]
+    found = refit(fit(springs, hidden(TILT), noise=NOISE), names)
+    columns = np.eye(8)
+    columns[1, 7] = 0.99 if own > 20.0 else 0.0  # the suspect lies along the second name
+    columns[7, 7] = np.sqrt(1.0 - columns[1, 7] ** 2)
+    gap = np.zeros(8)
+    gap[0], gap[1], gap[7] = 30.0, np.sqrt(own), 3.0
+    line = Lineup(
+        suspects=(Suspect("place", "one", np.zeros((1, 3, 1)), gap, ""),),
+        gram=columns.T @ columns,
+        moment=columns.T @ gap,
+        names=[np.array([0]), np.arange(1, 7)],
+        parts=[np.array([7])],
+        unit=4.0,
+        drawn={},
+    )
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(imitation, "_line_up", lambda *_: line)
+        other = instead_of(found, names)
+    assert (other is not None and other.effects == (names[1].id,)) == (own > 24.0)
+
+
+def test_random_effects_are_scored_by_their_marginal_likelihood():
+    rng = np.random.default_rng(2)
+    columns = np.linalg.qr(rng.normal(size=(40, 13)))[0] @ rng.normal(size=(13, 13))
+    columns /= np.linalg.norm(columns, axis=0)
+    gap, lam, unit = 3.0 * rng.normal(size=40), 0.2, 4.0
+    line = Lineup(
+        suspects=(),
+        gram=columns.T @ columns,
+        moment=columns.T @ gap,
+        names=[np.array([0]), np.arange(1, 13)],
+        parts=[],
+        unit=unit,
+        drawn={1: lam},
+    )
+    with_draws = np.eye(40) + columns[:, 1:] @ columns[:, 1:].T / lam
+    gained = multivariate_normal(cov=with_draws).logpdf(gap) - multivariate_normal(
+        cov=np.eye(40)
+    ).logpdf(gap)
+    assert line.score([1]) == pytest.approx(unit - 2.0 * gained, rel=1e-9)
+    solved = np.linalg.inv(with_draws)
+    first = columns[:, 0]
+    beside = (first @ solved @ gap) ** 2 / (first @ solved @ first)
+    assert line.takes([0, 1]) - line.takes([1]) == pytest.approx(beside, rel=1e-9)
+
+
+def test_how_widely_random_effects_scatter_comes_from_their_sizes():
+    rng = np.random.default_rng(5)
+    length, scale = rng.uniform(0.5, 2.0, 4000), 2.0
+    sizes = 3.0 * rng.normal(size=4000) * np.sqrt(scale) / length
+    estimated = sizes + rng.normal(size=4000) * np.sqrt(scale) / length
+    assert precision(estimated, length, scale) == pytest.approx(1.0 / 9.0, rel=0.1)

@@ -15,7 +15,7 @@ imitate it together.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -38,6 +38,7 @@ NOTHING = 0.3  # share of its length that is left to an effect of which another 
 STARTS = (0.1, 0.3, 1.0)  # spreads from which the likeliest is looked for
 FAR = 4.0  # ln of the factor by which a size is sought away from its start
 VISIBLE = 1e-6  # share of a column that must remain beyond the model's own
+NEGLIGIBLE = 1e6  # precision, in that of the readings, of random effects that are none
 ALIKE = 1e-9  # square of a direction's length beyond others below which they are the same
 
 
@@ -105,12 +106,13 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
     """The best of all suspects in the place of some of the names; None where none does better.
 
     With every suspect in the model those names leave it, one at a time, to which it leaves no
-    evidence, or hardly any of their length. A suspect that is the free form of a name's own law
-    says what the name says, and is no reason against it. The strongest name has to be beaten
-    clearly, also by all names beside any other suspect: a cause without a name may stand beside
-    them. Beside model-form error such a cause is at work for certain and needs no evidence of its
-    own: a further name has to do better than it, and it may stand for several. Where laws seem
-    exact it takes the place of one.
+    evidence, or hardly any of their length. What a name does not do beside the other names alone,
+    no suspect takes from it: nothing is said of such a name. A suspect that is the free form of a
+    name's own law says what the name says, and is no reason against it. The strongest name has to
+    be beaten clearly, also by all names beside any other suspect: a cause without a name may stand
+    beside them. Beside model-form error such a cause is at work for certain and needs no evidence
+    of its own: a further name has to do better than it, and it may stand for several. Where laws
+    seem exact it takes the place of one.
 
     Args:
         fit: The fitted model.
@@ -121,12 +123,15 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
     whole = line.score(everything)
     alone = [line.takes(everything) - line.takes(set(everything) - {e}) for e in everything]
     certain = bool(fit.problem.noise.form)
+    tried = [e for e in everything if alone[e] > line.price(e)]
     found: list[Instead] = []
     beside = 0.0  # the best evidence with all names in the model
     for k, suspect in enumerate(line.suspects):
         kept = list(everything)
         while True:
-            losses = {e: line.takes(kept, k) - line.takes(set(kept) - {e}, k) for e in kept}
+            losses = {
+                e: line.takes(kept, k) - line.takes(set(kept) - {e}, k) for e in kept if e in tried
+            }
             idle = [
                 e
                 for e, loss in losses.items()
@@ -149,7 +154,11 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
 
 @dataclass(frozen=True, eq=False)
 class _Lineup:
-    """Names and suspects beyond the other parameters of a model, each column of length one."""
+    """Names and suspects beyond the other parameters of a model, each column of length one.
+
+    Sizes that are drawn (random effects) have the precision of their distribution beside that of
+    the readings, and pay by their marginal likelihood; how widely they scatter is one parameter.
+    """
 
     suspects: tuple[Suspect, ...]
     gram: Array  # (K, K)
@@ -157,20 +166,26 @@ class _Lineup:
     names: list[Index]
     parts: list[Index]
     unit: float  # ln of the number of readings, what a parameter costs
+    drawn: Mapping[int, float]  # precision of the sizes of those names that are random effects
 
     def price(self, name: int) -> float:
         """What the parameters of a name cost."""
-        return self.unit * len(self.names[name])
-
-    def _at(self, names: Iterable[int], suspect: int | None) -> Index:
-        own = [self.names[e] for e in sorted(names)]
-        own += [] if suspect is None else [self.parts[suspect]]
-        return np.concatenate(own or [np.zeros(0, dtype=np.intp)])
+        own = self.names[name]
+        if name not in self.drawn:
+            return self.unit * len(own)
+        told = self.gram[np.ix_(own, own)] / self.drawn[name]
+        return float(np.linalg.slogdet(np.eye(len(own)) + told)[1]) + self.unit
 
     def takes(self, names: Iterable[int], suspect: int | None = None) -> float:
         """Fall of the misfit that names and a suspect bring together, in noise variances."""
-        at = self._at(names, suspect)
-        values, vectors = np.linalg.eigh(self.gram[np.ix_(at, at)])
+        chosen = sorted(names)
+        own = [self.names[e] for e in chosen] + ([] if suspect is None else [self.parts[suspect]])
+        at = np.concatenate(own or [np.zeros(0, dtype=np.intp)])
+        prior = np.zeros(len(at))
+        prior[: sum(map(len, own[: len(chosen)]))] = np.repeat(
+            [self.drawn.get(e, 0.0) for e in chosen], [len(self.names[e]) for e in chosen]
+        )
+        values, vectors = np.linalg.eigh(self.gram[np.ix_(at, at)] + np.diag(prior))
         seen = values > ALIKE
         along = vectors[:, seen].T @ self.moment[at]
         return float((along**2 / values[seen]).sum())
@@ -178,7 +193,10 @@ class _Lineup:
     def score(self, names: Iterable[int], suspect: int | None = None) -> float:
         """Bayesian information criterion, up to a constant."""
         chosen = tuple(names)
-        return self.unit * len(self._at(chosen, suspect)) - self.takes(chosen, suspect)
+        price = sum(self.price(e) for e in chosen)
+        if suspect is not None:
+            price += self.unit * len(self.parts[suspect])
+        return price - self.takes(chosen, suspect)
 
 
 def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
@@ -203,6 +221,11 @@ def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
     spans = [slice(int(a), int(b)) for a, b in pairwise(ends)]
     spans += [slice(int(ends[-1]) + part.start, int(ends[-1]) + part.stop) for part in lineup.parts]
     at = [np.arange(span.start, span.stop)[visible[span]] for span in spans]
+    drawn = {
+        k: _precision(fit.x[mask & moving], left[span], look.noise.scale)
+        for k, (effect, mask, span) in enumerate(zip(names, own, spans, strict=False))
+        if effect.random_effects
+    }
     return _Lineup(
         suspects=lineup.suspects,
         gram=beyond.T @ beyond,
@@ -210,7 +233,14 @@ def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
         names=at[: len(names)],
         parts=at[len(names) :],
         unit=float(np.log(max(len(gap), 2))),
+        drawn=drawn,
     )
+
+
+def _precision(sizes: Array, length: Array, scale: float) -> float:
+    """Of the distribution of random effects, by its moments, where a column has length one."""
+    spread = float(np.mean(sizes**2 * length**2)) / scale - 1.0  # every estimate scatters by one
+    return 1.0 / max(spread, 1.0 / NEGLIGIBLE)
 
 
 def imitated(fit: Fit, names: Sequence[Effect]) -> tuple[str, str] | None:
