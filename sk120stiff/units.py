@@ -154,7 +154,7 @@ def parse_values(
         InputError: No number, a word that is no number, a missing, unknown or unfit unit, or
             another count than that of `like`.
     """
-    numbers, units, spare = _numbers_with_units(text, where, f"10,20,-30 {_usual(kind)[0]}")
+    numbers, units, spare = _numbers_with_units(text, where, like or f"10,20,-30 {_usual(kind)[0]}")
     if spare:
         raise InputError(f"the unit {spare[0]!r} follows no number", where=where)
     if like is not None and len(numbers) != (count := len(_numbers_with_units(like, where, "")[0])):

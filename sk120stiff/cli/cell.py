@@ -11,7 +11,7 @@ import typer
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
-from sk120stiff.plan import Cell, cell_from_data, read_cell
+from sk120stiff.plan import Cell, assumed_around, cell_from_data, read_cell
 from sk120stiff.plan.rig import Rig
 from sk120stiff.robot import Robot
 
@@ -35,7 +35,12 @@ def opened_cell(robot: Robot, given: Path | None, *beside: Path | None) -> Cell:
     """
     if given is not None:
         if not given.is_file():
-            raise InputError("there is no such file", where=f"--cell {given}")
+            raise InputError(
+                "there is no such file",
+                where=f"--cell {given}",
+                remedy="Name a YAML file as docs/FILES.md shows it (floor: -0.8 m, obstacles, rig, "
+                "tracker), or leave the option out.",
+            )
         return read_cell(given, robot)
     folders = [path if path.is_dir() else path.parent for path in beside if path is not None]
     if robot.document.path is not None:
@@ -56,6 +61,22 @@ def at_work(cell: Cell) -> Cell:
     return replace(
         cell, clearance=0.0, angle_margin=0.0, slide_margin=0.0, effort_share=1.0, pedestal=0.0
     )
+
+
+def assumed_at_work(robot: Robot, cell: Cell) -> tuple[str, ...]:
+    """What `at_work` asks of a posture, and what it takes for granted, in sentences."""
+    margins = [f"{np.rad2deg(cell.angle_margin):g} deg"]
+    if any(robot.prismatic):
+        margins.append(f"{1e3 * cell.slide_margin:g} mm")
+    around = f"or what {cell.source} states around it" if cell.source else "(there is no cell.yaml)"
+    said = [
+        f"Asked of every posture: joint limits with {' or '.join(margins)} to spare, motors at "
+        f"{100 * cell.effort_share:g} % of their effort at most, {1e3 * cell.clearance:g} mm "
+        f"between the arm and itself {around}."
+    ]
+    if cell.tool is None:
+        said.append("The tool has no shape: it may touch.")
+    return (*said, *assumed_around(robot, cell))
 
 
 def as_measured(robot: Robot, cell: Cell, known: Measurements | None) -> Cell:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
 
-from sk120stiff.cli.cell import CellOption, at_work, opened_cell
+from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
 from sk120stiff.cli.compensate_path import (
     CHORD,
     LoadAxes,
@@ -267,7 +268,12 @@ def command(
         )
     given, part, facts, _ = opened
     given = with_load_in_base(given, robot, nominal, load_axes, at)
+    if given.joints is not None and given.position is not None:
+        facts = (*facts, "Its joints are driven; the positions beside them agree.")
     around = at_work(opened_cell(robot, cell, path))
+    if floor is not None and not np.isfinite(around.floor):
+        around = replace(around, floor=ground)
+    assumed = assumed_at_work(robot, around)
     held_at = given.wrench if at in (None, robot.tool_frame) else None
     wrong = infeasible(robot, around, nominal, given, held_at)
     branch = branch_of(robot, nominal, ground)
@@ -327,7 +333,7 @@ def command(
         "infeasible": wrong,
         "judged_by": str(against or model),
         "uncertainty": uncertainty_keys(judge) | doubt_keys(doubt),
-        "assumed": facts,
+        "assumed": (*facts, *assumed),
         "language": "csv" if language is None else language.name,
         "settings": used,
         "measured": came_back or None,
@@ -335,5 +341,7 @@ def command(
         "sheet": sheet,
     }
     held = bool(found.before.exists.any())
-    shown = [said, *parts(document, given, found), *about, *measured_words(came_back)]
+    shown = [
+        said, *parts(document, given, found), *about, *measured_words(came_back), *facts, *assumed,
+    ]  # fmt: skip
     return Answer(document, parts=shown, exit_code=0 if held else 1)

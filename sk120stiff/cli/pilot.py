@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -18,10 +19,12 @@ from sk120stiff.cli.frame import Answer, emit, note
 from sk120stiff.cli.opening import open_model
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
+from sk120stiff.files import misfit
 from sk120stiff.measurements import Measurements
 from sk120stiff.pilot.campaign import Campaign, State
 from sk120stiff.pilot.confirming import Confirmation, confirmed
-from sk120stiff.pilot.folder import READINGS, Folder, Settings
+from sk120stiff.pilot.folder import LIKE, READINGS, Folder, Settings
+from sk120stiff.pilot.surprise import surprise
 from sk120stiff.units import parse_values
 
 SHOWN = 6  # names on the screen
@@ -97,34 +100,39 @@ def command(
     )
     with progress_bar("what can be measured"):
         campaign = settings.campaign(opened, around)
-    answer, plan = _looked(at, settings, campaign)
+    first = _looked(at, settings, campaign)
 
     def go_on() -> None:
-        turn = plan
+        turn = first
         grown = _grown(at)
-        while _typed(at, turn) if typed else next(grown):
-            found, turn = _looked(at, settings, campaign)
-            emit(found, as_json=False)
-            if _over(found):
+        while _typed(at, campaign, turn) if typed else next(grown):
+            turn = _looked(at, settings, campaign)
+            emit(turn.answer, as_json=False)
+            if turn.over:
                 return
 
-    going = (typed or watch) and not _over(answer)
-    return Answer(answer.document, answer.parts, afterwards=go_on if going else None)
+    going = (typed or watch) and not first.over
+    return replace(first.answer, afterwards=go_on if going else None)
 
 
-def _over(answer: Answer) -> bool:
-    stop = answer.document["stop"]
-    return isinstance(stop, dict) and bool(stop["final"])
+@dataclass(frozen=True)
+class _Turn:
+    """What is known, what was said of it, and what is to be read next."""
+
+    state: State
+    answer: Answer
+    plan: Measurements | None
+    over: bool
 
 
 def _settings(said: dict[str, object]) -> Settings:
     try:
-        settings = Settings.model_validate(said)
+        return Settings.model_validate(said).checked()
     except ValidationError as error:
-        first = error.errors()[0]
-        raise InputError(first["msg"], where=f"--{first['loc'][0]}") from error
-    _ = settings.sigma, settings.share, settings.at  # refuse now what has no unit
-    return settings
+        key = error.errors()[0]["loc"][0]
+        raise misfit(error, f"--{key}", Settings.model_fields, LIKE) from error
+    except InputError as error:
+        raise InputError(error.what, where=f"--{error.where}", remedy=error.remedy) from error
 
 
 def _seen_from(folder: Path, named: str) -> str:
@@ -138,10 +146,8 @@ def _is_file(settings: Settings) -> bool:
     return "/" in settings.model or "." in settings.model
 
 
-def _looked(
-    at: Folder, settings: Settings, campaign: Campaign
-) -> tuple[Answer, Measurements | None]:
-    readings = at.readings()
+def _looked(at: Folder, settings: Settings, campaign: Campaign) -> _Turn:
+    readings = at.readings(settings)
     with progress_bar("which reading next"):
         state = campaign.state(readings)
         asked = None
@@ -150,23 +156,29 @@ def _looked(
     plan = None
     if state.row is not None:
         plan = at.propose(campaign, settings, state.row, f"p{state.count + 1}")
-    return _answer(at, campaign, state, plan, asked), plan
+    final = state.stop is not None and (asked is None or asked.agrees)
+    return _Turn(state, _answer(at, campaign, state, plan, asked, final), plan, final)
 
 
 def _answer(
     at: Folder, campaign: Campaign, state: State, plan: Measurements | None,
-    asked: Confirmation | None,
+    asked: Confirmation | None, final: bool,
 ) -> Answer:  # fmt: skip
-    final = state.stop is not None and (asked is None or asked.agrees)
     names = list(state.belief.probabilities.items())
     rows = [
         (name, f"{value:.5g}", f"± {std:.2g}" if std < abs(value) else "not known yet", unit)
         for name, value, std, unit in state.springs
     ]
     said: list[object] = [
-        table(f"After {state.count} readings", ["spring", "value", "", "unit"], rows),
+        table(
+            f"After {state.count} reading{'s' * (state.count != 1)}",
+            ["spring", "value", "", "unit"],
+            rows,
+        ),
         table("Probabilities", ["name", "P"], [(n, f"{p:.3f}") for n, p in names[:SHOWN]]),
     ]
+    if sum(p for _, p in names) > 1.005:
+        said.append("A pair of causes counts for both of its names: together they exceed 1.")
     if state.belief.unexplained:
         said.append(
             "More is left than noise, whatever is taken from the catalogue: a slip, a noise stated "
@@ -220,11 +232,10 @@ def _next(plan: Measurements) -> object:
     return table("Measure next", [*columns, "fx [N]", "fy [N]", "fz [N]"], [(*row, *force)])
 
 
-def _typed(at: Folder, plan: Measurements | None) -> bool:
+def _typed(at: Folder, campaign: Campaign, turn: _Turn) -> bool:
     """One reading from the keyboard, written down; False where the input ends."""
-    while plan is not None:
-        print("dx, dy, dz with unit, e.g. 0.12,-0.30,0.05 mm (empty: leave): ", end="", flush=True)
-        line = sys.stdin.readline().strip()
+    while turn.plan is not None and turn.state.row is not None:
+        line = _asked("dx, dy, dz with unit, e.g. 0.12,-0.30,0.05 mm (empty: leave): ")
         if not line:
             return False
         try:
@@ -232,9 +243,19 @@ def _typed(at: Folder, plan: Measurements | None) -> bool:
         except InputError as error:
             note(f"Error: {error}")
             continue
-        at.append(plan, read)
+        odd = surprise(campaign, turn.state.belief, turn.state.row, read).words
+        if odd:
+            note(odd)
+            if _asked("Keep it? [y/N]: ").lower() not in ("y", "yes"):
+                continue
+        at.append(turn.plan, read)
         return True
     return False
+
+
+def _asked(question: str) -> str:
+    print(question, end="", flush=True)
+    return sys.stdin.readline().strip()
 
 
 def _grown(at: Folder) -> Iterator[bool]:

@@ -12,7 +12,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.files import write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.plan import Cell, Route, route
-from sk120stiff.programs import Language, language_of
+from sk120stiff.programs import LANGUAGES, Language
 from sk120stiff.programs.controller import controller_axes, convention
 from sk120stiff.programs.program import Program
 from sk120stiff.robot import Robot
@@ -26,12 +26,15 @@ def language_for(out: Path) -> Language:
     Raises:
         InputError: It is none that moves by joint values.
     """
-    language = language_of(out, None)
-    if language is None or not language.joint_moves:
+    by_joints = {each.ending: each for each in LANGUAGES.values() if each.joint_moves}
+    language = by_joints.get(out.suffix.lower())
+    if language is None:
+        known = ", ".join(f"{ending} ({each.title})" for ending, each in by_joints.items())
         raise InputError(
-            "poses are driven to by joint values, which this file's language does not know",
+            f"poses are driven to by joint values, and the ending {out.suffix!r} names no language "
+            "that knows them",
             where=f"--program {out}",
-            remedy="Name a program that ends in .src, .mod, .ls, .jbi or .script.",
+            remedy=f"Endings are: {known}.",
         )
     return language
 

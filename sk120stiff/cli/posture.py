@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.arrays import Array
-from sk120stiff.cli.cell import CellOption, at_work, opened_cell
+from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
 from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
@@ -21,6 +21,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, seen_from
 from sk120stiff.plan import Verdict, feasible
+from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.units import from_si, parse_values
 from sk120stiff.workspace import (
     BestPosture,
@@ -184,11 +185,17 @@ def command(
             f"{value * 1e6:.6g}" for value in found.per_point
         ]
     }
-    if found.placement.any():  # the path as it was placed, not as it came
-        moved = robot.placement(found.a, at)[:, :3, 3]
-        for k, name in enumerate("xyz"):
-            values = from_si(moved[:, k], given.table.column_units[name], "length")
-            notes[given.table.headers[name]] = [f"{value:.10g}" for value in np.asarray(values)]
+    # the path as it was placed and turned, not as it came
+    stands = robot.placement(found.a, at)
+    columns: list[tuple[str, str, Array]] = []
+    if found.placement.any():
+        columns = [(name, "length", stands[:, k, 3]) for k, name in enumerate("xyz")]
+    if given.rotation is not None:
+        angles = np.deg2rad(fixed_xyz(stands[:, :3, :3]))
+        columns += [(name, "angle", angles[:, k]) for k, name in enumerate(_PLACES[3:])]
+    for name, kind, si in columns:
+        values = np.asarray(from_si(si, given.table.column_units[name], kind))
+        notes[given.table.headers[name]] = [f"{value:.10g}" for value in values]
     write_joints(out, given, robot, found.a, notes)
     if picture is not None:
         turned = None
@@ -208,6 +215,8 @@ def command(
             page, *seen_from(believed, at or robot.tool_frame, np.zeros(3)), found, task, freedom,
             compliance=minimise == Minimise.compliance,
         )  # fmt: skip
+    kept = replace(around, angle_margin=max(around.angle_margin, float(margin)))
+    assumed = assumed_at_work(robot, kept)
     document = {
         "robot": robot.name,
         "rows": given.count,
@@ -228,11 +237,13 @@ def command(
         },
         "out": str(out),
         "cell": around.source or None,
+        "assumed": assumed,
         "picture": picture,
         "page": page,
     }
     files = [str(file) for file in (out, picture, page) if file is not None]
-    return Answer(document, _parts(found, minimise, files, any(robot.prismatic)))
+    said = _parts(found, minimise, files, any(robot.prismatic))
+    return Answer(document, [*said, *assumed])
 
 
 def _draw(file: Path, found: BestPosture, turned: Landscape | None, minimise: Minimise) -> None:

@@ -28,7 +28,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sk120stiff.effects import CATALOGUE, Catalogue, comment_lines
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.files import parse_yaml, read_text, write_atomically
+from sk120stiff.files import misfit, parse_yaml, read_text, write_atomically
 from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model
 from sk120stiff.model.parameter import Parameter
@@ -41,6 +41,11 @@ from sk120stiff.model.uncertainty_file import (
 )
 from sk120stiff.robot import Robot, find_robot, load_robot
 from sk120stiff.robot.naming import robot_name
+
+_EFFECT = (
+    "{name: joint_springs, where: joint_1, parameters: {stiffness: {value: 1e6, unit: N*m/rad}}}"
+)
+LIKE = dict.fromkeys(("effects", "name", "where", "parameters"), f"effects: [{_EFFECT}]")
 
 
 class _Strict(BaseModel):
@@ -285,14 +290,7 @@ def _parsed(text: str, where: str) -> _File:
     try:
         return _File.model_validate(parse_yaml(text, where).content or {})
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise InputError(
-            f"key {key!r}: {first['msg'].lower()}",
-            where=where,
-            remedy="A model file has the keys robot, base_frame, tool_frame, effects, provenance, "
-            "uncertainty; each effect has name, where and parameters.",
-        ) from error
+        raise misfit(error, where, _File.model_fields, LIKE) from error
 
 
 def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:

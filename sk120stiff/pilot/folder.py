@@ -21,7 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.files import read_text, read_yaml, running, write_atomically
+from sk120stiff.files import misfit, read_text, read_yaml, running, write_atomically
 from sk120stiff.measurements import Measurements, read_measurements, write_measurements
 from sk120stiff.measurements.data import NoiseStatement
 from sk120stiff.model import Model
@@ -29,13 +29,19 @@ from sk120stiff.pilot.campaign import Campaign
 from sk120stiff.plan import Cell, feasible_pool
 from sk120stiff.plan.planned import to_be_taken
 
+LIKE = {  # what can be written, by key
+    "point": "point: 0,50,120 mm", "force": "force: 400 N", "noise": "noise: 10 um",
+    "zero": "zero: separate   (or shared)", "target": "target: 2 %", "most": "most: 60",
+    "poses": "poses: 150", "directions": "directions: 6", "seed": "seed: 0",
+}  # fmt: skip
+SAME = 1e-6  # m by which two statements of a point may differ
 SETTINGS, READINGS, NEXT = "pilot.yaml", "readings.csv", "next.csv"
 
 
 class Settings(BaseModel):
     """The keys of `pilot.yaml`."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, coerce_numbers_to_str=True)
 
     model: str
     cell: str | None = None
@@ -48,6 +54,20 @@ class Settings(BaseModel):
     poses: Annotated[int, Field(ge=10, le=5000)] = 150
     directions: Annotated[int, Field(ge=1, le=100)] = 6
     seed: Annotated[int, Field(ge=0)] = 0
+
+    def checked(self) -> Settings:
+        """The same, once every text was read as the size that it states.
+
+        Raises:
+            InputError: A number without a unit, or with one of another kind; `where` is the key.
+        """
+        _ = self.sigma, self.share, self.at, self.newtons
+        return self
+
+    @property
+    def newtons(self) -> float:
+        """Largest load [N]."""
+        return units.parse_size(self.force, "force", where="force", like="400 N")
 
     @property
     def sigma(self) -> float:
@@ -77,7 +97,7 @@ class Settings(BaseModel):
             model.robot,
             poses=self.poses,
             directions=self.directions,
-            force=units.parse_size(self.force, "force", where="force", like="400 N"),
+            force=self.newtons,
             point=self.at,
             seed=self.seed,
             cell=cell,
@@ -109,14 +129,12 @@ class Folder:
                 remedy=f"Begin one: sk120stiff pilot {self.path} --model model.yaml",
             )  # fmt: skip
         try:
-            return Settings.model_validate(read_yaml(file).content or {})
+            return Settings.model_validate(read_yaml(file).content or {}).checked()
         except ValidationError as error:
-            first = error.errors()[0]
-            raise InputError(
-                f"key {'.'.join(map(str, first['loc']))!r}: {first['msg'].lower()}",
-                where=str(file),
-                remedy=f"Keys are: {', '.join(Settings.model_fields)}.",
-            ) from error
+            raise misfit(error, str(file), Settings.model_fields, LIKE) from error
+        except InputError as error:
+            place = f"{file}, key {error.where!r}"
+            raise InputError(error.what, where=place, remedy=error.remedy) from error
 
     def begin(self, settings: Settings) -> None:
         """Write the settings of a new campaign.
@@ -143,15 +161,23 @@ class Folder:
         """A file that the settings name, seen from the folder."""
         return Path(os.path.normpath(self.path / named))
 
-    def readings(self) -> Measurements | None:
+    def readings(self, settings: Settings) -> Measurements | None:
         """The readings so far; None before the first.
 
         Raises:
-            InputError: The file cannot be read.
+            InputError: The file cannot be read, or states other things than the settings do.
         """
         if not self.readings_file.is_file() or not self._rows():
             return None
-        return read_measurements(self.readings_file)
+        read = read_measurements(self.readings_file)
+        apart = _differing(settings, read)
+        if apart:
+            raise InputError(
+                f"{SETTINGS} and readings.yaml state different things: {'; '.join(apart)}",
+                where=str(self.path),
+                remedy="Correct the one that is wrong.",
+            )
+        return read
 
     def propose(self, campaign: Campaign, settings: Settings, row: int, label: str) -> Measurements:
         """Write the reading to take next, and on the first call an empty file for the readings."""
@@ -215,3 +241,21 @@ class Folder:
     def _rows(self) -> int:
         lines = read_text(self.readings_file).splitlines()
         return len([line for line in lines if line.strip() and not line.startswith("#")]) - 1
+
+
+def _differing(settings: Settings, read: Measurements) -> list[str]:
+    """What the settings and the readings' own file state differently, in words."""
+
+    def mm(point: Array) -> str:
+        return ",".join(f"{1e3 * x + 0.0:g}" for x in point) + " mm"
+
+    said = []
+    for key, point in (("point", read.point), ("point of the force", read.force_point)):
+        if np.abs(point - settings.at).max() > SAME:
+            said.append(f"{key} {mm(settings.at)} and {mm(point)}")
+    if read.zero != settings.zero:
+        said.append(f"zero {settings.zero} and {read.zero}")
+    sigma = read.noise.sigma
+    if sigma is not None and abs(sigma - settings.sigma) > 1e-3 * settings.sigma:
+        said.append(f"noise {1e6 * settings.sigma:g} um and {1e6 * sigma:g} um")
+    return said

@@ -17,7 +17,12 @@ from sk120stiff.plan.route import Route, route
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
 from sk120stiff.plan.spread import random_choice, well_spread
-from sk120stiff.plan.surroundings import assumptions, cell_from_data, lowest_points
+from sk120stiff.plan.surroundings import (
+    assumed_around,
+    assumptions,
+    cell_from_data,
+    lowest_points,
+)
 
 __all__ = [
     "Cell",
@@ -32,6 +37,7 @@ __all__ = [
     "Tracker",
     "Verdict",
     "as_positions",
+    "assumed_around",
     "assumptions",
     "cell_from_data",
     "d_optimal",

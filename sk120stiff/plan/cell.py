@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.files import read_yaml
+from sk120stiff.files import misfit, read_yaml
 from sk120stiff.plan.rig import Rig, unit
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy
@@ -22,6 +22,33 @@ from sk120stiff.robot.solids import Solid, mesh_solid
 CLEARANCE = 0.01  # m
 ANGLE_MARGIN, SLIDE_MARGIN = np.deg2rad(1.0), 0.002
 EFFORT_SHARE = 0.9  # of a motor's effort that a push to be held may ask for
+
+LIKE = {  # what can be written, by key
+    "floor": "floor: -0.8 m",
+    "region": "region: {low: [800, -1000, 0], high: [2200, 1000, 1500], unit: mm}",
+    "low": "region: {low: [800, -1000, 0], high: [2200, 1000, 1500], unit: mm}",
+    "high": "region: {low: [800, -1000, 0], high: [2200, 1000, 1500], unit: mm}",
+    "clearance": "clearance: 20 mm",
+    "joint_margin": "joint_margin: 2 deg",
+    "slide_margin": "slide_margin: 5 mm",
+    "effort_share": "effort_share: 0.9",
+    "pedestal": "pedestal: 250 mm   (its radius; or none)",
+    "obstacles": "obstacles: [{name: wall, box: [100, 3000, 2000], xyz: [1800, 0, 0], unit: mm}]",
+    "tool": "tool: [{name: gripper, cylinder: [40, 150], xyz: [0, 0, 75], unit: mm}]",
+    "box": "box: [100, 3000, 2000], unit: mm   (three edges; numbers alone)",
+    "sphere": "sphere: 200, unit: mm   (radius)",
+    "cylinder": "cylinder: [50, 1500], unit: mm   (radius, length)",
+    "capsule": "capsule: [50, 1500], unit: mm   (radius, length)",
+    "plane": "plane: [-1, 0, 0]   (the direction that points away from it)",
+    "xyz": "xyz: [1800, 0, 1000], unit: mm",
+    "rpy": "rpy: [0, 0, 90]   (roll, pitch, yaw in degrees)",
+    "unit": "unit: mm   (or m)",
+    "kind": "kind: cable   (any, weight, cable, jack)",
+    "directions": "directions: [[0, 0, -1], [1, 0, 0]]",
+    "axis": "axis: [0, 0, 1]",
+    "anchors": "anchors: [[1.5, 0, 2.0]]",
+    "tracker": "tracker: {xyz: [3, 0, 1], axis: [1, 0, 0], cone: 40 deg, range: '0.5, 20 m'}",
+}
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Vector = tuple[_Finite, _Finite, _Finite]
@@ -158,15 +185,10 @@ def read_cell(path: Path, robot: Robot) -> Cell:
     try:
         said = CellFile.model_validate(read_yaml(path).content or {})
     except ValidationError as error:
-        first = error.errors()[0]
-        raise InputError(
-            f"key {'.'.join(map(str, first['loc']))!r}: {first['msg'].lower()}",
-            where=str(path),
-            remedy=f"Keys are: {', '.join(CellFile.model_fields)}.",
-        ) from error
+        raise misfit(error, str(path), CellFile.model_fields, LIKE) from error
 
     def number(key: str, text: str, kind: str) -> float:
-        (value,) = _numbers(path, key, text, kind, {"length": "20 mm", "angle": "5 deg"}[kind])
+        (value,) = _numbers(path, key, text, kind, LIKE[key].partition(": ")[2].partition("   ")[0])
         return value
 
     scale = 1e-3 if said.region.unit == "mm" else 1.0

@@ -32,7 +32,17 @@ def scene_of(robot: Robot, cell: Cell, point: ArrayLike | None = None) -> Scene:
 
 
 def assumptions(robot: Robot, cell: Cell, point: ArrayLike | None = None) -> tuple[str, ...]:
-    """What is taken for granted because nobody stated it, in sentences."""
+    """What is taken for granted of readings because nobody stated it, in sentences."""
+    said = []
+    if cell.tracker is None:
+        said.append("No tracker was given: its line of sight was not asked for.")
+    if cell.rig.words == "any direction":
+        said.append("No rig was given: loads may have any direction.")
+    return (*said, *assumed_around(robot, cell, point))
+
+
+def assumed_around(robot: Robot, cell: Cell, point: ArrayLike | None = None) -> tuple[str, ...]:
+    """What is taken for granted of the arm and what stands around it, in sentences."""
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     said = [*cell.told]
     if not np.isfinite(cell.floor):
@@ -51,10 +61,6 @@ def assumptions(robot: Robot, cell: Cell, point: ArrayLike | None = None) -> tup
         )
     if not cell.obstacles:
         said.append("No obstacles were given.")
-    if cell.tracker is None:
-        said.append("No tracker was given: its line of sight was not asked for.")
-    if cell.rig.words == "any direction":
-        said.append("No rig was given: loads may have any direction.")
     return (*said, *scene_of(robot, cell, at).remarks, *unknown_efforts(robot))
 
 

@@ -7,8 +7,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sk120stiff.errors import InputError
-from sk120stiff.files import read_yaml
+from sk120stiff.files import misfit, read_yaml
 
 
 class _Strict(BaseModel):
@@ -107,10 +106,4 @@ def read_description(path: Path) -> RobotDescription:
     try:
         return RobotDescription.model_validate(content or {})
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise InputError(
-            f"key {key!r}: {first['msg'].lower()}",
-            where=str(path),
-            remedy="Keys are: " + ", ".join(RobotDescription.model_fields) + ".",
-        ) from error
+        raise misfit(error, str(path), RobotDescription.model_fields) from error

@@ -5,6 +5,7 @@
     point,joint_1_s[deg],joint_2_l[deg],…,fx[N],fy[N],fz[N]          joints
     point,x[mm],y[mm],z[mm],roll[deg],pitch[deg],yaw[deg],fx[N],…    placement of the tool
 
+Where both stand there, the joints are driven and the positions are held against them.
 ``point`` is any label. Moments ``mx my mz`` are optional, and so is the orientation: without it
 only the position is meant. Everything is in base axes; roll, pitch and yaw are as in a URDF.
 ``feed[mm/min]`` and ``rapid`` (1: a rapid move) go into robot programs. Further columns are kept as
@@ -37,6 +38,7 @@ STARTS = 32  # poses from which the first point of a path is sought
 SAME_BRANCH = 0.05  # rad or m between solutions that count as one
 NEIGHBOURS = 0.1  # rad or m: neighbours of one block that are farther apart are sought one by one
 LONGEST_BLOCK = 1024  # points sought together
+AGREE = 1e-4  # m by which joints and positions of one point may differ, as rounded by people
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,11 +89,9 @@ def read_path(
     loads = _loads(table, wrench)
     by_joint = [name for name in robot.actuated if name in has]
     by_place = [name for name in POSITIONS if name in has and name not in robot.actuated]
-    if bool(by_joint) == bool(by_place):
+    if not by_joint and not by_place:
         raise InputError(
-            "the path is given by joints and by positions"
-            if by_joint
-            else "the path has no points",
+            "the path has no points",
             where=str(table.path),
             remedy=f"Give the columns {', '.join(f'{j}[deg]' for j in robot.actuated)}, or x[mm], "
             "y[mm], z[mm]. The name of a machining program ends in .nc or .apt.",
@@ -102,15 +102,17 @@ def read_path(
         feed = table.quantity("feed", "m/s", allow_blank=True)
     if "rapid" in has and set(table.cells["rapid"]) <= {"0", "1", ""}:
         rapid = np.array([cell == "1" for cell in table.cells["rapid"]])
+    joints = None
     if by_joint:
-        if part is not None:
-            raise InputError("a path by joints lies in no frame", where=str(table.path))
         joints = np.column_stack(
             [
                 _column(table, name, kind)
                 for name, kind in zip(robot.actuated, robot.kinds, strict=True)
             ]
         )
+    if not by_place:
+        if part is not None:
+            raise InputError("a path by joints lies in no frame", where=str(table.path))
         return LoadedPath(loads, joints, None, None, table, feed, rapid)
     rotation = None
     if has & set(ANGLES):
@@ -119,7 +121,7 @@ def read_path(
     if part is not None:
         position = position @ part[:3, :3].T + part[:3, 3]
         rotation = None if rotation is None else part[:3, :3] @ rotation
-    return LoadedPath(loads, None, position, rotation, table, feed, rapid)
+    return LoadedPath(loads, joints, position, rotation, table, feed, rapid)
 
 
 def _loads(table: Table, constant: Array | None) -> Array:
@@ -170,9 +172,11 @@ def joints_along(
         progress: Called with (points done, points in all).
 
     Raises:
+        InputError: Joints and positions of one point do not agree; its line is named.
         Refusal: A point cannot be reached; its line is named.
     """
     if path.joints is not None:
+        _agree(path, arm)
         return path.joints
     if path.position is None:
         raise ValueError("a path has joints or positions")
@@ -192,6 +196,22 @@ def joints_along(
         if start is None
         else "Try another start pose, or none: then all branches are tried.",
     )
+
+
+def _agree(path: LoadedPath, arm: ElasticArm) -> None:
+    """Positions that stand beside joints, held against them."""
+    if path.joints is None or path.position is None:
+        return
+    away = np.linalg.norm(arm.kinematics(path.joints).position - path.position, axis=1)
+    worst = int(np.argmax(away))
+    if away[worst] > AGREE:
+        raise InputError(
+            f"the joints put {arm.frame} {1e3 * away[worst]:.3g} mm away from the position beside "
+            "them",
+            where=f"{path.table.path}, line {path.table.lines[worst]}",
+            remedy="Delete the columns that are not meant: the joints, or x, y, z (with roll, "
+            "pitch, yaw).",
+        )
 
 
 def _branches(

@@ -102,10 +102,6 @@ def test_what_remains_is_told(run: Run, tmp_path: Path) -> None:
         ("x,y[mm],z[mm],fx[N],fy[N],fz[N]\n1,2,3,1,2,3\n", "no unit"),
         ("x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n1,2,nan,1,2,3\n", "finite"),
         ("joint_1_s[deg],fx[N],fy[N],fz[N]\n1,2,1,2\n", "joint_2_l"),
-        (
-            "joint_1_s[deg],x[mm],fx[N],fy[N],fz[N]\n1,2,1,2,3\n",
-            "joints and by positions",
-        ),
     ],
 )
 def test_bad_paths_end_with_two(run: Run, tmp_path: Path, text: str, says: str) -> None:

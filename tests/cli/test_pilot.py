@@ -89,8 +89,33 @@ def test_what_cannot_be_begun_or_read(run, tmp_path: Path, monkeypatch) -> None:
     outcome = run("pilot", str(folder), "--type")
     assert outcome.code == 0 and outcome.stderr.count("Error:") == 2
     assert (folder / "readings.csv").read_text(encoding="utf-8") == before
-    (folder / "pilot.yaml").write_text("modell: x\n", encoding="utf-8")
-    assert run("pilot", str(folder)).code == 2
+    for text, said in (("modell: x", "'modell'"), ("model: x\nnoise: 10", "'10 um'")):
+        (folder / "pilot.yaml").write_text(f"{text}\n", encoding="utf-8")
+        outcome = run("pilot", str(folder))
+        assert outcome.code == 2 and said in outcome.stderr
+
+
+def test_a_reading_that_cannot_be_is_asked_about_before_it_counts(
+    run, tmp_path: Path, monkeypatch
+) -> None:
+    folder = tmp_path / "campaign"
+    assert begin(run, folder).code == 0
+    typed = "120,300,50 mm\nn\n14,-13,5 mm\n\n0.12,-0.3,0.2 mm\n90,1,1 mm\nyes\n\n"
+    monkeypatch.setattr(sys, "stdin", io.StringIO(typed))
+    outcome = run("pilot", str(folder), "--type")
+    assert outcome.code == 0, outcome.stderr
+    assert outcome.stderr.count("mm were expected") == 3
+    assert "After 1 reading\n" in outcome.stdout
+    read = read_measurements(folder / "readings.csv")
+    np.testing.assert_allclose(1e3 * read.displacement, [[0.12, -0.3, 0.2], [90, 1, 1]])
+    settings = folder / "pilot.yaml"
+    text = settings.read_text(encoding="utf-8")
+    text = text.replace("10 um", "20 um").replace("separate", "shared").replace("-60,", "-61,")
+    settings.write_text(text, encoding="utf-8")
+    outcome = run("pilot", str(folder))
+    assert outcome.code == 2
+    for said in ("noise 20 um and 10 um", "zero shared and separate", "-61,40,150 mm"):
+        assert said in outcome.stderr
 
 
 @pytest.mark.parametrize("words", [("--most", "0"), ("--target", "2 mm"), ("--point", "1 mm")])

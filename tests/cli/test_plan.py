@@ -113,6 +113,9 @@ def test_seeds_decide(run) -> None:
         (("--box", "1,1,1,0,0,0 m"), 2, "inside"),
         (("--lowest", "20 m"), 1, "Lower the floor"),
         (("--count", "5000"), 2, "candidates"),
+        (("--program", "way.txt"), 2, ".src (KUKA"),
+        (("--program", "way.nc"), 2, "joint values"),
+        (("--cell", "nowhere.yaml"), 2, "floor: -0.8 m"),
     ],
 )
 def test_bad_options(run, tmp_path: Path, options, code: int, hint: str) -> None:

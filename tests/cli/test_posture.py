@@ -96,6 +96,28 @@ def test_no_posture_is_an_explained_refusal(run: Run, path: str, tmp_path: Path)
     assert "margins" in found.stderr
 
 
+def test_its_path_is_taken_by_compensate(run: Run, path: str, tmp_path: Path) -> None:
+    """Joints are driven, and what stands beside them is held against them."""
+    best = tmp_path / "best.csv"
+    first = run("posture", MODEL, path, "--tool-axis", "0,0,-1", "--out", str(best))
+    for said in ("joint limits with 0 deg", "100 % of their effort", "no cell.yaml", "No floor"):
+        assert said in " ".join(first.stdout.split())
+    words = ("compensate", MODEL, str(best), "--out", str(tmp_path / "c.csv"))
+    found = run(*words, "--floor=-2 m", "--json")
+    assert found.code == 0, found.stderr
+    assert found.document["after_um"] < 1.0 < found.document["before_um"]
+    assumed = " ".join(found.document["assumed"])
+    assert "joints are driven" in assumed and "joint limits" in assumed
+    assert "No floor" not in assumed  # it was given
+    rows = best.read_text().splitlines()
+    x = rows[0].split(",").index("x[mm]")
+    cells = rows[2].split(",")
+    rows[2] = ",".join([*cells[:x], str(float(cells[x]) + 1.0), *cells[x + 1 :]])
+    best.write_text("\n".join(rows) + "\n")
+    refused = run(*words)
+    assert refused.code == 2 and "line 3" in refused.stderr and "1 mm away" in refused.stderr
+
+
 def test_rig_and_tracker_are_asked_of_measurements_alone(
     run: Run, path: str, tmp_path: Path
 ) -> None:
