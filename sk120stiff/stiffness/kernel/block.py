@@ -29,12 +29,12 @@ from sk120stiff.stiffness.kernel.layout import (
     DEFLECTION,
     EIGENVALUE,
     EIGENVECTOR,
-    FREE,
     LOAD,
     POSITION,
     ROTATION,
     SAFE,
     TENSOR,
+    Scratch,
     at,
 )
 from sk120stiff.stiffness.kernel.motion import (
@@ -73,27 +73,18 @@ class Outputs(NamedTuple):
 
 
 @entry
-def work(fold: Fold, a: Array, loads: Array, begin: int, end: int, out: Outputs) -> None:
+def work(
+    fold: Fold, a: Array, loads: Array, begin: int, end: int, out: Outputs, rows: Scratch
+) -> None:
     """Fill rows begin…end of the outputs.
 
     Args:
         fold: Constants of the mechanism.
         a: (N, n_a) coordinates.
         loads: (Q, 1, 6) loads at every pose, or (1, N, 6) one for each.
+        rows: Memory that no other thread uses.
     """
-    m, n, s = fold.kind.shape[0], fold.pose_map.shape[1], fold.soft.shape[0]
-    weighs = fold.mass.max() > 0.0
-    axes, levers, carried = FREE, FREE + 3 * m, FREE + 6 * m
-    pose = carried + 3 * m * weighs
-    bent = pose + n
-    K_g = bent + s * weighs
-    columns = K_g + s * (s + 1) // 2 * weighs
-    K_C = columns + 3 * n
-    skew = K_C + s * (s + 1) // 2
-    L = skew + s * (s - 1) // 2
-    y = L + s * (s + 1) // 2
-    x = np.zeros((y + 3 * s) * BLOCK)
-    A, B = np.empty((s, s)), np.empty((s, max(s, 4)))
+    s, x, A, B = fold.soft.shape[0], rows.x, rows.A, rows.B
     deflects = out.deflection_enhanced.size > 0
     principal = out.values.size + out.directions.size > 0
     stiffness = principal or deflects or out.compliance.size + out.stiffness_class.size > 0
@@ -101,80 +92,65 @@ def work(fold: Fold, a: Array, loads: Array, begin: int, end: int, out: Outputs)
     for first in range(begin, end, BLOCK):
         count = min(BLOCK, end - first)
         for i in range(fold.actuated):
-            row = at(pose + i)
+            row = at(rows.pose + i)
             for k in range(BLOCK):
                 x[row + k] = a[first + min(k, count - 1), i]
-        if weighs:
-            _hang(x, fold, pose, axes, levers, carried, bent, K_g, skew, L, y)
+        if fold.weighs:
+            _hang(fold, rows)
         else:
-            place_joints(x, fold, pose, axes, levers, carried, False)
-        turn_levers(x, fold, axes, levers)
-        columns_of_J(x, fold, levers, columns)
-        _store_motion(x, fold, first, count, axes, levers, columns, out)
-        if weighs and out.K_gravity.size:
-            for k in range(count):
-                complementary_of_pose(x, s, K_g, -1, k, out.K_gravity[first + k])
+            place_joints(fold, rows)
+        turn_levers(fold, rows)
+        columns_of_J(fold, rows)
+        _store_motion(fold, first, count, out, rows)
         for load in range(loads.shape[0]):
             force, moment = _load(x, loads, load, first, count)
-            complementary(x, fold, axes, levers, K_C, skew, force, moment)
+            complementary(fold, rows, rows.levers, rows.K_C, force, moment)
             if stability:
-                _store_complementary(x, fold, load, first, count, K_C, K_g, skew, A, B, out)
+                _store_complementary(fold, load, first, count, out, rows)
             if not stiffness:
                 continue
-            if weighs:
-                to, own = at(K_C), at(K_g)
+            if fold.weighs:
+                to, own = at(rows.K_C), at(rows.K_g)
                 for k in range(s * (s + 1) // 2 * BLOCK):
                     x[to + k] += x[own + k]
-            factorise(x, fold, K_C, L)
-            compliance(x, fold.soft, columns, L, y)
+            factorise(fold, rows, rows.K_C)
+            compliance(fold, rows)
             if deflects:
                 deflect(x)
             for k in range(count):
                 if moment or not x[SAFE * BLOCK + k] > SURE:
-                    complementary_of_pose(x, s, K_C, skew, k, A)
+                    complementary_of_pose(x, s, rows.K_C, rows.skew, k, A)
                     subtract_from_springs(fold, A)
-                    torques_of_pose(x, fold, axes, levers, k, B)
-                    solve_pose(x, fold.soft, columns, k, A, B)
+                    torques_of_pose(fold, rows, k, B)
+                    solve_pose(fold, rows, k, A, B)
             if principal:
                 eigen(x)
             _store_stiffness(x, load, first, count, out)
-            _store_definiteness(x, fold, load, first, count, K_C, A, out)
+            _store_definiteness(fold, load, first, count, out, rows)
 
 
 @part
-def _hang(
-    x: Array,
-    fold: Fold,
-    pose: int,
-    axes: int,
-    levers: int,
-    carried: int,
-    bent: int,
-    K_g: int,
-    skew: int,
-    L: int,
-    y: int,
-) -> None:
+def _hang(fold: Fold, rows: Scratch) -> None:
     """Let the block's poses sag under their own weight; rows K_g become its stiffness there.
 
     Where the springs cannot hold it, or Newton does not settle, nothing is a number.
     """
-    n, s = fold.pose_map.shape[1], fold.soft.shape[0]
-    start = at(pose + fold.actuated)
+    n, s, x = fold.pose_map.shape[1], fold.soft.shape[0], rows.x
+    start = at(rows.pose + fold.actuated)
     for k in range((n - fold.actuated) * BLOCK):
         x[start + k] = 0.0
-    start = at(bent)
+    start = at(rows.bent)
     for k in range(s * BLOCK):
         x[start + k] = 0.0
     for i in range(3):
         for k in range(BLOCK):
             x[(LOAD + i) * BLOCK + k] = fold.gravity[i]
     for _ in range(BENDS):
-        place_joints(x, fold, pose, axes, levers, carried, True)
-        carry(x, fold, axes, levers, carried)
-        complementary(x, fold, axes, carried, K_g, skew, True, False)
-        factorise(x, fold, K_g, L)
-        if sag(x, fold, pose, carried, bent, L, y) <= REST:
+        place_joints(fold, rows)
+        carry(fold, rows)
+        complementary(fold, rows, rows.carried, rows.K_g, True, False)
+        factorise(fold, rows, rows.K_g)
+        if sag(fold, rows) <= REST:
             break
     for k in range(BLOCK):
         if not x[CHANGE * BLOCK + k] <= REST or not x[SAFE * BLOCK + k] > 0.0:
@@ -198,10 +174,9 @@ def _load(x: Array, loads: Array, load: int, first: int, count: int) -> tuple[bo
 
 
 @part
-def _store_motion(
-    x: Array, fold: Fold, first: int, count: int, axes: int, levers: int, columns: int, out: Outputs
-) -> None:
-    """Placement, Jacobian, and how far the position Jacobian is from losing a direction."""
+def _store_motion(fold: Fold, first: int, count: int, out: Outputs, rows: Scratch) -> None:
+    """Placement, Jacobian, how far that is from losing a direction, and K_C of the weight."""
+    x, axes, levers, s = rows.x, rows.axes, rows.levers, fold.soft.shape[0]
     if out.position.size:
         for k in range(count):
             for i in range(3):
@@ -229,13 +204,19 @@ def _store_motion(
                 for k in range(BLOCK):
                     x[row + k] = 0.0
                 for z in range(fold.actuated):
-                    f, g = at(columns + 3 * z + i), at(columns + 3 * z + j)
+                    f, g = at(rows.columns + 3 * z + i), at(rows.columns + 3 * z + j)
                     for k in range(BLOCK):
                         x[row + k] += x[f + k] * x[g + k]
         eigen(x)
         for k in range(count):
             large, small = x[EIGENVALUE * BLOCK + k], x[(EIGENVALUE + 2) * BLOCK + k]
             out.condition[first + k] = math.sqrt(max(small, 0.0) / large) if large > 0.0 else 0.0
+    if fold.weighs and out.K_gravity.size:
+        for k in range(count):
+            complementary_of_pose(x, s, rows.K_g, -1, k, rows.A)
+            for i in range(s):
+                for j in range(s):
+                    out.K_gravity[first + k, i, j] = rows.A[i, j]
 
 
 @part
@@ -262,68 +243,57 @@ def _store_stiffness(x: Array, load: int, first: int, count: int, out: Outputs) 
 
 @part
 def _store_definiteness(
-    x: Array, fold: Fold, load: int, first: int, count: int, K_C: int, A: Array, out: Outputs
+    fold: Fold, load: int, first: int, count: int, out: Outputs, rows: Scratch
 ) -> None:
     """Class of K, and the deflection where the balance holds."""
     deflects = out.deflection_enhanced.size > 0
     for k in range(count if deflects or out.stiffness_class.size else 0):
-        found = _class_of(x, fold, k, K_C, A)
+        found = _class_of(fold, rows, k)
         if out.stiffness_class.size:
             out.stiffness_class[load, first + k] = found
         if deflects:
             for i in range(3):
-                moved = x[(DEFLECTION + i) * BLOCK + k]
+                moved = rows.x[(DEFLECTION + i) * BLOCK + k]
                 out.deflection_enhanced[load, first + k, i] = moved if found == PD else math.nan
 
 
 @part
-def _class_of(x: Array, fold: Fold, pose: int, K_C: int, A: Array) -> int:
+def _class_of(fold: Fold, rows: Scratch, pose: int) -> int:
     """Class of K at one pose of the block; rows K_C hold all that is taken from K_θ."""
-    low, high, element = np.inf, 0.0, -1
+    x, low, high, element = rows.x, np.inf, 0.0, -1
     for i in range(fold.soft.shape[0]):
         element += i + 1
-        diagonal = fold.springs[element] - x[at(K_C + element) + pose]
+        diagonal = fold.springs[element] - x[at(rows.K_C + element) + pose]
         low, high = min(low, diagonal), max(high, diagonal)
     if x[SAFE * BLOCK + pose] > SURE and low > SPAN * high:
         return PD
-    complementary_of_pose(x, fold.soft.shape[0], K_C, -1, pose, A)
-    subtract_from_springs(fold, A)
-    return int(classify(A))
+    complementary_of_pose(x, fold.soft.shape[0], rows.K_C, -1, pose, rows.A)
+    subtract_from_springs(fold, rows.A)
+    return int(classify(rows.A))
 
 
 @part
 def _store_complementary(
-    x: Array,
-    fold: Fold,
-    load: int,
-    first: int,
-    count: int,
-    K_C: int,
-    K_g: int,
-    skew: int,
-    A: Array,
-    B: Array,
-    out: Outputs,
+    fold: Fold, load: int, first: int, count: int, out: Outputs, rows: Scratch
 ) -> None:
     """K_C, its class, and the factor on the load at which stability is lost."""
-    s = fold.soft.shape[0]
-    weighs = fold.mass.max() > 0.0
-    own = np.empty((s, s))
+    s, x, A, own = fold.soft.shape[0], rows.x, rows.A, rows.own
     for k in range(count):
         if out.K_C.size:
-            complementary_of_pose(x, s, K_C, skew, k, A)
-            out.K_C[load, first + k] = A
-        if not (out.complementary_class.size or out.critical.size):
-            continue
-        stands = True
-        if weighs and out.critical.size:
-            complementary_of_pose(x, s, K_g, -1, k, own)
-            subtract_from_springs(fold, own)
-            stands = whitener_of(own)
-        complementary_of_pose(x, s, K_C, -1, k, A)
+            complementary_of_pose(x, s, rows.K_C, rows.skew, k, A)
+            for i in range(s):
+                for j in range(s):
+                    out.K_C[load, first + k, i, j] = A[i, j]
+        complementary_of_pose(x, s, rows.K_C, -1, k, A)
         if out.critical.size:
-            whitener = own if weighs else fold.whitener
-            factor = _critical(whitener, A, B[:, :s]) if stands else 0.0
+            factor = 0.0
+            if not fold.weighs:
+                factor = _critical(fold.whitener, A, rows.B)
+            else:
+                complementary_of_pose(x, s, rows.K_g, -1, k, own)
+                subtract_from_springs(fold, own)
+                if whitener_of(own):
+                    factor = _critical(own, A, rows.B)
             out.critical[load, first + k] = factor
         if out.complementary_class.size:
             out.complementary_class[load, first + k] = classify(A)
@@ -342,7 +312,7 @@ def _critical(whitener: Array, K_C: Array, B: Array) -> float:
                     inner += K_C[p, q] * whitener[j, q]
                 total += whitener[i, p] * inner
             B[i, j] = B[j, i] = total
-    jacobi(B)
+    jacobi(B, s)
     largest, size = B[0, 0], 0.0
     for i in range(s):
         largest, size = max(largest, B[i, i]), max(size, abs(B[i, i]))

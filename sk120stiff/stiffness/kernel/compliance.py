@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Integers
+from sk120stiff.arrays import Array
 from sk120stiff.stiffness.kernel.compiled import part
 from sk120stiff.stiffness.kernel.folding import Fold
 from sk120stiff.stiffness.kernel.layout import (
@@ -18,20 +18,21 @@ from sk120stiff.stiffness.kernel.layout import (
     SAFE,
     TENSOR,
     TURNED,
+    Scratch,
     at,
 )
 
 
 @part
 def complementary(
-    x: Array, fold: Fold, axes: int, levers: int, K_C: int, skew: int, force: bool, moment: bool
+    fold: Fold, rows: Scratch, levers: int, K_C: int, force: bool, moment: bool
 ) -> None:
     """Rows of K_C: the lower triangle of its symmetric part, and the strictly lower skew part.
 
     Each pair of joints, the first nearer to the base, has F·(w_1 × v_2) in both of its elements of
     K_C and M·(w_1 × w_2) in the lower one, half of which is symmetric.
     """
-    s = fold.soft.shape[0]
+    s, x, axes, skew = fold.soft.shape[0], rows.x, rows.axes, rows.skew
     start, skew_start = at(K_C), at(skew)
     for k in range(s * (s + 1) // 2 * BLOCK):
         x[start + k] = 0.0
@@ -80,13 +81,13 @@ def _turn(x: Array, which: int, scale: float, w: int) -> None:
 
 
 @part
-def factorise(x: Array, fold: Fold, K_C: int, L: int) -> None:
+def factorise(fold: Fold, rows: Scratch, K_C: int) -> None:
     """L D Lᵀ = K_θ − K_C (symmetric part) in rows L, D on the diagonal, without exchanges.
 
     Row SAFE becomes Π d_k / K_kk, the determinant of K_θ − K_C scaled to a unit diagonal, or -1
     where a pivot is not positive: such poses are solved again with exchanges.
     """
-    s = fold.soft.shape[0]
+    s, x, L = fold.soft.shape[0], rows.x, rows.L
     for element in range(s * (s + 1) // 2):
         source, target, spring = at(K_C + element), at(L + element), fold.springs[element]
         for k in range(BLOCK):
@@ -116,13 +117,13 @@ def factorise(x: Array, fold: Fold, K_C: int, L: int) -> None:
 
 
 @part
-def compliance(x: Array, soft: Integers, columns: int, L: int, y: int) -> None:
+def compliance(fold: Fold, rows: Scratch) -> None:
     """Rows TENSOR of C = J K⁻¹ Jᵀ = Σ_k y_k y_kᵀ / d_k with L y = Jᵀ."""
-    s = soft.shape[0]
+    s, x, L, y = fold.soft.shape[0], rows.x, rows.L, rows.y
     for k in range(TENSOR * BLOCK, (TENSOR + 9) * BLOCK):
         x[k] = 0.0
     for i in range(s):
-        own, column = at(y + 3 * i), at(columns + 3 * soft[i])
+        own, column = at(y + 3 * i), at(rows.columns + 3 * fold.soft[i])
         for k in range(3 * BLOCK):
             x[own + k] = x[column + k]
         for j in range(i):
@@ -210,8 +211,9 @@ def deflect(x: Array) -> None:
 
 
 @part
-def torques_of_pose(x: Array, fold: Fold, axes: int, levers: int, pose: int, b: Array) -> None:
+def torques_of_pose(fold: Fold, rows: Scratch, pose: int, b: Array) -> None:
     """Last column of b (s, 4): torques of the load on the soft coordinates, Jᵀ W."""
+    x, axes, levers = rows.x, rows.axes, rows.levers
     for i in range(fold.soft.shape[0]):
         total = 0.0
         for joint in range(fold.kind.shape[0]):
@@ -225,15 +227,15 @@ def torques_of_pose(x: Array, fold: Fold, axes: int, levers: int, pose: int, b: 
 
 
 @part
-def solve_pose(x: Array, soft: Integers, columns: int, pose: int, A: Array, b: Array) -> None:
+def solve_pose(fold: Fold, rows: Scratch, pose: int, A: Array, b: Array) -> None:
     """Rows TENSOR and DEFLECTION of one pose by Gaussian elimination with exchanges.
 
     A is K and b (s, 4) holds the torques of the load in its last column; NaN where A is singular.
     """
-    s = soft.shape[0]
+    s, x = fold.soft.shape[0], rows.x
     for i in range(s):
         for c in range(3):
-            b[i, c] = x[at(columns + 3 * soft[i] + c) + pose]
+            b[i, c] = x[at(rows.columns + 3 * fold.soft[i] + c) + pose]
     for c in range(s):
         best = c
         for i in range(c + 1, s):
@@ -266,6 +268,6 @@ def solve_pose(x: Array, soft: Integers, columns: int, pose: int, A: Array, b: A
         for c in range(4):
             value = 0.0
             for i in range(s):
-                value += x[at(columns + 3 * soft[i] + r) + pose] * b[i, c]
+                value += x[at(rows.columns + 3 * fold.soft[i] + r) + pose] * b[i, c]
             row = TENSOR + 3 * r + c if c < 3 else DEFLECTION + r
             x[row * BLOCK + pose] = value

@@ -111,9 +111,8 @@ def _form(
 
 
 @part
-def jacobi(A: Array) -> None:
+def jacobi(A: Array, s: int) -> None:
     """Diagonalise a symmetric A (s, s) in place by Jacobi's rotations; its diagonal remains."""
-    s = A.shape[0]
     for _ in range(SWEEPS):
         off, size = 0.0, 0.0
         for i in range(s):
@@ -135,7 +134,7 @@ def jacobi(A: Array) -> None:
                 A[q, q] += change
                 A[p, q] = A[q, p] = 0.0
                 for i in range(s):
-                    if i not in (p, q):
+                    if i != p and i != q:
                         f, g = A[i, p], A[i, q]
                         A[i, p] = A[p, i] = c * f - sine * g
                         A[i, q] = A[q, i] = sine * f + c * g
@@ -161,7 +160,7 @@ def classify(A: Array) -> int:
             root = math.sqrt(half * half + A[i, j] * A[i, j])
             if mean + root > size and mean - root < -size:
                 return ID
-    jacobi(A)
+    jacobi(A, s)
     size = 0.0
     for i in range(s):
         size = max(size, abs(A[i, i]))

@@ -37,7 +37,8 @@ class Fold(NamedTuple):
             joints, q = Σ factor · z.
         mass, centre: (m,) mass that each joint carries [kg], and (m, 3) its centre in the folded
             frame [m].
-        gravity: (3,) acceleration [m/s²]; zero where nothing weighs.
+        weighs: Does the arm sag under its own weight?
+        gravity: (3,) acceleration [m/s²].
         soft: (s,) coordinates with a finite spring.
         springs: (s(s+1)/2,) lower triangle of their K_θ by rows.
         whitener: (s, s) L⁻¹ with L Lᵀ = K_θ.
@@ -64,6 +65,7 @@ class Fold(NamedTuple):
     column_factor: Array
     mass: Array
     centre: Array
+    weighs: bool
     gravity: Array
     soft: Integers
     springs: Array
@@ -124,9 +126,10 @@ def fold(
         column_joint=joints.astype(np.int64),
         column_coordinate=coordinates.astype(np.int64),
         column_factor=to_joints[joints, coordinates],
-        mass=chain.masses if weighs else np.zeros(chain.m),
+        mass=chain.masses,
         centre=frames.centre,
-        gravity=np.asarray(gravity, dtype=float) if weighs else np.zeros(3),
+        weighs=weighs,
+        gravity=np.zeros(3) if gravity is None else np.asarray(gravity, dtype=float),
         soft=np.asarray(soft, dtype=np.int64),
         springs=K_theta[np.tril_indices(len(soft))],
         whitener=np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(K_theta))),

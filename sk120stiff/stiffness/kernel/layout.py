@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
+from sk120stiff.arrays import Array
 from sk120stiff.stiffness.kernel.compiled import part
+from sk120stiff.stiffness.kernel.folding import Fold
 
 BLOCK = 256
 
@@ -28,3 +34,50 @@ FREE = 55  # rows whose number depends on the robot begin here
 def at(row: int) -> int:
     """Where a row begins. The mask tells the compiler that this is never negative."""
     return (row * BLOCK) & 0x7FFFFFFF
+
+
+class Scratch(NamedTuple):
+    """Memory of one thread, and where its rows begin whose number depends on the robot.
+
+    Attributes:
+        x: All rows of a block.
+        A, own, B: (s, s), (s, s) and (s, max(s, 4)) of one pose.
+        axes, levers, carried: 3 rows for each joint.
+        pose: A row for each coordinate.
+        bent: A row for each soft coordinate of an arm that weighs.
+        columns: 3 rows for each column of J.
+        K_g, K_C, L: Lower triangles of matrices of the soft coordinates.
+        skew: Strictly lower triangle of the skew part of K_C.
+        y: 3 rows for each soft coordinate.
+    """
+
+    x: Array
+    A: Array
+    own: Array
+    B: Array
+    axes: int
+    levers: int
+    carried: int
+    pose: int
+    bent: int
+    columns: int
+    K_g: int
+    K_C: int
+    L: int
+    skew: int
+    y: int
+
+
+def scratch(fold: Fold) -> Scratch:
+    """Memory for poses of a fold."""
+    m, n, s = len(fold.kind), fold.pose_map.shape[1], len(fold.soft)
+    triangle, w = s * (s + 1) // 2, int(fold.weighs)
+    sizes = (3 * m, 3 * m, 3 * m * w, n, s * w, 3 * n, triangle * w, triangle, triangle)
+    begins = np.cumsum([FREE, *sizes, triangle - s, 3 * s]).tolist()
+    return Scratch(
+        np.zeros(begins[-1] * BLOCK),
+        np.empty((s, s)),
+        np.empty((s, s)),
+        np.empty((s, max(s, 4))),
+        *begins[:-1],
+    )

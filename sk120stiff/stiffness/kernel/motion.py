@@ -17,6 +17,7 @@ from sk120stiff.stiffness.kernel.layout import (
     SINE,
     TURNED,
     VALUE,
+    Scratch,
     at,
 )
 
@@ -56,18 +57,16 @@ def sine_cosine(x: Array, offset: float) -> None:
 
 
 @part
-def place_joints(
-    x: Array, fold: Fold, pose: int, axes: int, levers: int, moments: int, weighs: bool
-) -> None:
+def place_joints(fold: Fold, rows: Scratch) -> None:
     """Joint axes (rows `axes`), joint origins (rows `levers`), and the position of the point.
 
     A joint that slides has no angular axis: its direction stands in rows `levers` at once.
 
     Frames are chosen so that every joint turns or slides along its z, and the way to the next is a
-    shift and a turn about x: only two columns of the rotation change at a time. Rows `moments`
+    shift and a turn about x: only two columns of the rotation change at a time. Rows `carried`
     become mass times centre of what each joint carries.
     """
-    m = fold.kind.shape[0]
+    m, x, pose, axes, levers = fold.kind.shape[0], rows.x, rows.pose, rows.axes, rows.levers
     for i in range(9):
         entry = fold.start[i]
         for k in range(BLOCK):
@@ -78,7 +77,7 @@ def place_joints(
         value = fold.value[joint]
         for k in range(BLOCK):
             x[VALUE * BLOCK + k] = value
-        for i in range(fold.pose_map.shape[1] if weighs else fold.actuated):
+        for i in range(fold.pose_map.shape[1] if fold.weighs else fold.actuated):
             factor = fold.pose_map[joint, i]
             if factor != 0.0:
                 a = at(pose + i)
@@ -118,10 +117,10 @@ def place_joints(
             for k in range(3 * BLOCK):
                 x[o + k] = x[w + k]
                 x[w + k] = 0.0
-        if weighs:
+        if fold.weighs:
             mass = fold.mass[joint]
             _go(x, fold.centre[joint, 0], fold.centre[joint, 1], fold.centre[joint, 2])
-            to = at(moments + 3 * joint)
+            to = at(rows.carried + 3 * joint)
             for k in range(3 * BLOCK):
                 x[to + k] = mass * x[TURNED * BLOCK + k]
     _go(x, fold.shift[m, 0], fold.shift[m, 1], fold.shift[m, 2])
@@ -140,8 +139,9 @@ def _go(x: Array, tx: float, ty: float, tz: float) -> None:
 
 
 @part
-def turn_levers(x: Array, fold: Fold, axes: int, levers: int) -> None:
+def turn_levers(fold: Fold, rows: Scratch) -> None:
     """Rows `levers` from joint origins to v_k = w_k × (point − origin_k)."""
+    x, axes, levers = rows.x, rows.axes, rows.levers
     for joint in range(fold.kind.shape[0]):
         if fold.slides[joint]:
             continue
@@ -157,14 +157,15 @@ def turn_levers(x: Array, fold: Fold, axes: int, levers: int) -> None:
 
 
 @part
-def carry(x: Array, fold: Fold, axes: int, levers: int, moments: int) -> None:
-    """Rows `moments` become what each joint carries: w × Σ m (c − o), or axis · Σ m for a slide."""
+def carry(fold: Fold, rows: Scratch) -> None:
+    """Rows `carried`: w × Σ m (c − o) of all that the joint carries, or axis · Σ m for a slide."""
+    x, axes, levers = rows.x, rows.axes, rows.levers
     for k in range(3 * BLOCK):
         x[TURNED * BLOCK + k] = 0.0
     total = 0.0
     for joint in range(fold.mass.shape[0] - 1, -1, -1):
         total += fold.mass[joint]
-        w, o, own = at(axes + 3 * joint), at(levers + 3 * joint), at(moments + 3 * joint)
+        w, o, own = at(axes + 3 * joint), at(levers + 3 * joint), at(rows.carried + 3 * joint)
         for k in range(3 * BLOCK):
             x[TURNED * BLOCK + k] += x[own + k]
         if fold.slides[joint]:
@@ -182,14 +183,21 @@ def carry(x: Array, fold: Fold, axes: int, levers: int, moments: int) -> None:
 
 
 @part
-def sag(x: Array, fold: Fold, pose: int, carried: int, bent: int, L: int, y: int) -> float:
+def sag(fold: Fold, rows: Scratch) -> float:
     """One step of Newton towards rest under the weight, K_θ δ = τ_g(z₀ + δ); the largest change.
 
     Rows `bent` hold δ, rows L the factors of K_θ − K_g, rows `carried` what the joints carry. Where
     K_θ − K_g is not positive definite the arm falls, and its coordinates become NaN.
     """
     gx, gy, gz = fold.gravity[0], fold.gravity[1], fold.gravity[2]
-    s = fold.soft.shape[0]
+    s, x, carried, bent, L, y = (
+        fold.soft.shape[0],
+        rows.x,
+        rows.carried,
+        rows.bent,
+        rows.L,
+        rows.y,
+    )
     for i in range(s):
         to = at(y + i)
         for k in range(BLOCK):
@@ -224,7 +232,7 @@ def sag(x: Array, fold: Fold, pose: int, carried: int, bent: int, L: int, y: int
         for k in range(BLOCK):
             x[CHANGE * BLOCK + k] = max(x[CHANGE * BLOCK + k], abs(x[to + k]))
     for i in range(s):
-        z, own, step = at(pose + fold.soft[i]), at(bent + i), at(y + i)
+        z, own, step = at(rows.pose + fold.soft[i]), at(bent + i), at(y + i)
         for k in range(BLOCK):
             change = x[step + k] * min(1.0, LONGEST_STEP / max(x[CHANGE * BLOCK + k], 1e-300))
             change = change if x[SAFE * BLOCK + k] > 0.0 else math.nan
@@ -239,8 +247,9 @@ def sag(x: Array, fold: Fold, pose: int, carried: int, bent: int, L: int, y: int
 
 
 @part
-def columns_of_J(x: Array, fold: Fold, levers: int, columns: int) -> None:
+def columns_of_J(fold: Fold, rows: Scratch) -> None:
     """Linear part of every column of J, 3 rows each."""
+    x, levers, columns = rows.x, rows.levers, rows.columns
     start = at(columns)
     for k in range(3 * fold.pose_map.shape[1] * BLOCK):
         x[start + k] = 0.0

@@ -25,7 +25,7 @@ logger = logging.getLogger(__name__)
 LARGEST_ANGLE = 1e5  # rad; beyond it sine and cosine lose digits
 PIECE = 16384  # poses that a thread takes at a time
 PATIENCE = 0.5  # seconds after which the preparation is announced
-_READY: list[Any] = []  # the compiled function and the type of its outputs, once they are loaded
+_READY: list[Any] = []  # the compiled function, its outputs and its memory, once they are loaded
 
 
 def run(
@@ -49,19 +49,18 @@ def run(
             (*batch, *own) if name in want else (0,) * (len(batch) + len(own)),
             dtype=np.uint8 if name.endswith("_class") else float,
         )
-    work, out = _kernel(folded, poses, loads, arrays)
+    work, out, scratch = _kernel(folded, poses, loads, arrays)
+
+    def stretch(begin: int, end: int) -> None:
+        work(folded, poses, loads, begin, end, out, scratch(folded))
+
     cores = threads or available_cores()
-    pieces = range(0, count, PIECE)
-    if cores == 1 or len(pieces) == 1:
-        work(folded, poses, loads, 0, count, out)
+    if cores == 1 or count <= PIECE:
+        stretch(0, count)
     else:
+        ends = [*range(PIECE, count, PIECE), count]
         with ThreadPoolExecutor(cores) as pool:
-            done = [
-                pool.submit(work, folded, poses, loads, begin, min(begin + PIECE, count), out)
-                for begin in pieces
-            ]
-            for one in done:
-                one.result()
+            list(pool.map(stretch, range(0, count, PIECE), ends))
     single = wrench.ndim < 3
     return {name: arrays[name][0] if single and name in BY_LOAD else arrays[name] for name in want}
 
@@ -101,18 +100,20 @@ def _check_angles(folded: Fold, poses: Array) -> None:
 
 def _kernel(
     folded: Fold, poses: Array, loads: Array, arrays: dict[str, Any]
-) -> tuple[Callable[..., None], Any]:
-    """The compiled function and its outputs; the first call in a process loads or compiles it."""
+) -> tuple[Callable[..., None], Any, Callable[[Fold], Any]]:
+    """The compiled function, its outputs and its memory; a first call loads or compiles it."""
     if _READY:
-        work, outputs = _READY
-        return work, outputs(**arrays)
+        work, outputs, scratch = _READY
+        return work, outputs(**arrays), scratch
     with announced():
         from sk120stiff.stiffness.kernel.block import Outputs, work
+        from sk120stiff.stiffness.kernel.layout import scratch
 
         out = Outputs(**arrays)
-        work(folded, poses, loads, 0, 0, out)  # nothing to do but to be compiled or loaded
-        _READY[:] = [work, Outputs]
-    return work, out
+        # nothing to do but to be compiled or loaded
+        work(folded, poses, loads, 0, 0, out, scratch(folded))
+        _READY[:] = [work, Outputs, scratch]
+    return work, out, scratch
 
 
 @contextmanager
