@@ -13,7 +13,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ConstantCompliance, ElasticLaw, Weight, symmetric_part
-from sk120stiff.stiffness.kernel.folding import Fold
+from sk120stiff.stiffness.kernel.folding import Fold, fold
 
 PROBES = 16  # random poses at which the compliance is compared
 
@@ -40,10 +40,14 @@ class ModelCompliance:
         """See `Compliant`."""
         return self.model.assembly.soft(self.model.values)
 
-    @property
+    @cached_property
     def fold(self) -> Fold | None:
         """See `Compliant`."""
-        return None if self.constant is None else self.constant.fold
+        if self.constant is not None:
+            return self.constant.fold
+        weight = self.weight_at(self.model.robot.rest[None])
+        gravity = None if weight is None else weight.gravity
+        return fold(self.mechanism, self.soft, None, self.point, np.zeros(0), gravity)
 
     @cached_property
     def constant(self) -> ConstantCompliance | None:

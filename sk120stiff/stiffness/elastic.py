@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
-from sk120stiff.robot import LinearCoupling, Mechanism, Robot
+from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness.complementary import symmetric_part
 from sk120stiff.stiffness.equilibrium import ElasticLaw, Weight
 from sk120stiff.stiffness.kernel.folding import Fold, fold
@@ -135,10 +135,9 @@ class ConstantCompliance:
 
     @cached_property
     def fold(self) -> Fold | None:
-        """See `Compliant`: linear couplings, and compliances that springs can make."""
-        coupling = self.mechanism.elastic or self.mechanism.coupling
+        """See `Compliant`: compliances that springs can make."""
         K_theta = stiffness_of(self.compliance)[np.ix_(self.soft, self.soft)]
-        if not isinstance(coupling, LinearCoupling) or not are_springs(K_theta):
+        if not are_springs(K_theta):
             return None
         return fold(self.mechanism, self.soft, K_theta, self.point, self.shift, self.gravity)
 

@@ -33,7 +33,7 @@ def on_arrays(
     wanted = set(want)
     batch, rows = a.shape[:-1], a.reshape(-1, a.shape[-1])
     soft, weight = arm.soft, arm.weight_at(rows)
-    z = _hanging(arm, rows).reshape(*batch, -1)
+    z = hanging(arm, rows).reshape(*batch, -1)
     screws = arm.mechanism.screws(z, arm.point)
     C = arm.compliance_at(rows)
     if C.ndim > 2:
@@ -86,7 +86,7 @@ def on_arrays(
     return {name: found[name] for name in want}
 
 
-def _hanging(arm: Compliant, rows: Array) -> Array:
+def hanging(arm: Compliant, rows: Array) -> Array:
     """(N, n) coordinates before the load, bent by the arm's own weight."""
     z_0, weight = arm.start(rows), arm.weight_at(rows)
     if weight is None:

@@ -8,14 +8,14 @@ elastic energy minus the work of all loads::
     C_X = J K⁻¹ Jᵀ = J (I − C (K_C + K_g))⁻¹ C Jᵀ,        d = J K⁻¹ Jᵀ W.
 
 The second form needs no K_θ: rigid coordinates have zeros in C and take no special treatment.
-Very many poses of an arm with constant springs go through the compiled kernel; it fills the same
-result with the same numbers.
+Very many poses go through the compiled kernel, which fills the same result with the same numbers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,13 +23,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
+from sk120stiff.stiffness.complementary import symmetric_part
 from sk120stiff.stiffness.elastic import Compliant
+from sk120stiff.stiffness.kernel.folding import Fold, given
 from sk120stiff.stiffness.kernel.run import compiles, run
-from sk120stiff.stiffness.on_arrays import on_arrays
+from sk120stiff.stiffness.on_arrays import hanging, on_arrays
 from sk120stiff.stiffness.principal import CLASSES, Definiteness, Principal, principal_compliance
 from sk120stiff.stiffness.quantities import BY_LOAD, COMPILED, QUANTITIES, shape_of
 
-BLOCK = 4096  # poses worked on together on NumPy arrays
+Wanted = Collection[str]
+Road = Callable[[Compliant, Array, Array, Wanted], dict[str, NDArray[Any]]]
+BLOCK = 4096  # poses worked on together where NumPy has a part in it
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +166,8 @@ def under_load(
     Raises:
         InputError: Shapes do not fit, a number is not finite, or there is no such quantity.
         Refusal: An exact equilibrium was asked for and does not exist; or the springs do not hold
-            the arm's own weight (many poses go through the kernel, which gives NaN there).
+            the arm's own weight (at many poses, an arm with constant springs and no closed loops
+            gives NaN there).
     """
     unknown = set(want) - set(QUANTITIES)
     if unknown:
@@ -175,20 +180,40 @@ def under_load(
     many = poses.ndim == 2 and load.ndim < 4
     many = many and (load.ndim < 2 or load.shape[-2] in (1, len(poses)))
     folded = arm.fold if many and COMPILED.issuperset(want) else None
+    road: Road = on_arrays
     if folded is not None and compiles():
-        found = run(folded, poses, load, frozenset(want), threads)
-        return UnderLoad(soft=folded.soft, **found)
+        if not folded.given:
+            found = run(folded, poses, load, frozenset(want), threads)
+            return UnderLoad(soft=folded.soft, **found)
+        road = partial(_with_given_motion, folded, threads)
     if poses.ndim == 2 and len(poses) > BLOCK:
-        return UnderLoad(soft=arm.soft, **_in_blocks(arm, poses, load, want))
-    return UnderLoad(soft=arm.soft, **on_arrays(arm, poses, load, want))
+        return UnderLoad(soft=arm.soft, **_in_blocks(road, arm, poses, load, want))
+    return UnderLoad(soft=arm.soft, **road(arm, poses, load, want))
+
+
+def _with_given_motion(
+    folded: Fold, threads: int | None, arm: Compliant, poses: Array, load: Array, want: Wanted
+) -> dict[str, NDArray[Any]]:
+    """The kernel, after NumPy closed the loops, let the arm hang and evaluated its springs."""
+    motion = (arm.mechanism.elastic or arm.mechanism.coupling).motion(hanging(arm, poses))
+    block = (..., folded.soft[:, None], folded.soft)
+    K_theta = np.zeros((0, len(folded.soft), len(folded.soft)))
+    C = arm.compliance_at(poses)[block]
+    if C.ndim > 2:
+        if np.linalg.eigvalsh(symmetric_part(C)).min(initial=np.inf) <= 0.0:
+            return on_arrays(arm, poses, load, want)  # no springs make such a compliance
+        K_theta = np.asarray(np.linalg.inv(symmetric_part(C)))
+    more = given(folded, arm.mechanism, motion, K_theta)
+    q = np.ascontiguousarray(motion.q[:, arm.mechanism.chain.coordinates])
+    return run(folded, q, load, frozenset(want), threads, more)
 
 
 def _in_blocks(
-    arm: Compliant, poses: Array, load: Array, want: Collection[str]
+    road: Road, arm: Compliant, poses: Array, load: Array, want: Wanted
 ) -> dict[str, NDArray[Any]]:
     each = load.ndim > 1 and load.shape[-2] > 1  # a load of its own for every pose
     parts = [
-        on_arrays(
+        road(
             arm,
             poses[k : k + BLOCK],
             load[..., k : k + BLOCK, :] if each else load,

@@ -64,8 +64,8 @@ class ElasticArm:
 
     @property
     def compiled(self) -> bool:
-        """Does the compiled kernel follow it? Else poses are some fifty times slower."""
-        return self.elastic.fold is not None
+        """Does the compiled kernel do it all? Else poses are several times slower."""
+        return self.elastic.fold is not None and not self.elastic.fold.given
 
     @cached_property
     def _rigid(self) -> ConstantCompliance:

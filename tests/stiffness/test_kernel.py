@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,18 +18,24 @@ import pytest
 from numpy.typing import NDArray
 
 import sk120stiff
+from sk120stiff.effects import effect
 from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.model import joint_spring_model, model_compliance
 from sk120stiff.robot import Mechanism, Robot, VirtualJoint, load_robot
+from sk120stiff.robot.loops.coupling import LoopCoupling
 from sk120stiff.stiffness import (
     CLASSES,
     COMPILED,
+    Compliant,
     ConstantCompliance,
+    UnderLoad,
     under_load,
 )
 from sk120stiff.stiffness.kernel import run
 from sk120stiff.stiffness.kernel.run import announced
 from sk120stiff.stiffness.on_arrays import on_arrays
 from tests.oracles.sample_urdfs import mimic_tree, six_axis_arm
+from tests.robot.loop_arms import cylinder, four_bar, sk120_loop
 
 Array = NDArray[np.float64]
 FORCE = np.array([310.0, -220.0, 430.0, 0.0, 0.0, 0.0])
@@ -139,16 +146,26 @@ def arms(robot: Robot) -> dict[str, ConstantCompliance]:
                                   "heavy, tied"])  # fmt: skip
 def test_the_kernel_gives_what_the_formulas_on_arrays_give(robot: Robot, kind: str) -> None:
     """All that it computes, for loads that the arm holds, loads beyond, and none."""
-    arm, a = arms(robot)[kind], poses(robot, 203)
+    arm = arms(robot)[kind]
+    found = agreeing(arm, poses(robot, 203))
+    if kind == "springs":
+        assert (found.of("stiffness_class")[:2] == 0).all()
+        assert (found.of("stiffness_class")[2] == CLASSES.index("indefinite")).any()
+    if kind == "heavy" and robot.total_mass > 0.0 and robot.name != "motoman_sk120":
+        assert found.of("K_gravity").any()
+
+
+def agreeing(arm: Compliant, a: Array) -> UnderLoad:
+    """What the kernel gives, after it was held against NumPy."""
     loads = np.array([[FORCE], [WRENCH], [3e3 * FORCE], [3e3 * WRENCH], [np.zeros(6)]])
     assert arm.fold is not None
     found, expected = under_load(arm, a, loads, COMPILED), on_arrays(arm, a, loads, COMPILED)
     soft = arm.soft
-    K_theta = np.linalg.inv(arm.compliance[np.ix_(soft, soft)])
+    K_theta = np.linalg.inv(arm.compliance_at(a)[..., soft[:, None], soft])
     K = K_theta - expected["K_gravity"] - expected["K_C"]
     reach = np.linalg.norm(expected["jacobian"][:, :3], axis=(-2, -1))
     inverse = np.linalg.norm(np.linalg.inv(K), axis=(-2, -1))
-    parts = np.linalg.norm(K_theta) + np.linalg.norm(K - K_theta, axis=(-2, -1))
+    parts = np.linalg.norm(K_theta, axis=(-2, -1)) + np.linalg.norm(K - K_theta, axis=(-2, -1))
     rounding = 1e-15 * (100.0 + parts * inverse) * reach**2 * inverse  # (Q, N) of a compliance
     force = np.abs(loads).max(axis=-1)
     for name, value in expected.items():
@@ -169,7 +186,7 @@ def test_the_kernel_gives_what_the_formulas_on_arrays_give(robot: Robot, kind: s
         elif name == "directions":
             gaps = -np.diff(1.0 / expected["values"], axis=-1)
             clear = (gaps > 1e10 * rounding[..., None]).all(axis=-1)
-            assert clear[-1].any() or robot.n < 3
+            assert clear[-1].any() or len(soft) < 3
             along = np.abs((ours * value).sum(-1))[clear]
             np.testing.assert_allclose(along, 1.0, atol=1e-9)
         elif name == "critical":
@@ -177,11 +194,52 @@ def test_the_kernel_gives_what_the_formulas_on_arrays_give(robot: Robot, kind: s
         else:
             share = 3e-8 if name == "condition" else 1e-12
             np.testing.assert_allclose(ours, value, atol=share * max(1.0, np.abs(value).max()))
-    if kind == "springs":
-        assert (found.of("stiffness_class")[:2] == 0).all()
-        assert (found.of("stiffness_class")[2] == CLASSES.index("indefinite")).any()
-    if kind == "heavy" and robot.total_mass > 0.0 and robot.name != "motoman_sk120":
-        assert found.of("K_gravity").any()
+    return found
+
+
+LOOPS = {"five-bar": sk120_loop, "four-bar": four_bar, "cylinder": cylinder}
+
+
+@pytest.mark.parametrize("loop", list(LOOPS))
+def test_the_kernel_follows_closed_loops(
+    loop: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Joints that follow no straight line, light and hanging from their weight, tilts and all."""
+    robot = heavy(LOOPS[loop](tmp_path), tmp_path)
+    assert isinstance(robot.coupling, LoopCoupling) and robot.total_mass > 0.0
+    a = robot.coupling.start[: robot.n] + 0.1 * poses(robot, 90)
+    a = a[robot.closes(a, 0.05)]
+    assert len(a) > 60
+    through = []
+    door = sys.modules["sk120stiff.stiffness.under_load"]
+    monkeypatch.setattr(door, "run", lambda *a: through.append(1) or run.run(*a))
+    for kind, arm in arms(robot).items():
+        found = agreeing(arm, a)
+        assert found.of("K_gravity").any() == ("heavy" in kind)
+    assert len(through) == len(arms(robot))
+
+
+def heavy(robot: Robot, folder: Path) -> Robot:
+    """The same robot with 20 kg in each link."""
+    text = (folder / "robot.urdf").read_text(encoding="utf-8")
+    mass = (
+        '><inertial><origin xyz="0.1 0.02 0.2"/><mass value="20"/>'
+        '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+    )
+    (folder / "robot.urdf").write_text(re.sub(r"(<link[^>]*)/>", rf"\1{mass}", text))
+    return load_robot(folder)
+
+
+@pytest.mark.parametrize("name", ["gravity_compensator:joint_2_l", "closure_rod:rod"])
+def test_the_kernel_follows_springs_that_change_with_the_pose(name: str) -> None:
+    robot = load_robot("motoman_sk120")
+    kind, where = name.split(":")
+    added = effect(robot, kind, where)
+    model = joint_spring_model(robot, np.linspace(3e5, 6e5, 6)) + added
+    sizes = [0.3 * spec.typical for spec in added.parameters]
+    arm = model_compliance(model.with_values(np.append(model.values[: -len(sizes)], sizes)))
+    assert arm.constant is None
+    agreeing(arm, 0.4 * poses(robot, 90))
 
 
 def test_one_load_for_each_pose_and_threads(robot: Robot) -> None:
@@ -295,6 +353,25 @@ def test_a_long_start_is_announced(
     with caplog.at_level(logging.INFO, logger="sk120stiff"), announced():
         time.sleep(0.2)
     assert "Preparing" in caplog.text
+
+
+def test_a_second_process_compiles_nothing() -> None:
+    """Neither for another kind of arm: all share one signature."""
+    program = """
+import numpy as np
+from sk120stiff.robot import load_robot
+from sk120stiff.stiffness import ConstantCompliance, under_load
+for springs in (np.full(6, 1e6), [np.inf, 1e6, *4 * [np.inf]]):
+    arm = ConstantCompliance.of_springs(load_robot("motoman_sk120"), springs)
+    under_load(arm, np.zeros((3, 6)), np.ones(6))
+from sk120stiff.stiffness.kernel.block import work
+print(sum(work.stats.cache_hits.values()), sum(work.stats.cache_misses.values()))
+"""
+    under_load(arms(load_robot("motoman_sk120"))["springs"], np.zeros((2, 6)), FORCE)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split() == ["1", "0"]
 
 
 def test_compiled_code_is_kept_where_the_package_is_read_only(tmp_path: Path) -> None:

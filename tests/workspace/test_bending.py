@@ -93,7 +93,7 @@ def test_a_map_bends_as_the_exact_equilibrium_but_for_parts_in_a_thousand(spring
 
 
 def test_so_does_an_arm_whose_springs_change_with_the_pose(springs: Model) -> None:
-    """A gravity compensator: the compiled kernel does not follow."""
+    """A gravity compensator: the compiled kernel is told its spring at every pose."""
     extra = springs + effect(springs.robot, "gravity_compensator", "joint_2_l")
     size = 0.2 * extra.parameters[-1].spec.typical
     model = known(extra.with_values(np.array([*springs.values, size])))

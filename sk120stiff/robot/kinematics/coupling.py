@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 
 if TYPE_CHECKING:
@@ -88,6 +88,14 @@ class Coupling(Protocol):
     def m(self) -> int:
         """Number of moving joints."""
 
+    @property
+    def pattern(self) -> Mask:
+        """(m, n) where dq/da is not zero at every pose."""
+
+    @property
+    def bending(self) -> tuple[Index, Index]:
+        """Joints and coordinates of the `Curvature`, in ascending order."""
+
     def motion(self, a: Array) -> JointMotion:
         """Joint values and derivatives at `a` (..., n)."""
 
@@ -121,6 +129,16 @@ class LinearCoupling:
     def m(self) -> int:
         """Number of moving joints."""
         return int(self.A.shape[0])
+
+    @property
+    def pattern(self) -> Mask:
+        """See `Coupling`."""
+        return np.asarray(self.A != 0.0)
+
+    @property
+    def bending(self) -> tuple[Index, Index]:
+        """See `Coupling`."""
+        return np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
 
     def motion(self, a: Array) -> JointMotion:
         """Joint values and derivatives at `a` (..., n)."""

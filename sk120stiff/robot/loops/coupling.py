@@ -221,9 +221,22 @@ class LoopCoupling:
         sources = closer.reduced(np.concatenate(bent, axis=1))  # (N, r, s, s)
         count, rows, s, _ = sources.shape
         H_d = -closer.solve(C_d, sources.reshape(count, rows, s * s))
-        followers = np.flatnonzero(closer.linear.A[:, n:].any(axis=1))
+        followers, _ = self.bending
         hessian = closer.linear.A[followers, n:] @ H_d
         return G_d, Curvature(followers, felt, hessian.reshape(count, len(followers), s, s))
+
+    @property
+    def pattern(self) -> Mask:
+        """See `Coupling`."""
+        joints, coordinates = self.bending
+        found = self.closer.linear.A[:, : self.n] != 0.0
+        found[joints[:, None], coordinates] = True
+        return np.asarray(found)
+
+    @cached_property
+    def bending(self) -> tuple[Index, Index]:
+        """See `Coupling`."""
+        return np.flatnonzero(self.closer.linear.A[:, self.n :].any(axis=1)), self._felt
 
     @cached_property
     def _felt(self) -> Index:

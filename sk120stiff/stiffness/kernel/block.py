@@ -15,6 +15,7 @@ from sk120stiff.stiffness.kernel.compliance import (
     complementary_of_pose,
     compliance,
     deflect,
+    factor_of,
     factorise,
     solve_pose,
     subtract_from_springs,
@@ -22,7 +23,7 @@ from sk120stiff.stiffness.kernel.compliance import (
     whitener_of,
 )
 from sk120stiff.stiffness.kernel.eigen import PD, ZERO, classify, eigen, jacobi
-from sk120stiff.stiffness.kernel.folding import Fold
+from sk120stiff.stiffness.kernel.folding import Fold, Given
 from sk120stiff.stiffness.kernel.layout import (
     BLOCK,
     CHANGE,
@@ -74,13 +75,21 @@ class Outputs(NamedTuple):
 
 @entry
 def work(
-    fold: Fold, a: Array, loads: Array, begin: int, end: int, out: Outputs, rows: Scratch
+    fold: Fold,
+    a: Array,
+    more: Given,
+    loads: Array,
+    begin: int,
+    end: int,
+    out: Outputs,
+    rows: Scratch,
 ) -> None:
     """Fill rows begin…end of the outputs.
 
     Args:
         fold: Constants of the mechanism.
-        a: (N, n_a) coordinates.
+        a: (N, n_a) coordinates, or (N, m) joint values where the motion is given.
+        more: What is given.
         loads: (Q, 1, 6) loads at every pose, or (1, N, 6) one for each.
         rows: Memory that no other thread uses.
     """
@@ -89,12 +98,18 @@ def work(
     principal = out.values.size + out.directions.size > 0
     stiffness = principal or deflects or out.compliance.size + out.stiffness_class.size > 0
     stability = out.K_C.size + out.complementary_class.size + out.critical.size > 0
+    for element in range(s * (s + 1) // 2):
+        spring, row = fold.springs[element], at(rows.springs + element)
+        for k in range(BLOCK):
+            x[row + k] = spring
     for first in range(begin, end, BLOCK):
         count = min(BLOCK, end - first)
-        for i in range(fold.actuated):
-            row = at(rows.pose + i)
-            for k in range(BLOCK):
-                x[row + k] = a[first + min(k, count - 1), i]
+        _read(x, a, fold.inputs, rows.pose, first, count)
+        if fold.given:
+            _read(x, more.factors, fold.column_joint.shape[0], rows.factors, first, count)
+            _read(x, more.bends, fold.bend.shape[0], rows.bends, first, count)
+        if more.springs.size:
+            _read(x, more.springs, more.springs.shape[1], rows.springs, first, count)
         if fold.weighs:
             _hang(fold, rows)
         else:
@@ -106,7 +121,7 @@ def work(
             force, moment = _load(x, loads, load, first, count)
             complementary(fold, rows, rows.levers, rows.K_C, force, moment)
             if stability:
-                _store_complementary(fold, load, first, count, out, rows)
+                _store_complementary(fold, load, first, count, out, rows, more)
             if not stiffness:
                 continue
             if fold.weighs:
@@ -120,7 +135,7 @@ def work(
             for k in range(count):
                 if moment or not x[SAFE * BLOCK + k] > SURE:
                     complementary_of_pose(x, s, rows.K_C, rows.skew, k, A)
-                    subtract_from_springs(fold, A)
+                    subtract_from_springs(rows, k, A)
                     torques_of_pose(fold, rows, k, B)
                     solve_pose(fold, rows, k, A, B)
             if principal:
@@ -133,18 +148,25 @@ def work(
 def _hang(fold: Fold, rows: Scratch) -> None:
     """Let the block's poses sag under their own weight; rows K_g become its stiffness there.
 
+    Given poses hang already.
+
     Where the springs cannot hold it, or Newton does not settle, nothing is a number.
     """
-    n, s, x = fold.pose_map.shape[1], fold.soft.shape[0], rows.x
+    s, x = fold.soft.shape[0], rows.x
+    for i in range(3):
+        for k in range(BLOCK):
+            x[(LOAD + i) * BLOCK + k] = fold.gravity[i]
+    if fold.given:
+        place_joints(fold, rows)
+        carry(fold, rows)
+        complementary(fold, rows, rows.carried, rows.K_g, True, False)
+        return
     start = at(rows.pose + fold.actuated)
-    for k in range((n - fold.actuated) * BLOCK):
+    for k in range((fold.n - fold.actuated) * BLOCK):
         x[start + k] = 0.0
     start = at(rows.bent)
     for k in range(s * BLOCK):
         x[start + k] = 0.0
-    for i in range(3):
-        for k in range(BLOCK):
-            x[(LOAD + i) * BLOCK + k] = fold.gravity[i]
     for _ in range(BENDS):
         place_joints(fold, rows)
         carry(fold, rows)
@@ -155,6 +177,15 @@ def _hang(fold: Fold, rows: Scratch) -> None:
     for k in range(BLOCK):
         if not x[CHANGE * BLOCK + k] <= REST or not x[SAFE * BLOCK + k] > 0.0:
             x[POSITION * BLOCK + k] = math.nan
+
+
+@part
+def _read(x: Array, source: Array, count: int, row: int, first: int, poses: int) -> None:
+    """Columns of (N, count) into rows; what is beyond the last pose repeats it."""
+    for i in range(count):
+        to = at(row + i)
+        for k in range(BLOCK):
+            x[to + k] = source[first + min(k, poses - 1), i]
 
 
 @part
@@ -193,10 +224,11 @@ def _store_motion(fold: Fold, first: int, count: int, out: Outputs, rows: Scratc
         for k in range(count):
             for j in range(fold.column_joint.shape[0]):
                 joint, z = fold.column_joint[j], fold.column_coordinate[j]
+                factor = factor_of(fold, rows, j, k)
                 for i in range(3):
                     v, w = x[at(levers + 3 * joint + i) + k], x[at(axes + 3 * joint + i) + k]
-                    out.jacobian[first + k, i, z] += fold.column_factor[j] * v
-                    out.jacobian[first + k, 3 + i, z] += fold.column_factor[j] * w
+                    out.jacobian[first + k, i, z] += factor * v
+                    out.jacobian[first + k, 3 + i, z] += factor * w
     if out.condition.size:
         for i in range(3):
             for j in range(3):
@@ -263,18 +295,18 @@ def _class_of(fold: Fold, rows: Scratch, pose: int) -> int:
     x, low, high, element = rows.x, np.inf, 0.0, -1
     for i in range(fold.soft.shape[0]):
         element += i + 1
-        diagonal = fold.springs[element] - x[at(rows.K_C + element) + pose]
+        diagonal = x[at(rows.springs + element) + pose] - x[at(rows.K_C + element) + pose]
         low, high = min(low, diagonal), max(high, diagonal)
     if x[SAFE * BLOCK + pose] > SURE and low > SPAN * high:
         return PD
     complementary_of_pose(x, fold.soft.shape[0], rows.K_C, -1, pose, rows.A)
-    subtract_from_springs(fold, rows.A)
+    subtract_from_springs(rows, pose, rows.A)
     return int(classify(rows.A))
 
 
 @part
 def _store_complementary(
-    fold: Fold, load: int, first: int, count: int, out: Outputs, rows: Scratch
+    fold: Fold, load: int, first: int, count: int, out: Outputs, rows: Scratch, more: Given
 ) -> None:
     """K_C, its class, and the factor on the load at which stability is lost."""
     s, x, A, own = fold.soft.shape[0], rows.x, rows.A, rows.own
@@ -287,11 +319,14 @@ def _store_complementary(
         complementary_of_pose(x, s, rows.K_C, -1, k, A)
         if out.critical.size:
             factor = 0.0
-            if not fold.weighs:
+            if not fold.weighs and not more.springs.size:
                 factor = _critical(fold.whitener, A, rows.B)
             else:
-                complementary_of_pose(x, s, rows.K_g, -1, k, own)
-                subtract_from_springs(fold, own)
+                for i in range(s * s):
+                    own[i // s, i % s] = 0.0
+                if fold.weighs:
+                    complementary_of_pose(x, s, rows.K_g, -1, k, own)
+                subtract_from_springs(rows, k, own)
                 if whitener_of(own):
                     factor = _critical(own, A, rows.B)
             out.critical[load, first + k] = factor

@@ -15,6 +15,7 @@ from sk120stiff.stiffness.kernel.layout import (
     FACTOR,
     INVERSE,
     LOAD,
+    PAIR,
     SAFE,
     TENSOR,
     TURNED,
@@ -47,25 +48,49 @@ def complementary(
             _turn(x, 0, 1.0, at(axes + 3 * first))
             if moment:
                 _turn(x, 3, 0.5, at(axes + 3 * first))
+        for k in range(BLOCK):
+            x[PAIR * BLOCK + k] = (
+                x[TURNED * BLOCK + k] * x[v2 + k]
+                + x[(TURNED + 1) * BLOCK + k] * x[v2 + BLOCK + k]
+                + x[(TURNED + 2) * BLOCK + k] * x[v2 + 2 * BLOCK + k]
+            )
+        for k in range(BLOCK if moment and first != second else 0):
+            half = (
+                x[(TURNED + 3) * BLOCK + k] * x[w2 + k]
+                + x[(TURNED + 4) * BLOCK + k] * x[w2 + BLOCK + k]
+                + x[(TURNED + 5) * BLOCK + k] * x[w2 + 2 * BLOCK + k]
+            )
+            x[PAIR * BLOCK + k] += half
+            x[(PAIR + 1) * BLOCK + k] = half
         while add < fold.pair_end[pair]:
-            to, factor = at(K_C + fold.row[add, 0]), fold.factor[add, 0]
-            for k in range(BLOCK):
-                x[to + k] += factor * (
-                    x[TURNED * BLOCK + k] * x[v2 + k]
-                    + x[(TURNED + 1) * BLOCK + k] * x[v2 + BLOCK + k]
-                    + x[(TURNED + 2) * BLOCK + k] * x[v2 + 2 * BLOCK + k]
-                )
-            if moment and first != second:
-                anti, sign = at(skew + max(fold.row[add, 1], 0)), fold.factor[add, 1]
-                for k in range(BLOCK):
-                    half = (
-                        x[(TURNED + 3) * BLOCK + k] * x[w2 + k]
-                        + x[(TURNED + 4) * BLOCK + k] * x[w2 + BLOCK + k]
-                        + x[(TURNED + 5) * BLOCK + k] * x[w2 + 2 * BLOCK + k]
-                    )
-                    x[to + k] += factor * half
-                    x[anti + k] += sign * half
+            _add(fold, rows, add, at(K_C + fold.row[add, 0]), PAIR * BLOCK, fold.factor[add, 0])
+            if moment and fold.row[add, 1] >= 0:
+                anti = at(skew + fold.row[add, 1])
+                _add(fold, rows, add, anti, (PAIR + 1) * BLOCK, fold.factor[add, 1])
             add += 1
+    for bend in range(fold.bend.shape[0] if force or moment else 0):
+        joint, to = fold.bend[bend, 0], at(K_C + fold.bend[bend, 1])
+        w, v, by = at(axes + 3 * joint), at(levers + 3 * joint), at(rows.bends + bend)
+        for i in range(3):
+            f, g = (LOAD + i) * BLOCK, (LOAD + 3 + i) * BLOCK
+            for k in range(BLOCK):
+                torque = x[f + k] * x[v + i * BLOCK + k]
+                if moment:
+                    torque += x[g + k] * x[w + i * BLOCK + k]
+                x[to + k] += x[by + k] * torque
+
+
+@part
+def _add(fold: Fold, rows: Scratch, add: int, to: int, source: int, factor: float) -> None:
+    """What a pair of joints adds to one element."""
+    x = rows.x
+    if not fold.given:
+        for k in range(BLOCK):
+            x[to + k] += factor * x[source + k]
+        return
+    first, second = at(rows.factors + fold.row[add, 2]), at(rows.factors + fold.row[add, 3])
+    for k in range(BLOCK):
+        x[to + k] += factor * x[first + k] * x[second + k] * x[source + k]
 
 
 @part
@@ -89,19 +114,19 @@ def factorise(fold: Fold, rows: Scratch, K_C: int) -> None:
     """
     s, x, L = fold.soft.shape[0], rows.x, rows.L
     for element in range(s * (s + 1) // 2):
-        source, target, spring = at(K_C + element), at(L + element), fold.springs[element]
+        source, target, spring = at(K_C + element), at(L + element), at(rows.springs + element)
         for k in range(BLOCK):
-            x[target + k] = spring - x[source + k]
+            x[target + k] = x[spring + k] - x[source + k]
     for k in range(BLOCK):
         x[SAFE * BLOCK + k] = 1.0
     for c in range(s):
         element = c * (c + 1) // 2 + c
-        pivot, own, spring = at(L + element), at(K_C + element), fold.springs[element]
+        pivot, own, spring = at(L + element), at(K_C + element), at(rows.springs + element)
         for k in range(BLOCK):
             safe, d = x[SAFE * BLOCK + k], x[pivot + k]
             by = 1.0 / d
             good = (safe > 0.0) & (d > 0.0)
-            x[SAFE * BLOCK + k] = safe * d / (spring - x[own + k]) if good else -1.0
+            x[SAFE * BLOCK + k] = safe * d / (x[spring + k] - x[own + k]) if good else -1.0
             x[INVERSE * BLOCK + k] = by
         for i in range(s - 1, c, -1):  # downwards: element (j, c) is still unscaled for j <= i
             row = L + i * (i + 1) // 2
@@ -162,16 +187,14 @@ def complementary_of_pose(x: Array, s: int, K_C: int, skew: int, pose: int, A: A
 
 
 @part
-def subtract_from_springs(fold: Fold, A: Array) -> None:
-    """A ← K_θ − A."""
-    element = 0
+def subtract_from_springs(rows: Scratch, pose: int, A: Array) -> None:
+    """A ← K_θ − A at one pose."""
     for i in range(A.shape[0]):
-        for j in range(i):
-            A[i, j] = fold.springs[element] - A[i, j]
-            A[j, i] = fold.springs[element] - A[j, i]
-            element += 1
-        A[i, i] = fold.springs[element] - A[i, i]
-        element += 1
+        for j in range(i + 1):
+            spring = rows.x[at(rows.springs + i * (i + 1) // 2 + j) + pose]
+            A[i, j] = spring - A[i, j]
+            if j < i:
+                A[j, i] = spring - A[j, i]
 
 
 @part
@@ -215,15 +238,25 @@ def torques_of_pose(fold: Fold, rows: Scratch, pose: int, b: Array) -> None:
     """Last column of b (s, 4): torques of the load on the soft coordinates, Jᵀ W."""
     x, axes, levers = rows.x, rows.axes, rows.levers
     for i in range(fold.soft.shape[0]):
-        total = 0.0
-        for joint in range(fold.kind.shape[0]):
-            factor = fold.pose_map[joint, fold.soft[i]]
-            if factor != 0.0:
-                for c in range(3):
-                    v, w = x[at(levers + 3 * joint + c) + pose], x[at(axes + 3 * joint + c) + pose]
-                    force, moment = x[(LOAD + c) * BLOCK + pose], x[(LOAD + 3 + c) * BLOCK + pose]
-                    total += factor * (v * force + w * moment)
-        b[i, 3] = total
+        b[i, 3] = 0.0
+    for entry in range(fold.column_joint.shape[0]):
+        joint, i = fold.column_joint[entry], fold.column_soft[entry]
+        if i < 0:
+            continue
+        torque = 0.0
+        for c in range(3):
+            v, w = x[at(levers + 3 * joint + c) + pose], x[at(axes + 3 * joint + c) + pose]
+            force, moment = x[(LOAD + c) * BLOCK + pose], x[(LOAD + 3 + c) * BLOCK + pose]
+            torque += v * force + w * moment
+        b[i, 3] += factor_of(fold, rows, entry, pose) * torque
+
+
+@part
+def factor_of(fold: Fold, rows: Scratch, entry: int, pose: int) -> float:
+    """An entry of the map from coordinates to joints at one pose."""
+    if fold.given:
+        return float(rows.x[at(rows.factors + entry) + pose])
+    return float(fold.column_factor[entry])
 
 
 @part

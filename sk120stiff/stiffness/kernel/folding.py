@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Integers
-from sk120stiff.robot import LinearCoupling, Mechanism
+from sk120stiff.arrays import Array, Index, Integers
+from sk120stiff.robot import Coupling, JointMotion, LinearCoupling, Mechanism
 from sk120stiff.stiffness.kernel.pairs import contributions
 
 VARIABLE, CONSTANT, NONE = 0, 1, 2  # does the turn about a joint's z depend on the pose?
@@ -27,14 +27,16 @@ class Fold(NamedTuple):
         shift: (m + 1, 3) translation before each joint, and to the point after the last [m].
         final: (3, 3) rotation from the axes after the last joint to the end frame.
         tilt: (m, 2) cosine and sine of the turn about x before each joint.
-        pose_map, value: (m, n) and (m,): joint values q = pose_map z + value.
-        actuated: Number of coordinates that motors drive; the others stand at zero until the arm
-            sags.
+        pose_map, value: (m, n) and (m,): joint values q = pose_map z + value. Where the motion is
+            given, z stands for the joint values themselves.
+        n, actuated, inputs: Number of coordinates, of those that motors drive, and of the columns
+            of `poses`; the other coordinates stand at zero until the arm sags.
+        given: Does `Given` say how the joints follow, and where the arm hangs?
         offset: (m,) constant angle beside each joint's value [rad].
         slides: (m,) 1 for a joint that slides, 0 for one that turns.
         kind, constant: (m,) VARIABLE, CONSTANT or NONE, and (m, 2) cosine and sine where constant.
-        column_joint, column_coordinate, column_factor: Entries of the map from coordinates to
-            joints, q = Σ factor · z.
+        column_joint, column_coordinate, column_soft, column_factor: Entries of the map from
+            coordinates to joints, dq = Σ factor · dz; where the coordinate stands in `soft`, or -1.
         mass, centre: (m,) mass that each joint carries [kg], and (m, 3) its centre in the folded
             frame [m].
         weighs: Does the arm sag under its own weight?
@@ -44,9 +46,10 @@ class Fold(NamedTuple):
         whitener: (s, s) L⁻¹ with L Lᵀ = K_θ.
         pair: (p, 2) pairs of joints, the first nearer to the base or the same.
         pair_end: (p,) end of each pair's stretch in the following two.
-        row: (e, 2) element of the lower triangle of K_C that a pair adds to, and of the strictly
-            lower triangle of its skew part; -1 for none.
-        factor: (e, 2) how much of it.
+        row: (e, 4) element of the lower triangle of K_C that a pair adds to, of the strictly lower
+            triangle of its skew part, -1 for none, and the two entries of the map.
+        factor: (e, 2) how much of it; times the two entries where the motion is given.
+        bend: (b, 2) joint, and element of the lower triangle of K_C, of each `Given.bends`.
     """
 
     start: Array
@@ -55,13 +58,17 @@ class Fold(NamedTuple):
     tilt: Array
     pose_map: Array
     value: Array
+    n: int
     actuated: int
+    inputs: int
+    given: bool
     offset: Array
     slides: Array
     kind: Integers
     constant: Array
     column_joint: Integers
     column_coordinate: Integers
+    column_soft: Integers
     column_factor: Array
     mass: Array
     centre: Array
@@ -74,12 +81,27 @@ class Fold(NamedTuple):
     pair_end: Integers
     row: Integers
     factor: Array
+    bend: Integers
+
+
+class Given(NamedTuple):
+    """What the pose decides and the kernel cannot know; sizes of zero where `Fold` says it all.
+
+    Attributes:
+        factors: (N, entries) of the map from coordinates to joints, where the motion is given.
+        bends: (N, b) second derivatives of joints by coordinates.
+        springs: (N, s(s+1)/2) K_θ as in `Fold`, where it changes with the pose.
+    """
+
+    factors: Array
+    bends: Array
+    springs: Array
 
 
 def fold(
     mechanism: Mechanism,
     soft: Integers,
-    K_theta: Array,
+    K_theta: Array | None,
     point: Array,
     shift: Array,
     gravity: Array | None = None,
@@ -87,56 +109,95 @@ def fold(
     """Fold a mechanism with springs for the kernel.
 
     Args:
-        mechanism: Chain and coupling, which must be linear; virtual joints allowed.
+        mechanism: Chain and coupling; virtual joints allowed.
         soft, K_theta: (s,) coordinates that yield, and (s, s) their stiffness [N·m/rad or N/m],
-            positive definite.
+            positive definite; None where it changes with the pose.
         point: (3,) the point in the end frame [m].
         shift: (n,) by which the coordinates start from elsewhere than commanded [rad or m].
         gravity: (3,) in base axes [m/s²]: lets the arm sag before the load comes.
     """
     coupling = mechanism.elastic or mechanism.coupling
-    if not isinstance(coupling, LinearCoupling):
-        raise ValueError("the kernel takes linear couplings q = A a + b only")
     chain = mechanism.chain
-    n, n_a = mechanism.n, mechanism.coupling.n
-    to_joints = coupling.A[chain.coordinates]
-    value = to_joints @ shift + coupling.b[chain.coordinates]
+    m, n, n_a, s = chain.m, mechanism.n, mechanism.coupling.n, len(soft)
     weighs = gravity is not None and chain.weighs
-    varies = np.arange(n) < n_a
-    varies[soft] |= weighs
+    given = K_theta is None or not isinstance(coupling, LinearCoupling)
+    if given or not isinstance(coupling, LinearCoupling):
+        to_joints = coupling.pattern[chain.coordinates].astype(float)
+        pose_map, value, moves = np.eye(m), np.zeros(m), np.ones(m, dtype=bool)
+    else:
+        to_joints = pose_map = np.ascontiguousarray(coupling.A[chain.coordinates])
+        value = to_joints @ shift + coupling.b[chain.coordinates]
+        varies = np.arange(n) < n_a
+        varies[soft] |= weighs
+        moves = (to_joints[:, varies] != 0.0).any(axis=1) | (value != 0.0)
     frames = _frames(mechanism, point)
-    moves = (to_joints[:, varies] != 0.0).any(axis=1) | (value != 0.0)
     kind = np.where(
         moves & chain.revolute, VARIABLE, np.where(frames.offset != 0.0, CONSTANT, NONE)
     )
     joints, coordinates = np.nonzero(to_joints)
-    pair, pair_end, row, factor = contributions(to_joints[:, soft])
+    pair, pair_end, row, factor = contributions(to_joints, soft)
+    place = np.full(n, -1)
+    place[soft] = np.arange(s)
+    K_mean = np.eye(s) if K_theta is None else K_theta
     return Fold(
         start=frames.start,
         shift=frames.shift,
         final=frames.final,
         tilt=frames.tilt,
-        pose_map=np.ascontiguousarray(to_joints),
+        pose_map=pose_map,
         value=np.ascontiguousarray(value),
+        n=n,
         actuated=n_a,
+        inputs=m if given else n_a,
+        given=given,
         offset=frames.offset,
         slides=(~chain.revolute).astype(float),
         kind=kind.astype(np.int64),
         constant=np.stack([np.cos(frames.offset), np.sin(frames.offset)], axis=1),
         column_joint=joints.astype(np.int64),
         column_coordinate=coordinates.astype(np.int64),
+        column_soft=place[coordinates],
         column_factor=to_joints[joints, coordinates],
         mass=chain.masses,
         centre=frames.centre,
         weighs=weighs,
         gravity=np.zeros(3) if gravity is None else np.asarray(gravity, dtype=float),
         soft=np.asarray(soft, dtype=np.int64),
-        springs=K_theta[np.tril_indices(len(soft))],
-        whitener=np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(K_theta))),
+        springs=K_mean[np.tril_indices(s)],
+        whitener=np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(K_mean))),
         pair=pair,
         pair_end=pair_end,
         row=row,
         factor=factor,
+        bend=_bend(coupling, chain.coordinates, soft),
+    )
+
+
+def _bend(coupling: Coupling, order: Index, soft: Integers) -> Integers:
+    """(b, 2) `Fold.bend`."""
+    joints, coordinates = coupling.bending
+    i, j = np.tril_indices(len(soft))
+    felt = np.flatnonzero(np.isin(soft[i], coordinates) & np.isin(soft[j], coordinates))
+    bent = np.flatnonzero(np.isin(order, joints))
+    return np.stack([np.repeat(bent, len(felt)), np.tile(felt, len(bent))], axis=1)
+
+
+def given(fold: Fold, mechanism: Mechanism, motion: JointMotion, springs: Array) -> Given:
+    """What the kernel reads at N poses; K_θ (N, s, s), or (0, s, s) where `fold` knows it."""
+    order, count = mechanism.chain.coordinates, len(motion.q)
+    first = np.broadcast_to(motion.first, (count, *motion.first.shape[-2:]))[:, order]
+    i, j = np.tril_indices(len(fold.soft))
+    bends = np.zeros((count, 0))
+    curvature = None if motion.second is None else motion.second.picked(order)
+    if curvature is not None:
+        element = fold.bend[:, 1]
+        joint = np.searchsorted(curvature.joints, fold.bend[:, 0])
+        near, far = (np.searchsorted(curvature.coordinates, fold.soft[k][element]) for k in (i, j))
+        bends = curvature.hessian[:, joint, near, far]
+    return Given(
+        np.ascontiguousarray(first[:, fold.column_joint, fold.column_coordinate]),
+        np.ascontiguousarray(bends),
+        np.ascontiguousarray(springs[:, i, j]),
     )
 
 

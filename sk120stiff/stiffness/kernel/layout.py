@@ -27,7 +27,8 @@ INVERSE = 49  # 1 / pivot
 FACTOR = 50
 CHANGE = 51  # of a coordinate in the last step
 DEFLECTION = 52  # 3 rows
-FREE = 55  # rows whose number depends on the robot begin here
+PAIR = 55  # F·(w_1 × v_2) of the pair of joints at hand, and ½ M·(w_1 × w_2)
+FREE = 57  # rows whose number depends on the robot begin here
 
 
 @part
@@ -43,10 +44,11 @@ class Scratch(NamedTuple):
         x: All rows of a block.
         A, own, B: (s, s), (s, s) and (s, max(s, 4)) of one pose.
         axes, levers, carried: 3 rows for each joint.
-        pose: A row for each coordinate.
+        pose: A row for each coordinate, or for each joint where the motion is given.
+        factors, bends: What is `Given`.
         bent: A row for each soft coordinate of an arm that weighs.
         columns: 3 rows for each column of J.
-        K_g, K_C, L: Lower triangles of matrices of the soft coordinates.
+        springs, K_g, K_C, L: Lower triangles of matrices of the soft coordinates.
         skew: Strictly lower triangle of the skew part of K_C.
         y: 3 rows for each soft coordinate.
     """
@@ -59,8 +61,11 @@ class Scratch(NamedTuple):
     levers: int
     carried: int
     pose: int
+    factors: int
+    bends: int
     bent: int
     columns: int
+    springs: int
     K_g: int
     K_C: int
     L: int
@@ -70,10 +75,12 @@ class Scratch(NamedTuple):
 
 def scratch(fold: Fold) -> Scratch:
     """Memory for poses of a fold."""
-    m, n, s = len(fold.kind), fold.pose_map.shape[1], len(fold.soft)
-    triangle, w = s * (s + 1) // 2, int(fold.weighs)
-    sizes = (3 * m, 3 * m, 3 * m * w, n, s * w, 3 * n, triangle * w, triangle, triangle)
-    begins = np.cumsum([FREE, *sizes, triangle - s, 3 * s]).tolist()
+    m, n, s = len(fold.kind), fold.n, len(fold.soft)
+    triangle, w, g = s * (s + 1) // 2, int(fold.weighs), int(fold.given)
+    joints = (3 * m, 3 * m, 3 * m * w, fold.pose_map.shape[1])
+    motion = (g * len(fold.column_joint), g * len(fold.bend), s * w, 3 * n)
+    matrices = (triangle, triangle * w, triangle, triangle, triangle - s, 3 * s)
+    begins = np.cumsum([FREE, *joints, *motion, *matrices]).tolist()
     return Scratch(
         np.zeros(begins[-1] * BLOCK),
         np.empty((s, s)),

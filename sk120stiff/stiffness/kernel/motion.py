@@ -77,7 +77,7 @@ def place_joints(fold: Fold, rows: Scratch) -> None:
         value = fold.value[joint]
         for k in range(BLOCK):
             x[VALUE * BLOCK + k] = value
-        for i in range(fold.pose_map.shape[1] if fold.weighs else fold.actuated):
+        for i in range(fold.pose_map.shape[1] if fold.weighs else fold.inputs):
             factor = fold.pose_map[joint, i]
             if factor != 0.0:
                 a = at(pose + i)
@@ -251,11 +251,17 @@ def columns_of_J(fold: Fold, rows: Scratch) -> None:
     """Linear part of every column of J, 3 rows each."""
     x, levers, columns = rows.x, rows.levers, rows.columns
     start = at(columns)
-    for k in range(3 * fold.pose_map.shape[1] * BLOCK):
+    for k in range(3 * fold.n * BLOCK):
         x[start + k] = 0.0
     for entry in range(fold.column_joint.shape[0]):
         v = at(levers + 3 * fold.column_joint[entry])
         column = at(columns + 3 * fold.column_coordinate[entry])
+        if fold.given:
+            g = at(rows.factors + entry)
+            for i in range(0, 3 * BLOCK, BLOCK):
+                for k in range(BLOCK):
+                    x[column + i + k] += x[g + k] * x[v + i + k]
+            continue
         factor = fold.column_factor[entry]
         for k in range(3 * BLOCK):
             x[column + k] += factor * x[v + k]

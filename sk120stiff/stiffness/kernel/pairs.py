@@ -9,24 +9,28 @@ import numpy as np
 from sk120stiff.arrays import Array, Integers
 
 
-def contributions(to_joints: Array) -> tuple[Integers, Integers, Integers, Array]:
+def contributions(to_joints: Array, soft: Integers) -> tuple[Integers, Integers, Integers, Array]:
     """The pairs, their stretches, rows and factors of `Fold`.
 
     Args:
-        to_joints: (m, s) factors of the soft coordinates.
+        to_joints: (m, n) factors of the coordinates; ones where they change with the pose.
+        soft: (s,) coordinates that yield.
     """
     pairs: list[tuple[int, int]] = []
     ends: list[int] = []
-    adds: list[tuple[int, float, int, float]] = []
-    for first, second in _joint_pairs(to_joints):
+    adds: list[tuple[int, float, int, float, int, int]] = []
+    entry = np.cumsum(to_joints != 0.0).reshape(to_joints.shape) - 1
+    by, entry = to_joints[:, soft], entry[:, soft]
+    for first, second in _joint_pairs(by):
         before = len(adds)
-        adds.extend(_additions(to_joints[first], to_joints[second], same=first == second))
+        for i, j, *add in _additions(by[first], by[second], same=first == second):
+            adds.append((*add, entry[first, i], entry[second, j]))
         if len(adds) > before:
             pairs.append((first, second))
             ends.append(len(adds))
-    table = np.array(adds, dtype=float).reshape(-1, 4)
+    table = np.array(adds, dtype=float).reshape(-1, 6)
     pair = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-    rows = table[:, [0, 2]].astype(np.int64)
+    rows = table[:, [0, 2, 4, 5]].astype(np.int64, order="C")  # one layout, one compilation
     return pair, np.array(ends, dtype=np.int64), rows, table[:, [1, 3]].copy()
 
 
@@ -37,8 +41,8 @@ def _joint_pairs(to_joints: Array) -> Iterator[tuple[int, int]]:
 
 def _additions(
     first: Array, second: Array, *, same: bool
-) -> Iterator[tuple[int, float, int, float]]:
-    """Aᵀ K A for one symmetric pair of elements of K: (row, factor, skew row, skew factor)."""
+) -> Iterator[tuple[int, int, int, float, int, float]]:
+    """Aᵀ K A for one symmetric pair of elements of K: i, j, row, factor, skew row, skew factor."""
     for i in np.flatnonzero(first).tolist():
         for j in np.flatnonzero(second).tolist():
             value = float(first[i] * second[j])
@@ -46,10 +50,10 @@ def _additions(
             row = high * (high + 1) // 2 + low
             if same:
                 if i >= j:
-                    yield row, value, -1, 0.0
+                    yield i, j, row, value, -1, 0.0
             elif i == j:
-                yield row, 2.0 * value, -1, 0.0
+                yield i, j, row, 2.0 * value, -1, 0.0
             else:
                 skew = high * (high - 1) // 2 + low
                 # K[second, first] carries + half of the moment's part, K[first, second] minus that.
-                yield row, value, skew, value if j > i else -value
+                yield i, j, row, value, skew, value if j > i else -value

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, MissingPart
-from sk120stiff.stiffness.kernel.folding import Fold
+from sk120stiff.stiffness.kernel.folding import Fold, Given
 from sk120stiff.stiffness.quantities import BY_LOAD, COMPILED, shape_of
 
 logger = logging.getLogger(__name__)
@@ -29,9 +29,16 @@ _READY: list[Any] = []  # the compiled function, its outputs and its memory, onc
 
 
 def run(
-    folded: Fold, poses: Array, wrench: Array, want: frozenset[str], threads: int | None
+    folded: Fold,
+    poses: Array,
+    wrench: Array,
+    want: frozenset[str],
+    threads: int | None,
+    more: Given | None = None,
 ) -> dict[str, NDArray[Any]]:
     """Wanted quantities of `COMPILED` at poses (N, n_a) under (6,), (N, 6) or (Q, 1 or N, 6).
+
+    Where `folded` has the motion given, `more` gives it, and poses are joint values (N, m).
 
     Raises:
         InputError: An angle is too large for sine and cosine to be accurate.
@@ -40,7 +47,7 @@ def run(
     loads = np.ascontiguousarray(wrench.reshape(-1, 1, 6) if wrench.ndim < 2 else wrench)
     if loads.ndim < 3 or wrench.ndim < 2:
         loads = loads.reshape(1, -1, 6)
-    count, n, s = len(poses), folded.pose_map.shape[1], len(folded.soft)
+    count, n, s = len(poses), folded.n, len(folded.soft)
     arrays = {}
     for name in COMPILED:
         batch = (len(loads), count) if name in BY_LOAD else (count,)
@@ -49,10 +56,11 @@ def run(
             (*batch, *own) if name in want else (0,) * (len(batch) + len(own)),
             dtype=np.uint8 if name.endswith("_class") else float,
         )
-    work, out, scratch = _kernel(folded, poses, loads, arrays)
+    more = more or Given(*(np.zeros((0, 0)) for _ in Given._fields))
+    work, out, scratch = _kernel(folded, poses, more, loads, arrays)
 
     def stretch(begin: int, end: int) -> None:
-        work(folded, poses, loads, begin, end, out, scratch(folded))
+        work(folded, poses, more, loads, begin, end, out, scratch(folded))
 
     cores = threads or available_cores()
     if cores == 1 or count <= PIECE:
@@ -99,7 +107,7 @@ def _check_angles(folded: Fold, poses: Array) -> None:
 
 
 def _kernel(
-    folded: Fold, poses: Array, loads: Array, arrays: dict[str, Any]
+    folded: Fold, poses: Array, more: Given, loads: Array, arrays: dict[str, Any]
 ) -> tuple[Callable[..., None], Any, Callable[[Fold], Any]]:
     """The compiled function, its outputs and its memory; a first call loads or compiles it."""
     if _READY:
@@ -111,7 +119,7 @@ def _kernel(
 
         out = Outputs(**arrays)
         # nothing to do but to be compiled or loaded
-        work(folded, poses, loads, 0, 0, out, scratch(folded))
+        work(folded, poses, more, loads, 0, 0, out, scratch(folded))
         _READY[:] = [work, Outputs, scratch]
     return work, out, scratch
 
