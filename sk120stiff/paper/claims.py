@@ -52,7 +52,7 @@ def claims(found: Findings) -> tuple[Claim, ...]:
 
 def _rendered(found: Findings) -> str:
     loader = PackageLoader("sk120stiff.paper", "")
-    page = Environment(loader=loader, undefined=StrictUndefined, autoescape=False)  # noqa: S701
+    page = Environment(loader=loader, undefined=StrictUndefined, autoescape=False)
     page.filters |= {"to": _to, "size": _size, "plusminus": _plus_minus, "listed": listed}
     return page.get_template("claims.md.j2").render(vars(found), np=np, rms=rms, paper=printed)
 
