@@ -177,6 +177,13 @@ def _payload(table: Table) -> Array:
             remedy="Write its header as payload[kg].",
         )
     mass = table.numbers("payload", allow_blank=True)
+    negative = np.flatnonzero(mass < 0.0)
+    if len(negative):
+        raise InputError(
+            f"a payload of {mass[negative[0]]:.4g} kg: no mass is negative",
+            where=table.place("payload", int(negative[0])),
+            remedy="Write the mass that hangs on the tool; 0 or a blank cell where there is none.",
+        )
     return np.where(np.isfinite(mass), mass, 0.0)
 
 

@@ -10,7 +10,8 @@ from sk120stiff.measurements.data import Measurements
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length
 
-TIMES = 3.0  # own weights that no arm carries; the strongest carry about one
+TIMES = 3.0  # own weights that no arm carries
+CARRIED = 1.0  # own weights that the strongest carry; more than that is told
 PER_AREA = 500.0  # kg per squared metre of reach that no arm carries, where masses are unknown
 LIGHT = 25.0  # the same, below which a URDF that weighs little may leave most masses out
 NOTHING = 1e-3  # share of its own weight that does not bend an arm so that it shows
@@ -48,7 +49,19 @@ def doubtful_sizes(robot: Robot, readings: Measurements) -> tuple[str, ...]:
             f"The heaviest payload is {heaviest:.3g} kg on an arm of {own:.3g} kg: it bends "
             "nothing. Tonnes taken for kg?"
         )
+    told += heavier_than_the_arm(heaviest, own)
     return tuple(told)
+
+
+def heavier_than_the_arm(heaviest: float, own: float, what: str = "is") -> list[str]:
+    """That a payload [kg] is more than an arm of `own` [kg] carries, where it is."""
+    if own == 0.0 or heaviest <= CARRIED * own:
+        return []
+    return [
+        f"The heaviest payload {what} {heaviest:.3g} kg on an arm that weighs {own:.3g} kg itself: "
+        "no arm carries more than its own weight. Check that the column payload is in kg and is "
+        "the mass on the tool, and that the URDF states the mass of every link."
+    ]
 
 
 def _place(what: str, key: str, place: Array, robot: Robot, readings: Measurements) -> list[str]:

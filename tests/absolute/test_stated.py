@@ -11,8 +11,9 @@ from scipy.spatial.transform import Rotation
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.calibrate import calibrate
+from sk120stiff.identify.absolute.words import findings
 from tests.absolute.arm import TURN, Arm, errors, poses, tracked, write
-from tests.absolute.test_forms import FIT, NOISE, SIGMA, calibrated, rows
+from tests.absolute.test_forms import FIT, NOISE, SIGMA, _with, calibrated, rows
 
 A = poses(60, 2)
 X, AXES = errors(1).stands(A)
@@ -47,6 +48,35 @@ def test_sizes_that_are_much_too_small_are_told(tmp_path: Path) -> None:
         assert said in told
     usual = write(tmp_path, A, READ, FIT + NOISE, more=",payload[kg]", cells=["50"] * 60)
     assert not calibrated(usual).notes
+
+
+def test_a_payload_heavier_than_the_arm_is_told_and_a_negative_one_refused(tmp_path: Path) -> None:
+    """The arm weighs 159 kg. What is stated counts, and what is found."""
+
+    def read(mass: str, settings: str = "") -> list[str]:
+        path = write(
+            tmp_path, A, READ, FIT + NOISE + settings, more=",payload[kg]", cells=[mass] * 60
+        )
+        readings = sk.read(path)
+        return findings(calibrated(path), readings)
+
+    told = "The heaviest payload is 200 kg on an arm that weighs 159 kg itself"
+    assert any(said.startswith(told) and "in kg" in said for said in read("200"))
+    assert not any("heaviest payload" in said for said in read("150"))
+    with pytest.raises(InputError, match="line 2, column payload.* a payload of -5 kg"):
+        read("-5")
+
+
+@pytest.mark.parametrize(("true", "said"), [(260.0, "comes out as"), (-40.0, "no mass is neg")])
+def test_a_payload_that_is_found_is_held_against_the_arm(
+    true: float, said: str, tmp_path: Path
+) -> None:
+    stated = np.where(np.arange(60) % 2, 10.0, 0.0)
+    x = tracked(_with(payload=(true + stated, np.zeros(3))).stands(A)[0])  # type: ignore[arg-type]
+    fit = "payload: {point: {xyz: [0, 0, 0], unit: mm}, fit: true}\n"
+    cells = [f"{m:g}" for m in stated]
+    path = write(tmp_path, A, x, FIT + fit + NOISE, more=",payload[kg]", cells=cells)
+    assert any(said in each for each in findings(calibrated(path), sk.read(path)))
 
 
 TOOL = Rotation.from_matrix(TURN.as_matrix() @ AXES)

@@ -13,8 +13,10 @@ from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.identify.uncertainty.known_model import known_estimates
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.stated_sizes import heavier_than_the_arm
 from sk120stiff.model import Model
 
+SURE = 3.0  # standard errors by which a mass is less than nothing
 SHOWN = 12  # frozen parameters and rows that are told one by one
 
 NO_TORQUE = "neither weight nor payload nor load puts a torque on it that shows"
@@ -84,6 +86,7 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     if found.placed is not None:
         said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
     said.append(gap_sentence(found))
+    said += _payload(found, readings)
     if found.waves:
         said.append(
             f"Waves over the joints' angles show beyond doubt ({', '.join(found.waves)}) and are "
@@ -100,6 +103,22 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         said.append(f"{len(rows)} rows lie far off all others and were set aside:")
         said += _some([_wild(found, readings, int(row)) for row in rows])
     return said
+
+
+def _payload(found: Calibration, readings: Measurements) -> list[str]:
+    """That a payload was found that no arm carries, or that weighs less than nothing."""
+    own = [p for p in found.fit.parameters if p.effect.name == "payload" and p.spec.name == "mass"]
+    if not own or readings.absolute is None or own[0].name in unseen(found):
+        return []
+    stated = readings.absolute.payload[readings.use]
+    mass, error = own[0].internal, own[0].internal_std or 0.0
+    lightest, heaviest = float(stated.min()) + mass, float(stated.max()) + mass
+    if lightest < -SURE * error:
+        return [
+            f"With the payload that was found the tool carries {lightest:.3g} kg: no mass is "
+            "negative. Check the stated payloads and the masses of the last links in the URDF."
+        ]
+    return heavier_than_the_arm(heaviest, found.fit.model.robot.total_mass, "comes out as")
 
 
 def _wild(found: Calibration, readings: Measurements, row: int) -> str:
