@@ -33,6 +33,7 @@ class Arm:
     marker: Array = field(default_factory=lambda: np.array([0.05, -0.08, 0.12]))
     waves: Array = field(default_factory=lambda: np.zeros((6, 2)))  # sin q, cos q
     play: Array = field(default_factory=lambda: np.zeros(6))  # half of it
+    flank: float = 0.0  # N·m over which teeth take hold
     weighs: bool = True
 
     def pose(self, q: Array) -> tuple[Array, Array, Array]:
@@ -53,7 +54,8 @@ class Arm:
         yields = self.compliance.any() or self.play.any()
         for _ in range(3 if self.weighs and yields else 0):
             torque = -np.stack([self._slope(q, k) for k in range(6)], axis=1)
-            q = start + self.compliance * torque + self.play * np.sign(torque)
+            side = np.tanh(torque / self.flank) if self.flank else np.sign(torque)
+            q = start + self.compliance * torque + self.play * side
         x, R, _ = self.pose(q)
         return x, R
 

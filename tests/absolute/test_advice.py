@@ -97,3 +97,17 @@ def test_play_under_weight_is_named(tmp_path: Path) -> None:
     assert names == ["lost_motion:j3"]
     half = found.final.fit.model.parameter("lost_motion:j3.half_width")
     assert half.value == pytest.approx(2e-4, abs=4.0 * half.std)
+
+
+def test_play_whose_teeth_take_hold_gradually_is_named_with_its_law(tmp_path: Path) -> None:
+    """Beside the law that jumps the spring comes out an eighth too soft, and sure of it."""
+    arm = errors(3)
+    arm.compliance, arm.play = np.zeros(6), np.array([0, 0, 3e-4, 0, 0, 0])
+    arm.compliance[2] = 1 / 5e5
+    arm.flank = 20.0
+    a = poses(90, 8)
+    found = explained(tmp_path, a, arm.stands(a)[0])
+    (law,) = [item.effect for item in found.named if item.effect.name == "lost_motion"]
+    assert all("_flank_" in spec.name for spec in law.parameters)
+    spring = found.final.fit.model.parameter("joint_springs:j3.stiffness")
+    assert spring.value == pytest.approx(5e5, abs=2.0 * spring.std) and spring.std < 4e4

@@ -12,6 +12,7 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.words import findings
+from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.robot import Robot
 from tests.absolute.arm import Array, tracked
@@ -59,20 +60,29 @@ class Campaign:
         self, a: Array, x: Array, settings: str = FIT, *,
         angle: str = "deg", length: str = "mm", labels: Sequence[str] | None = None,
     ) -> Placing:  # fmt: skip
-        """What comes of angles and positions in the units of their headers."""
+        """What comes of placing angles and positions in the units of their headers."""
+        self.readings = self.written(a, x, settings, angle=angle, length=length, labels=labels)
+        found = place(self.robot, self.readings)
+        assert found is not None
+        return found
+
+    def written(
+        self, a: Array, x: Array, settings: str, *, angle: str = "deg", length: str = "mm",
+        labels: Sequence[str] | None = None, frame: str = "unknown",
+    ) -> Measurements:  # fmt: skip
+        """The file read; what is not a number is a blank cell."""
         header = [f"{name}[{angle}]" for name in self.robot.actuated]
         header += [f"{axis}[{length}]" for axis in "xyz"]
         lines = [",".join(header + (["marker"] if labels is not None else []))]
         for k, row in enumerate(np.column_stack([a, x])):
-            cells = [f"{v:.10g}" for v in row] + ([] if labels is None else [labels[k]])
+            cells = ["" if np.isnan(v) else f"{v:.10g}" for v in row] + (
+                [] if labels is None else [labels[k]]
+            )
             lines.append(",".join(cells))
         path = self.folder / "readings.csv"
         path.write_text("\n".join(lines) + "\n")
-        path.with_suffix(".yaml").write_text(f"{self.head}position: {{frame: unknown}}\n{settings}")
-        self.readings = sk.read(path).with_joints(self.robot.actuated)
-        found = place(self.robot, self.readings)
-        assert found is not None
-        return found
+        path.with_suffix(".yaml").write_text(f"{self.head}position: {{frame: {frame}}}\n{settings}")
+        return sk.read(path).with_joints(self.robot.actuated)
 
 
 Spoil = Callable[[Array, Array, int], tuple[Array, Array]]  # degrees, mm, joints
@@ -174,3 +184,15 @@ def test_what_is_said_of_a_wild_row(tmp_path: Path) -> None:
     (line,) = [text for text in said if text.startswith("  line 22")]
     far = float(line.rsplit(": ", 1)[1].split(" mm off")[0])
     assert far == pytest.approx(300.0, abs=3.0)
+
+
+def test_single_axes_of_another_frame_are_no_readings_of_this_arm(tmp_path: Path) -> None:
+    """No row has a whole position, so no placing looks at them: the fit does."""
+    from sk120stiff.identify.absolute.calibrate import calibrate
+
+    arm = Campaign("ur5", tmp_path)
+    x = 1e3 * arm.x
+    x[np.arange(len(x))[:, None] % 3 != np.arange(3)] = np.nan
+    readings = arm.written(np.degrees(arm.a), x, FIT, frame="base")
+    with pytest.raises(InputError, match=r"(?s)worst in lines.*mm are left.*frame: unknown"):
+        calibrate(sk.base_model(arm.robot), readings)

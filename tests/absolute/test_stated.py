@@ -63,7 +63,7 @@ def test_a_payload_heavier_than_the_arm_is_told_and_a_negative_one_refused(tmp_p
     told = "The heaviest payload is 200 kg on an arm that weighs 159 kg itself"
     assert any(said.startswith(told) and "in kg" in said for said in read("200"))
     assert not any("heaviest payload" in said for said in read("150"))
-    with pytest.raises(InputError, match="line 2, column payload.* a payload of -5 kg"):
+    with pytest.raises(InputError, match=r"line 2, column payload.* a payload of -5 kg"):
         read("-5")
 
 

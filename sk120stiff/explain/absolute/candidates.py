@@ -28,8 +28,10 @@ from sk120stiff.explain.options import Options
 from sk120stiff.identify import pose_parts
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import frames_off
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model, Parameter
 from sk120stiff.robot import Robot
 
 FOLDS = 5
@@ -93,20 +95,12 @@ def linear_at(
     residual = seen.fit.residual
     own = [k for k, p in enumerate(seen.fit.parameters) if p.effect.id in present]
     Q = np.asarray(np.linalg.qr(seen.fit.jacobian[:, own])[0])
-    found: dict[Effect, Array] = {}
-    fitted = {effect for effect in model.effects if effect.id not in present}
-    for part in _parts([effect for effect in effects if effect not in fitted], model.robot):
-        wider = model
-        for effect in part:
-            wider = wider + effect
-        slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
-        first = len(model.parameters)
-        for effect in part:
-            found[effect] = slope[:, first : first + len(effect.parameters)]
-            first += len(effect.parameters)
+    fitted = {effect.id: effect for effect in model.effects if effect.id not in present}
+    effects = tuple(fitted.get(effect.id, effect) for effect in effects)  # by the law it was given
+    found = slopes(problem, model, [each for each in effects if each.id not in fitted])
     if fitted:
         slope = problem.channel_gap(model.values, derivative=True)[1]
-        for effect in fitted:
+        for effect in fitted.values():
             columns = [k for k, p in enumerate(model.parameters) if p.effect == effect]
             found[effect] = slope[:, columns]
             residual = residual + found[effect] @ model.values[columns] / sigma
@@ -118,11 +112,7 @@ def linear_at(
     hidden: list[Effect] = []
     for effect in effects:
         size = usual_sizes(effect, off)
-        block = found[effect] * size / sigma[:, None]
-        before = np.linalg.norm(block, axis=0)
-        for _ in range(2):
-            block = block - Q @ (Q.T @ block)
-        block[:, np.linalg.norm(block, axis=0) <= FAINT * before] = 0.0
+        block = beside(Q, found[effect] * size / sigma[:, None])
         if not block.any():
             hidden.append(effect)
             continue
@@ -147,6 +137,29 @@ def linear_at(
         stated=seen.fit.sigma_known,
     )
     return linear, tuple(hidden)
+
+
+def slopes(problem: PoseProblem, model: Model, effects: Sequence[Effect]) -> dict[Effect, Array]:
+    """(M, p) derivatives of the readings by the parameters of effects that the model has not."""
+    found = dict[Effect, Array]()
+    first = len(model.parameters)
+    for part in _parts(effects, model.robot):
+        more = tuple(Parameter(effect, spec) for effect in part for spec in effect.parameters)
+        wider = replace(model, parameters=model.parameters + more, uncertainty=None)
+        slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
+        ends = np.cumsum([first, *(len(effect.parameters) for effect in part)])
+        for effect, a, b in zip(part, ends[:-1], ends[1:], strict=True):
+            found[effect] = slope[:, a:b]
+    return found
+
+
+def beside(Q: Array, block: Array) -> Array:
+    """(M, p) what orthonormal columns do not make up of others; zero where that is rounding."""
+    before = np.linalg.norm(block, axis=0)
+    for _ in range(2):
+        block = block - Q @ (Q.T @ block)
+    block[:, np.linalg.norm(block, axis=0) <= FAINT * before] = 0.0
+    return block
 
 
 def usual_sizes(effect: Effect, frames: Mapping[str, float]) -> Array:

@@ -47,7 +47,32 @@ class Gain:
 
 
 def choose(linear: Linear, *, most: int = MOST) -> Chosen:
-    """Forward by evidence, backward as the picture changes, then confirmed at poses left out."""
+    """Forward by evidence, backward as the picture changes, then confirmed at poses left out.
+
+    Each is confirmed as it joins. What only others yet to come would confirm, for they hide it at
+    poses left out, is confirmed among all of them in a second search, whose answer counts where it
+    explains more.
+    """
+    chosen, dropped = _searched(linear, most, at_once=True)
+    if dropped:
+        others, fallen = _searched(linear, most, at_once=False)
+        noise = min(linear.noise(chosen), linear.noise(others))
+        gained = linear.score(others, noise) - linear.score(chosen, noise)
+        if gained > _threshold(linear) and _left(linear, others) < _left(linear, chosen):
+            chosen, dropped = others, fallen
+    return Chosen(_beside_frames(linear, chosen, dropped), dropped)
+
+
+def _left(linear: Linear, chosen: tuple[int, ...]) -> float:
+    """Sum of squares at poses left out."""
+    gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
+    return float(gap @ gap)
+
+
+def _searched(
+    linear: Linear, most: int, *, at_once: bool
+) -> tuple[tuple[int, ...], dict[int, str]]:
+    """Candidates that joined and were confirmed, as they joined or all at the end; the others."""
     chosen: tuple[int, ...] = ()
     dropped: dict[int, str] = {}
     threshold = _threshold(linear)
@@ -69,7 +94,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         if frozenset(chosen) in seen:
             break
         seen.add(frozenset(chosen))
-        gained = gain(linear, chosen, best) if best in chosen else None
+        gained = gain(linear, chosen, best) if at_once and best in chosen else None
         if gained is not None and not _confirmed(gained, linear):
             dropped[best] = (
                 f"{linear.candidates[best].id} fits, but at poses left out it takes off no more "
@@ -81,7 +106,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         if not _confirmed(gained, linear):
             chosen = tuple(c for c in chosen if c != e)
             dropped[e] = f"{linear.candidates[e].id} is not confirmed by poses left out."
-    return Chosen(_beside_frames(linear, chosen, dropped), dropped)
+    return chosen, dropped
 
 
 def _beside_frames(

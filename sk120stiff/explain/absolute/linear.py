@@ -7,8 +7,9 @@ works on sums over the readings of a part, so cross-validation costs no more tha
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -68,6 +69,54 @@ class Linear:
         P = self.base.shape[1]
         parts = [np.arange(self.slices[e].start, self.slices[e].stop) + P for e in chosen]
         return np.concatenate([np.arange(P), *parts]).astype(np.intp)
+
+    def only(self, chosen: tuple[int, ...]) -> Linear:
+        """With these candidates alone, in this order."""
+        parts = [self.slices[e] for e in chosen]
+        keep = np.concatenate([np.zeros(0), *(np.arange(p.start, p.stop) for p in parts)])
+        keep = keep.astype(np.intp)
+        ends = np.cumsum([0, *(p.stop - p.start for p in parts)])
+        return replace(
+            self,
+            columns=self.columns[:, keep],
+            positive=self.positive[keep],
+            sizes=self.sizes[keep],
+            candidates=tuple(self.candidates[e] for e in chosen),
+            slices=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
+        )
+
+    def by_law(self, e: int, law: Effect, sizes: Array, block: Array) -> Linear:
+        """With a candidate by another law: usual sizes (p,) of its parameters, columns (M, p)."""
+        own = self.slices[e]
+        more = len(sizes) - (own.stop - own.start)
+        positive = [spec.lower == 0.0 for spec in law.parameters]
+
+        def put(whole: Array | Mask, part: Array | Mask) -> Array:
+            return np.concatenate([whole[..., : own.start], part, whole[..., own.stop :]], axis=-1)
+
+        return replace(
+            self,
+            columns=put(self.columns, block),
+            positive=put(self.positive, np.array(positive)).astype(bool),
+            sizes=put(self.sizes, sizes),
+            candidates=(*self.candidates[:e], law, *self.candidates[e + 1 :]),
+            slices=tuple(
+                slice(p.start + more * (k > e), p.stop + more * (k >= e))
+                for k, p in enumerate(self.slices)
+            ),
+        )
+
+    def values(self, chosen: tuple[int, ...], noise: float) -> dict[str, float]:
+        """Internal value of every parameter of the chosen by its full name; what is rigid is 0."""
+        found = self.solved(chosen, noise)
+        x = np.zeros(self.base.shape[1] + self.columns.shape[1])
+        x[found.pick] = found.x
+        x = x[self.base.shape[1] :] * self.sizes
+        return {
+            f"{self.candidates[e].id}.{spec.name}": float(value)
+            for e in chosen
+            for spec, value in zip(self.candidates[e].parameters, x[self.slices[e]], strict=True)
+        }
 
     def solved(self, chosen: tuple[int, ...], noise: float, without: int | None = None) -> Solved:
         """The chosen model fitted to all parts, or to all but one.

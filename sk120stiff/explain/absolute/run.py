@@ -27,6 +27,7 @@ from sk120stiff.explain.absolute.choose import (
     gain,
     lengths,
 )
+from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Detectable
 from sk120stiff.explain.options import Options
@@ -155,19 +156,18 @@ def explain_positions(
     tell("registering the tracker", 0.05)
     base = calibrate(model, readings, geometry=False, waves=False, catalogue=catalogue)
     tell("searching the catalogue", 0.2)
-    linear, hidden = linear_at(base, options, catalogue)
-    found = choose(linear)
+    seen = base
+    linear, found, laws, hidden = _selected(base, seen, options, catalogue)
     tell("fitting exactly", 0.5)
     final = refined(base, _picked(linear, found), readings, catalogue=catalogue)
-    seen = base
     for _ in range(ROUNDS):
         before, seen = _picked(linear, found), final
-        linear, hidden = linear_at(base, options, catalogue, seen)
-        found = choose(linear)
+        linear, found, laws, hidden = _selected(base, seen, options, catalogue)
         again = _picked(linear, found)
         if set(again) == set(before):
             break
         final = refined(base, again, readings, final, catalogue)
+    final = beside_laws(final, linear, found.order, laws)
     tell("what is left", 0.85)
     noise = linear.noise(found.order)
     named = tuple(_named(linear, found, e) for e in found.order)
@@ -200,6 +200,16 @@ def explain_positions(
         probabilities=probabilities(linear, found),
         following=None if pair is None else next_poses(final, *pair, seed=options.seed),
     )
+
+
+def _selected(
+    base: Calibration, seen: Calibration, options: Options, catalogue: Catalogue
+) -> tuple[Linear, Chosen, Laws, tuple[Effect, ...]]:
+    """Names about a calibration, each by its best law; all their laws, and what does not show."""
+    linear, hidden = linear_at(base, options, catalogue, seen)
+    found = choose(linear)
+    laws = laws_at(linear, found.order, seen)
+    return by_best_laws(linear, found.order, laws), found, laws, hidden
 
 
 def _picked(linear: Linear, found: Chosen) -> list[Effect]:

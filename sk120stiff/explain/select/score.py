@@ -135,8 +135,16 @@ def price_of_choice(regression: Regression, effect: int, variant: int, tied: boo
     if regression.usual[effect] == 0 and regression.tied[effect] > 0 and tied:
         usual.add(regression.tied[effect])
     others = len(regression.variants[effect]) - len(usual)
-    price = 2.0 * float(np.log(len(usual) if variant in usual else 2.0 * others))
-    return price + regression.unusual[effect]
+    own = price_of_law(len(usual) if variant in usual else others, usual=variant in usual)
+    return own + regression.unusual[effect]
+
+
+def price_of_law(count: int, *, usual: bool) -> float:
+    """What one of `count` laws pays: the usual ones nothing but for being several, any other twice.
+
+    So much must the misfit fall for it in units of the noise's variance.
+    """
+    return 2.0 * float(np.log(count if usual else 2.0 * count))
 
 
 def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> tuple[Solved, float]:

@@ -21,11 +21,12 @@ from sk120stiff.identify.absolute.start import in_gravity, loaded, started
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.placing import Placing, place
+from sk120stiff.measurements.placing import FITS, Placing, place
 from sk120stiff.measurements.placing_distances import EACH
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
 from sk120stiff.measurements.turned import refuse_other_turns
 from sk120stiff.model import Model
+from sk120stiff.robot.anatomy import arm_length
 
 START = {  # m or rad
     "position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4, "inclination": 1e-4,
@@ -129,6 +130,8 @@ def calibrate(
         ),
     )
     found, frozen, wild = _fitted(start, readings, wild)
+    if placed is None:
+        _refuse_another_robot(found, readings)
     chosen: tuple[str, ...] = ()
     if waves:
         shown = waves_that_show(found, catalogue)
@@ -163,6 +166,29 @@ def _nowhere(readings: Measurements) -> InputError:
         f"{why}: nothing tells where the instrument stands",
         where=str(readings.path or "measurements"),
         remedy=remedy,
+    )
+
+
+def _refuse_another_robot(found: Fit, readings: Measurements) -> None:
+    """Single axes or distances that no placing has looked at.
+
+    Raises:
+        InputError: The fit leaves more than any arm of that size does.
+    """
+    problem = _poses(found)
+    gap = found.residual * problem.of_channels.sigma
+    left = float(np.sqrt(np.mean(gap[problem.lengths] ** 2))) if len(problem.lengths) else 0.0
+    reach = arm_length(found.model.robot)
+    if left <= FITS * reach:
+        return
+    worst = problem.lengths[np.argsort(-np.abs(gap[problem.lengths]))[:3]]
+    lines = ", ".join(str(problem.measurements.line[problem.rows[k]]) for k in worst)
+    raise InputError(
+        f"these readings are not of this robot's marker: {1e3 * left:.4g} mm are left, on an arm "
+        f"that reaches {1e3 * reach:.4g} mm",
+        where=f"{readings.path or 'measurements'}, worst in lines {lines}",
+        remedy="Check units, signs and order of the joint columns, and the frame: readings in the "
+        "tracker's own axes need 'position: {frame: unknown}' and some whole positions.",
     )
 
 

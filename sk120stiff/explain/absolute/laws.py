@@ -1,0 +1,130 @@
+"""By which law a named cause acts: a beam's taper and planes, a play's flanks and sides.
+
+The catalogue's own law is the usual one. Another takes its place where the evidence asks for it, at
+the price that it has among displacements too, and poses left out agree. What laws and names that
+remain possible make of the other parameters is their doubt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Effect
+from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
+from sk120stiff.explain.absolute.choose import alternatives
+from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.judge.selection_uncertainty import LAWS, LOOKED_AT, REFUTED
+from sk120stiff.explain.select.score import SWEEPS, price_of_law
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.left_out import COUNTED, frames_off
+from sk120stiff.identify.absolute.start import options_of
+from sk120stiff.identify.fit import with_values
+
+Block = tuple[Effect, Array, Array]  # a law, usual sizes (p,) and columns (M, p) of its parameters
+Laws = dict[int, list[Block]]  # of a candidate, the usual one first
+
+
+def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
+    """Every law of each of the chosen that has several, the usual one first.
+
+    Args:
+        linear: The positions linearised.
+        chosen: Candidates.
+        seen: The calibration about which they were.
+    """
+    problem, model = seen.problem, seen.fit.model
+    told, per = options_of(problem.measurements), 1.0 / problem.of_channels.sigma[:, None]
+    laws: dict[int, tuple[Effect, ...]] = {}
+    for e in chosen:
+        own = linear.candidates[e]
+        usual = type(own).at(model.robot, own.where, told)
+        others = usual.other_laws(problem.load_cases)
+        if others:
+            laws[e] = (usual, *others)
+    found = slopes(
+        problem,
+        model,
+        [law for e, own in laws.items() for law in own if law != linear.candidates[e]],
+    )
+    off = frames_off(model)
+
+    def block(e: int, law: Effect) -> Block:
+        if law == linear.candidates[e]:
+            part = linear.slices[e]
+            return law, linear.sizes[part], linear.columns[:, part]
+        sizes = usual_sizes(law, off)
+        return law, sizes, beside(linear.base, found[law] * sizes * per)
+
+    return {e: [block(e, law) for law in own] for e, own in laws.items()}
+
+
+def by_best_laws(linear: Linear, chosen: tuple[int, ...], laws: Laws) -> Linear:
+    """The chosen by the laws that explain most, one after the other until none changes."""
+    for _ in range(SWEEPS):
+        before = linear
+        for e, own in laws.items():
+            k, now = chosen.index(e), linear.only(chosen)
+            whole = tuple(range(len(chosen)))
+            noise = now.noise(whole)
+            left = _left(now, whole, noise)
+            tried: list[tuple[float, Block]] = []
+            for place, law in enumerate(own):
+                count = len(own) - 1 if place else 1
+                price = 0.5 * price_of_law(count, usual=not place)
+                other = now.by_law(k, *law)
+                tried.append((other.score(whole, noise) - price, law))
+                if law[0] == linear.candidates[e]:
+                    standing = tried[-1][0]
+            score, best = max(tried, key=lambda each: each[0])
+            if score > standing and _left(now.by_law(k, *best), whole, noise) < left:
+                linear = linear.by_law(e, *best)
+        if linear is before:
+            break
+    return linear
+
+
+def _left(linear: Linear, chosen: tuple[int, ...], noise: float) -> float:
+    """Sum of squares at poses left out."""
+    return float((linear.gap(chosen, noise, held_out=True) ** 2).sum())
+
+
+def beside_laws(
+    final: Calibration, linear: Linear, chosen: tuple[int, ...], laws: Laws
+) -> Calibration:
+    """The calibration, its errors widened by laws and names that the positions do not refute."""
+    noise = linear.noise(chosen)
+    here = linear.values(chosen, noise)
+    doubt = dict.fromkeys(here, 0.0)
+    for other in _others(linear, chosen, laws, noise):
+        for name in doubt.keys() & other.keys():
+            doubt[name] = max(doubt[name], abs(other[name] - here[name]))
+    fit = final.fit
+    more = [
+        0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.name, 0.0) for p in fit.parameters
+    ]
+    known = np.zeros(len(fit.x)) if fit.doubt is None else fit.doubt
+    whole = np.hypot(known, np.array(more) / fit.problem.scale)
+    return replace(final, fit=with_values(replace(fit, doubt=whole)))
+
+
+def _others(
+    linear: Linear, chosen: tuple[int, ...], laws: Laws, noise: float
+) -> Iterator[dict[str, float]]:
+    """Values by other laws, the likeliest of those not refuted, and by other names."""
+    small, whole = linear.only(chosen), tuple(range(len(chosen)))
+    most = small.solved(whole, noise).square + REFUTED * noise
+    for e, own in laws.items():
+        k = chosen.index(e)
+        tried = [small.by_law(k, *law) for law in own if law[0] != linear.candidates[e]]
+        near = sorted(tried, key=lambda each: each.solved(whole, noise).square)[:LAWS]
+        yield from (
+            each.values(whole, noise) for each in near if each.solved(whole, noise).square < most
+        )
+    for e in chosen:
+        rest = tuple(c for c in chosen if c != e)
+        for rival in alternatives(linear, chosen, e)[0][:LOOKED_AT]:
+            yield linear.values((*rest, rival), noise)
