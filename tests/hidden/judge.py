@@ -266,6 +266,8 @@ def coverage(truth: dict[str, Any], answer: Answer, share: float) -> tuple[list[
             _inside(answer, f"{own}.{short}", value)
             for short, value in entry["quantities"].items()
             if f"{own}.{short}" in answer.parameters
+            # of a play with flanks too it is a part alone
+            and not any(name.startswith(f"{own}.{short}_") for name in answer.parameters)
         ]
     # a gear's curve of another law has no spring of its own that could be right
     bent = {e["where"] for e in truth["effects"] if truth["level"] == "L10" and e["name"] in GEAR}

@@ -1,7 +1,8 @@
-"""What errors of geometry that a model leaves out do to the others' standard errors.
+"""What errors of geometry and springs that a model leaves out do to the others' standard errors.
 
 A joint frame that is frozen, or that nothing asked for, is not exact: it is off by as much as those
-that could be told, as far as the readings allow. With such a prior beside the readings the
+that could be told, as far as the readings allow. So with springs: where some joints yield, those
+that nothing asked for are not rigid. With such a prior beside the readings the
 information on all parameters together is inverted; what that adds to the variance of an estimate
 is its doubt (Bayes' rule with Gaussian nuisances, e.g. Tarantola 2005, ch. 3). Errors of geometry
 themselves have none: where their sum is counted is a convention, and said.
@@ -27,11 +28,11 @@ NORMAL = 0.6745  # median of |x| of a standard normal x
 
 
 def doubted(found: Fit, catalogue: Catalogue) -> Fit:
-    """The fit with standard errors that know of frames off the drawing that it leaves out."""
+    """The fit with standard errors that know of frames and springs that it leaves out."""
     problem = found.problem
     if not isinstance(problem, PoseProblem) or not np.isfinite(found.unit):
         return found
-    wide, sizes = _every_frame(found.model, catalogue)
+    wide, sizes = _with_left_out(found.model, catalogue)
     counted = np.array([isinstance(p.effect, COUNTED) for p in found.parameters])
     if not len(sizes) or counted.all():
         return found
@@ -56,22 +57,28 @@ def _variance(jacobian: Array, prior: Array) -> Array:
     return np.asarray(np.diag(inverse) / size**2)
 
 
-def _every_frame(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, float]]:
-    """The model with all joint frames, and those of their parameters that it leaves out, by index,
-    with the size that those it has are of; none where it has none.
+def _with_left_out(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, float]]:
+    """The model with all joint frames and springs, and those of their parameters that it leaves
+    out, by index, with the size that those it has are of; none where it has none.
     """
-    size = frames_off(model)
+    size = frames_off(model) | compliances(model)
     present = {effect.id for effect in model.effects}
-    kind = catalogue["joint_frame"]
-    for where in kind.places(model.robot) if size else ():
-        effect: Effect = catalogue.effect(model.robot, "joint_frame", where)
-        if effect.id not in present:
-            model = model + [Parameter(effect, spec, 0.0, free=False) for spec in effect.parameters]
+    for name in ("joint_frame", "joint_springs"):
+        for where in catalogue[name].places(model.robot):
+            effect: Effect = catalogue.effect(model.robot, name, where)
+            if effect.id not in present and effect.parameters[0].unit in size:
+                specs = effect.parameters
+                model = model + [Parameter(effect, spec, 0.0, free=False) for spec in specs]
+                present.add(effect.id)
     return model, {
         k: size[p.spec.unit]
         for k, p in enumerate(model.parameters)
-        if isinstance(p.effect, JointFrame) and not p.free and size.get(p.spec.unit)
+        if _may_be_left_out(p.effect) and not p.free and size.get(p.spec.unit)
     }
+
+
+def _may_be_left_out(effect: Effect) -> bool:
+    return isinstance(effect, JointFrame) or effect.joint_spring
 
 
 def frames_off(model: Model) -> dict[str, float]:
@@ -81,3 +88,12 @@ def frames_off(model: Model) -> dict[str, float]:
         if p.free and isinstance(p.effect, JointFrame):
             told.setdefault(p.spec.unit, []).append(abs(p.internal))
     return {unit: float(np.median(sizes)) / NORMAL for unit, sizes in told.items()}
+
+
+def compliances(model: Model) -> dict[str, float]:
+    """Scale of the compliances of springs that a model has, by unit: that of a half-normal law."""
+    told: dict[str, list[float]] = {}
+    for p in model.parameters:
+        if p.free and p.effect.joint_spring:
+            told.setdefault(p.spec.unit, []).append(p.internal)
+    return {unit: float(np.sqrt(np.mean(np.square(sizes)))) for unit, sizes in told.items()}
