@@ -2,10 +2,10 @@
 
 A joint frame that is frozen, or that nothing asked for, is not exact: it is off by as much as those
 that could be told, as far as the readings allow. So with springs: where some joints yield, those
-that nothing asked for are not rigid. With such a prior beside the readings the
-information on all parameters together is inverted; what that adds to the variance of an estimate
-is its doubt (Bayes' rule with Gaussian nuisances, e.g. Tarantola 2005, ch. 3). Errors of geometry
-themselves have none: where their sum is counted is a convention, and said.
+that nothing asked for are not rigid. With such a prior beside the readings the information on all
+parameters together is inverted; what that adds to the variance of an estimate, and how far it would
+move, is its doubt (Bayes' rule with Gaussian nuisances, e.g. Tarantola 2005, ch. 3). Errors of
+geometry themselves have none: where their sum is counted is a convention, and said.
 """
 
 from __future__ import annotations
@@ -41,20 +41,26 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
     kept = slope[:, found.problem.free] * problem.scale * per[:, None]
     more = slope[:, list(sizes)] * np.array(list(sizes.values())) * per[:, None]
     moving = ~found.at_bound
-    alone = _variance(kept[:, moving], np.diag(1.0 / problem.prior[moving] ** 2))
-    prior = np.concatenate([1.0 / problem.prior[moving] ** 2, np.ones(len(sizes))])
-    beside = _variance(np.column_stack([kept[:, moving], more]), np.diag(prior))
+    left = found.residual / found.unit
+    drawn = 1.0 / problem.prior[moving] ** 2
+    here, alone = _posterior(kept[:, moving], drawn, left)
+    every = np.column_stack([kept[:, moving], more])
+    there, beside = _posterior(every, np.concatenate([drawn, np.ones(len(sizes))]), left)
+    moved = there[: len(here)] - here
     doubt = np.zeros(len(found.x))
-    doubt[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0))
+    doubt[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0) + moved**2)
     return with_values(replace(found, doubt=np.where(counted, 0.0, doubt)))
 
 
-def _variance(jacobian: Array, prior: Array) -> Array:
-    """(P,) diagonal of the inverse of information and prior."""
-    information = jacobian.T @ jacobian + prior
+def _posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
+    """(P,) step to the best values, and variance, from derivative (M, P), prior (P,) and gap (M,).
+
+    The prior's own pull counts in neither: two steps are compared.
+    """
+    information = jacobian.T @ jacobian + np.diag(prior)
     size = np.sqrt(np.diag(information))
-    inverse = linalg.inv(information / np.outer(size, size))
-    return np.asarray(np.diag(inverse) / size**2)
+    inverse = linalg.inv(information / np.outer(size, size)) / np.outer(size, size)
+    return np.asarray(inverse @ (jacobian.T @ left)), np.asarray(np.diag(inverse))
 
 
 def _with_left_out(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, float]]:
