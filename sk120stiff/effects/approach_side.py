@@ -22,6 +22,7 @@ class ApproachSide(Geometric):
     name: ClassVar[str] = "approach_side"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "q_true = q + b * side, side the sign of the last movement"
+    says: ClassVar[str] = "{where} stops elsewhere when it comes from the other side."
     axes: ClassVar[str] = "the axis of the joint itself"
     needs: ClassVar[str] = "positions in a known order"
     only_absolute: ClassVar[bool] = True
@@ -41,15 +42,6 @@ class ApproachSide(Geometric):
                 meaning="true minus reported coordinate after a movement the positive way",
             ),
         )  # fmt: skip
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"{self.where} stops elsewhere when it comes from the other side."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every actuated joint."""
-        return robot.actuated
 
     def applies_to(self, load_cases: LoadCases) -> bool:
         """The order must be known, and both sides must occur."""

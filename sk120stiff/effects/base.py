@@ -33,7 +33,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_length
+from sk120stiff.robot.anatomy import arm_length, arm_links
 
 
 @dataclass(frozen=True)
@@ -88,6 +88,8 @@ class Effect(ABC):
         place: What `where` names, in words (class attribute).
         equation: The law, in symbols that `axes` and the parameters' meanings explain (class
             attribute).
+        says: What happens, in plain words, as a full sentence in which ``{where}`` is the place
+            (class attribute; or `sentence` says it).
         axes: The frame in which its parameters are stated (class attribute).
         former: Names under which files of earlier versions hold a parameter with the other sign,
             and its name now (class attribute).
@@ -122,6 +124,7 @@ class Effect(ABC):
     name: ClassVar[str]
     place: ClassVar[str] = "a place of the arm"
     equation: ClassVar[str] = ""
+    says: ClassVar[str]
     axes: ClassVar[str] = ""
     former: ClassVar[Mapping[str, str]] = {}
     random_effects: ClassVar[bool] = False
@@ -158,9 +161,8 @@ class Effect(ABC):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """What is to be known about it."""
 
-    @abstractmethod
     def sentence(self) -> str:
-        """What happens, in plain words, as a full sentence.
+        """What happens, in plain words, as a full sentence: `says`, of this place.
 
         Examples:
             >>> import sk120stiff as sk
@@ -168,11 +170,13 @@ class Effect(ABC):
             >>> sk.effect(robot, "base_rocking").sentence()
             'The base rocks on its foundation.'
         """
+        return self.says.format(where=self.where)
 
     @classmethod
-    @abstractmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every `where` at which the effect can act on this robot.
+
+        By default what `place` names: an instrument, a frame, every actuated joint or every link.
 
         Examples:
             >>> import sk120stiff as sk
@@ -180,6 +184,18 @@ class Effect(ABC):
             >>> sk.CATALOGUE["link_torsion"].places(robot)
             ('link_1_s', 'link_2_l', 'link_3_u')
         """
+        if cls.place == "a link":
+            return tuple(joint.link for joint in arm_links(robot))
+        named = {
+            "a joint": robot.actuated,
+            "the base frame": (robot.base_frame,),
+            "the tool frame": (robot.tool_frame,),
+            "sensor": ("sensor",),
+            "tracker": ("tracker",),
+        }
+        if cls.place not in named:
+            raise TypeError(f"the effect {cls.name} says no places at which it can act")
+        return named[cls.place]
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
@@ -195,7 +211,7 @@ class Effect(ABC):
 
     def applies_to(self, load_cases: LoadCases) -> bool:
         """Do these readings hold what the law needs (an order, branches, a weight)?"""
-        return True
+        return load_cases.absolute or not self.only_absolute
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """The same effect at the same place by other laws, where more than one is usual."""

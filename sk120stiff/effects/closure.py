@@ -72,6 +72,7 @@ class ClosureRod(LinearElastic):
     equation: ClassVar[str] = (
         "crank angle = torque / (K * (r sin g)^2), r the crank, g its angle to the rod"
     )
+    says: ClassVar[str] = "The linkage's {where} stretches, the more so the more the linkage folds."
     axes: ClassVar[str] = "along the rod"
 
     @property
@@ -87,10 +88,6 @@ class ClosureRod(LinearElastic):
                 meaning="force per length by which the rod stretches, its pins included",
             ),
         )
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The linkage's {self.where} stretches, the more so the more the linkage folds."
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:

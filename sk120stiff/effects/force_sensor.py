@@ -25,23 +25,14 @@ AXES = "xyz"
 
 
 @dataclass(frozen=True)
-class ForceSensorEffect(LoadError):
-    """A property of the one force sensor."""
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The sensor."""
-        return ("sensor",)
-
-
-@dataclass(frozen=True)
-class ForceScale(ForceSensorEffect):
+class ForceScale(LoadError):
     """Each force axis reads too much or too little by a share of its own."""
 
     name: ClassVar[str] = "force_scale"
     former: ClassVar[Mapping[str, str]] = {f"gain_{axis}": f"scale_{axis}" for axis in AXES}
     place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_reported - F_true = s * F_reported, axis by axis"
+    says: ClassVar[str] = "The force sensor's axes read too much or too little in proportion."
     axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
@@ -55,10 +46,6 @@ class ForceScale(ForceSensorEffect):
             )
             for axis in AXES
         )  # fmt: skip
-
-    def sentence(self) -> str:
-        """What happens."""
-        return "The force sensor's axes read too much or too little in proportion."
 
     def aliases(self, robot: Robot) -> tuple[Alias, ...]:
         """All gains together are what all compliances together are.
@@ -87,13 +74,14 @@ class ForceScale(ForceSensorEffect):
 
 
 @dataclass(frozen=True)
-class ForceBias(ForceSensorEffect):
+class ForceBias(LoadError):
     """The sensor adds a constant force that the unloaded reading did not have."""
 
     name: ClassVar[str] = "force_bias"
     former: ClassVar[Mapping[str, str]] = {f"force_{axis}": f"offset_{axis}" for axis in AXES}
     place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_reported - F_true = b, under load alone"
+    says: ClassVar[str] = "The force sensor has a constant offset under load."
     axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
@@ -109,10 +97,6 @@ class ForceBias(ForceSensorEffect):
             for axis in AXES
         )  # fmt: skip
 
-    def sentence(self) -> str:
-        """What happens."""
-        return "The force sensor has a constant offset under load."
-
     @cached_property
     def generators(self) -> Array:
         """It does not depend on the load."""
@@ -124,12 +108,15 @@ class ForceBias(ForceSensorEffect):
 
 
 @dataclass(frozen=True)
-class ForceRotation(ForceSensorEffect):
+class ForceRotation(LoadError):
     """The sensor is mounted turned by a small angle: W_true = W + φ × W."""
 
     name: ClassVar[str] = "force_rotation"
     place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_true = F_reported + a x F_reported, and moments alike"
+    says: ClassVar[str] = (
+        "The force sensor is mounted turned, so it sees the load in a wrong direction."
+    )
     axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
@@ -144,10 +131,6 @@ class ForceRotation(ForceSensorEffect):
             for axis in AXES
         )  # fmt: skip
 
-    def sentence(self) -> str:
-        """What happens."""
-        return "The force sensor is mounted turned, so it sees the load in a wrong direction."
-
     @cached_property
     def generators(self) -> Array:
         """φ × acts on force and moment."""
@@ -158,7 +141,7 @@ class ForceRotation(ForceSensorEffect):
 
 
 @dataclass(frozen=True)
-class ForceCrosstalk(ForceSensorEffect):
+class ForceCrosstalk(LoadError):
     """A force along one sensor axis shows on another."""
 
     name: ClassVar[str] = "force_crosstalk"
@@ -167,6 +150,7 @@ class ForceCrosstalk(ForceSensorEffect):
     }
     place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_reported - F_true on one axis = c * F_reported along another"
+    says: ClassVar[str] = "The force sensor's axes talk to each other."
     axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
@@ -180,10 +164,6 @@ class ForceCrosstalk(ForceSensorEffect):
             )
             for source, target in permutations(AXES, 2)
         )  # fmt: skip
-
-    def sentence(self) -> str:
-        """What happens."""
-        return "The force sensor's axes talk to each other."
 
     @cached_property
     def generators(self) -> Array:

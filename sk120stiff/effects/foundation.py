@@ -30,6 +30,7 @@ class BaseRocking(LinearElastic):
     name: ClassVar[str] = "base_rocking"
     place: ClassVar[str] = "the base frame"
     equation: ClassVar[str] = "turn = moment / K, about x and about y"
+    says: ClassVar[str] = "The base rocks on its foundation."
     axes: ClassVar[str] = (
         "axes of the base frame through the foundation point; z is the normal of the floor"
     )
@@ -83,15 +84,6 @@ class BaseRocking(LinearElastic):
         """Often as stiff about one axis as about the other."""
         return ((0, 1),)
 
-    def sentence(self) -> str:
-        """What happens."""
-        return "The base rocks on its foundation."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The base frame."""
-        return (robot.base_frame,)
-
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Two joints before all others."""
         placement = np.eye(4)
@@ -114,6 +106,7 @@ class BaseSliding(LinearElastic):
     name: ClassVar[str] = "base_sliding"
     place: ClassVar[str] = "the base frame"
     equation: ClassVar[str] = "shift = force / K, along x, y and z"
+    says: ClassVar[str] = "The base shifts on its foundation under the load."
     axes: ClassVar[str] = "axes of the base frame"
     one_axis_each: ClassVar[bool] = True
 
@@ -136,15 +129,6 @@ class BaseSliding(LinearElastic):
     def ties(self) -> tuple[tuple[int, ...], ...]:
         """Often as stiff along one axis as along the others."""
         return ((0, 1, 2),)
-
-    def sentence(self) -> str:
-        """What happens."""
-        return "The base shifts on its foundation under the load."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The base frame."""
-        return (robot.base_frame,)
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three slides before all other joints."""

@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.effects.base import Geometric, Options, scale_of
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_joint, arm_links
+from sk120stiff.robot.anatomy import arm_joint
 
 STANDS = "true minus reported coordinate; positive: the joint stands further than it reads"
 
@@ -40,6 +40,7 @@ class JointOffset(Geometric):
     name: ClassVar[str] = "joint_offset"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "q_true = q_reported + o"
+    says: ClassVar[str] = "The zero of {where} is off."
     axes: ClassVar[str] = "the axis of the joint itself"
 
     @property
@@ -50,15 +51,6 @@ class JointOffset(Geometric):
         return (
             ParameterSpec("offset", "rad", "rad", plausible=0.02, typical=1e-3, meaning=STANDS),
         )
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The zero of {self.where} is off."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every actuated joint."""
-        return robot.actuated
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
@@ -78,6 +70,7 @@ class ToolOffset(Geometric):
     name: ClassVar[str] = "tool_offset"
     place: ClassVar[str] = "the tool frame"
     equation: ClassVar[str] = "p_true = p_stated + o"
+    says: ClassVar[str] = "The measured point sits elsewhere on the tool than stated."
     axes: ClassVar[str] = "axes of the tool frame"
     of_marker: ClassVar[bool] = True
 
@@ -94,15 +87,6 @@ class ToolOffset(Geometric):
             for axis in "xyz"
         )
 
-    def sentence(self) -> str:
-        """What happens."""
-        return "The measured point sits elsewhere on the tool than stated."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The tool frame."""
-        return (robot.tool_frame,)
-
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three rigid slides at the tool frame."""
         return tool_slides(robot, self.id)
@@ -115,6 +99,7 @@ class LinkLength(Geometric):
     name: ClassVar[str] = "link_length"
     place: ClassVar[str] = "a link"
     equation: ClassVar[str] = "length_true = length_stated + o"
+    says: ClassVar[str] = "The link {where} has another length than stated."
     axes: ClassVar[str] = "the line from the link's joint to the next"
 
     @property
@@ -125,15 +110,6 @@ class LinkLength(Geometric):
                 "offset", typical=2e-3, scale=self.scale, meaning="true minus stated length"
             ),
         )
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The link {self.where} has another length than stated."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every link with a length."""
-        return tuple(joint.link for joint in arm_links(robot))
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """A rigid slide along the link, at its far end."""

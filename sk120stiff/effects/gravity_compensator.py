@@ -28,6 +28,7 @@ class GravityCompensator(LinearElastic):
     equation: ClassVar[str] = (
         "q - q_0 = torque * (1 / K - g * cos(angle of the link from the vertical))"
     )
+    says: ClassVar[str] = "A balancer adds stiffness to {where} that goes with the arm's posture."
     axes: ClassVar[str] = "the axis of the joint itself"
 
     @property
@@ -45,10 +46,6 @@ class GravityCompensator(LinearElastic):
                 meaning="g; positive where the joint is stiffer with its link upright",
             ),
         )
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"A balancer adds stiffness to {self.where} that goes with the arm's posture."
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:

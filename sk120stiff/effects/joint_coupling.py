@@ -57,10 +57,6 @@ class JointCoupling(Geometric):
             for second in turning[k + 1 : k + 1 + REACH]
         )
 
-    def applies_to(self, load_cases: LoadCases) -> bool:
-        """Displacements hardly show it."""
-        return load_cases.absolute
-
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """The joint that is moved."""
         return (self.where.split(PAIR)[1],)

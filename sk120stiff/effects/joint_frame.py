@@ -9,7 +9,6 @@ import numpy as np
 
 from sk120stiff.effects.base import Geometric
 from sk120stiff.effects.geometry import length_error
-from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, free_joints
@@ -26,6 +25,7 @@ class JointFrame(Geometric):
     name: ClassVar[str] = "joint_frame"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "T_true = T_stated * (shift, turn)"
+    says: ClassVar[str] = "The frame of {where} sits elsewhere than the URDF states."
     axes: ClassVar[str] = "axes of the joint's frame in the URDF"
     needs: ClassVar[str] = "positions"
     only_absolute: ClassVar[bool] = True
@@ -49,18 +49,10 @@ class JointFrame(Geometric):
         )  # fmt: skip
         return (*shifts, *turns)
 
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The frame of {self.where} sits elsewhere than the URDF states."
-
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every joint on the way to the tool that moves."""
         return free_joints(robot)
-
-    def applies_to(self, load_cases: LoadCases) -> bool:
-        """Displacements hardly show it."""
-        return load_cases.absolute
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three rigid slides and three rigid turns where the joint's frame is."""

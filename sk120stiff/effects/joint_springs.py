@@ -28,6 +28,7 @@ class JointSprings(LinearElastic):
     joint_spring: ClassVar[bool] = True
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "q - q_0 = torque / K"
+    says: ClassVar[str] = "The drive of {where} yields under the torque it carries."
     axes: ClassVar[str] = "the axis of the joint itself"
     one_axis_each: ClassVar[bool] = True
 
@@ -48,15 +49,6 @@ class JointSprings(LinearElastic):
         return (
             compliance("stiffness", softest=1e3, typical=1e6, scale=self.scale, meaning=MEANING),
         )
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The drive of {self.where} yields under the torque it carries."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every actuated joint."""
-        return robot.actuated
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:

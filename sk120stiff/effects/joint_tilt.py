@@ -25,6 +25,7 @@ class JointTilt(LinearElastic):
     name: ClassVar[str] = "joint_tilt"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "tilt = moment / K, about each of two axes"
+    says: ClassVar[str] = "The bearing of {where} tilts about the axes normal to its joint axis."
     axes: ClassVar[str] = (
         "axes through the joint, normal to its own: along the link that it carries, and across it"
     )
@@ -54,10 +55,6 @@ class JointTilt(LinearElastic):
     def ties(self) -> tuple[tuple[int, ...], ...]:
         """Often as stiff about one axis as about the other."""
         return ((0, 1),)
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The bearing of {self.where} tilts about the axes normal to its joint axis."
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:

@@ -80,6 +80,7 @@ class LinkBending(LinearElastic):
     name: ClassVar[str] = "link_bending"
     place: ClassVar[str] = "a link"
     equation: ClassVar[str] = "curvature(s) = M(s) / EI(s), slimmer at the far end"
+    says: ClassVar[str] = "The link {where} bends along its length."
     axes: ClassVar[str] = "the line from the link's joint to the next; both planes that hold it"
     inexact: ClassVar[float] = 0.14  # links taper more or less
 
@@ -133,15 +134,6 @@ class LinkBending(LinearElastic):
             for taper in TAPERS
         ]
         return tuple(law for law in laws if law != self)
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The link {self.where} bends along its length."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every link with a length."""
-        return tuple(joint.link for joint in arm_links(robot))
 
     def _member(self, robot: Robot) -> Member:
         found = _roll_member(robot, self.where) if self.roll else None
@@ -208,6 +200,7 @@ class LinkTorsion(LinearElastic):
     name: ClassVar[str] = "link_torsion"
     place: ClassVar[str] = "a link"
     equation: ClassVar[str] = "twist = moment * length / GJ"
+    says: ClassVar[str] = "The link {where} twists along its length."
     axes: ClassVar[str] = (
         "the line of the link, or the next joint's axis where the link is its shaft"
     )
@@ -226,10 +219,6 @@ class LinkTorsion(LinearElastic):
                 meaning="torsional stiffness over the whole length",
             ),
         )
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The link {self.where} twists along its length."
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:

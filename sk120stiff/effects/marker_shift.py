@@ -24,6 +24,7 @@ class MarkerShift(Geometric):
     name: ClassVar[str] = "marker_shift"
     place: ClassVar[str] = "the tool frame"
     equation: ClassVar[str] = "p_true = p_stated + o of the series"
+    says: ClassVar[str] = "The marker sits elsewhere on the tool in another series."
     axes: ClassVar[str] = "axes of the tool frame"
     needs: ClassVar[str] = "positions in several series"
     only_absolute: ClassVar[bool] = True
@@ -57,15 +58,6 @@ class MarkerShift(Geometric):
             for label in self.series
             for axis in "xyz"
         )  # fmt: skip
-
-    def sentence(self) -> str:
-        """What happens."""
-        return "The marker sits elsewhere on the tool in another series."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The tool frame."""
-        return (robot.tool_frame,)
 
     def applies_to(self, load_cases: LoadCases) -> bool:
         """There must be several series."""

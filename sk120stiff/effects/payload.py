@@ -12,7 +12,6 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects.base import LoadError
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import crossed
 
 
@@ -23,6 +22,7 @@ class Payload(LoadError):
     name: ClassVar[str] = "payload"
     place: ClassVar[str] = "the tool frame"
     equation: ClassVar[str] = "W_true = W + (m g, (m c) x g)"
+    says: ClassVar[str] = "The tool carries another mass, or carries it elsewhere, than stated."
     axes: ClassVar[str] = "axes of the tool frame, about the point where the payload hangs"
     needs: ClassVar[str] = "positions of an arm that yields under weight"
     only_absolute: ClassVar[bool] = True
@@ -45,19 +45,6 @@ class Payload(LoadError):
                 for axis in "xyz"
             ),
         )  # fmt: skip
-
-    def sentence(self) -> str:
-        """What happens."""
-        return "The tool carries another mass, or carries it elsewhere, than stated."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The tool frame."""
-        return (robot.tool_frame,)
-
-    def applies_to(self, load_cases: LoadCases) -> bool:
-        """It hangs there with and without load, so displacements do not show it."""
-        return load_cases.absolute
 
     @cached_property
     def generators(self) -> Array:

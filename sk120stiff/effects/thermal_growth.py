@@ -13,7 +13,7 @@ from sk120stiff.effects.base import Imposed, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_joint, arm_links
+from sk120stiff.robot.anatomy import arm_joint
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,6 @@ class ThermalGrowth(Imposed):
         """What happens."""
         cause = "as it gets warmer" if self.thermal else "as time passes"
         return f"The link {self.where} grows {cause}."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every link with a length."""
-        return tuple(joint.link for joint in arm_links(robot))
 
     def _clock(self, load_cases: LoadCases) -> Array | None:
         return load_cases.temperature if self.thermal else load_cases.time

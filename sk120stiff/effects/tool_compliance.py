@@ -24,6 +24,7 @@ class ToolCompliance(LinearElastic):
     name: ClassVar[str] = "tool_compliance"
     place: ClassVar[str] = "the tool frame"
     equation: ClassVar[str] = "turn = moment / K and shift = force / K, axis by axis"
+    says: ClassVar[str] = "The fixture at {where} yields between flange and measured point."
     axes: ClassVar[str] = "axes of the tool frame, at its origin"
     one_axis_each: ClassVar[bool] = True
 
@@ -57,15 +58,6 @@ class ToolCompliance(LinearElastic):
     def ties(self) -> tuple[tuple[int, ...], ...]:
         """Often as stiff against bending both ways, and against shifting all ways."""
         return ((0, 1), (3, 4, 5))
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The fixture at {self.where} yields between flange and measured point."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The tool frame."""
-        return (robot.tool_frame,)
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three turns and three slides at the tool frame."""

@@ -20,22 +20,13 @@ AXES = "xyz"
 
 
 @dataclass(frozen=True)
-class TrackerEffect(ReadingError):
-    """A property of the one measuring instrument."""
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The tracker."""
-        return ("tracker",)
-
-
-@dataclass(frozen=True)
-class ReadingRotation(TrackerEffect):
+class ReadingRotation(ReadingError):
     """The tracker's frame was aligned to the base with a small error: d_read = d + ω × d."""
 
     name: ClassVar[str] = "reading_rotation"
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "d_read = d + a x d"
+    says: ClassVar[str] = "The tracker's frame is turned against the robot's base frame."
     axes: ClassVar[str] = "axes of the base frame"
 
     @property
@@ -50,10 +41,6 @@ class ReadingRotation(TrackerEffect):
             for axis in AXES
         )  # fmt: skip
 
-    def sentence(self) -> str:
-        """What happens."""
-        return "The tracker's frame is turned against the robot's base frame."
-
     @cached_property
     def generators(self) -> Array:
         """ω ×."""
@@ -61,12 +48,13 @@ class ReadingRotation(TrackerEffect):
 
 
 @dataclass(frozen=True)
-class ReadingScale(TrackerEffect):
+class ReadingScale(ReadingError):
     """Every displacement is read too large or too small by the same share."""
 
     name: ClassVar[str] = "reading_scale"
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "d_read = (1 + s) d"
+    says: ClassVar[str] = "The tracker's scale is wrong."
     axes: ClassVar[str] = "all axes alike"
 
     @property
@@ -79,10 +67,6 @@ class ReadingScale(TrackerEffect):
             ),
         )  # fmt: skip
 
-    def sentence(self) -> str:
-        """What happens."""
-        return "The tracker's scale is wrong."
-
     @cached_property
     def generators(self) -> Array:
         """The identity."""
@@ -94,7 +78,7 @@ class ReadingScale(TrackerEffect):
 
 
 @dataclass(frozen=True)
-class ReadingDrift(TrackerEffect):
+class ReadingDrift(ReadingError):
     """Readings wander with time (or with their order, where no time is known) since the zero."""
 
     per_second: bool = False
@@ -102,6 +86,7 @@ class ReadingDrift(TrackerEffect):
     needs: ClassVar[str] = "a column order or time[s]"
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "d_read = d + r * (time or number of the reading since its zero)"
+    says: ClassVar[str] = "The readings drift as the measurement goes on."
     axes: ClassVar[str] = "axes of the base frame"
 
     @classmethod
@@ -127,10 +112,6 @@ class ReadingDrift(TrackerEffect):
             for axis in AXES
         )  # fmt: skip
 
-    def sentence(self) -> str:
-        """What happens."""
-        return "The readings drift as the measurement goes on."
-
     def applies_to(self, load_cases: LoadCases) -> bool:
         """The file must say in which order, or when, it was read."""
         return self._clock(load_cases) is not None
@@ -151,13 +132,14 @@ class ReadingDrift(TrackerEffect):
 
 
 @dataclass(frozen=True)
-class ZeroOffset(TrackerEffect):
+class ZeroOffset(ReadingError):
     """The unloaded reading of a pose was off: a constant on all readings of that pose."""
 
     poses: tuple[str, ...] = ()
     name: ClassVar[str] = "zero_offset"
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "d_read = d + c of the pose"
+    says: ClassVar[str] = "The unloaded readings of the poses are off by more than the noise."
     axes: ClassVar[str] = "axes of the base frame"
     random_effects: ClassVar[bool] = True
     needs: ClassVar[str] = "several readings of a pose"
@@ -189,10 +171,6 @@ class ZeroOffset(TrackerEffect):
             for pose in self.poses
             for axis in AXES
         )  # fmt: skip
-
-    def sentence(self) -> str:
-        """What happens."""
-        return "The unloaded readings of the poses are off by more than the noise."
 
     def applies_to(self, load_cases: LoadCases) -> bool:
         """Poses need several readings each, else the offset takes everything."""

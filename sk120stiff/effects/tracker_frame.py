@@ -9,9 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Viewpoint
-from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import left_jacobian, rotation_of
 
 
@@ -22,6 +20,7 @@ class TrackerFrame(Viewpoint):
     name: ClassVar[str] = "tracker_frame"
     place: ClassVar[str] = "tracker"
     equation: ClassVar[str] = "x_read = R(r) x_base + t"
+    says: ClassVar[str] = "The tracker stands elsewhere, and turned, against the base frame."
     axes: ClassVar[str] = "axes of the tracker"
     needs: ClassVar[str] = "positions"
     only_absolute: ClassVar[bool] = True
@@ -44,19 +43,6 @@ class TrackerFrame(Viewpoint):
             for axis in "xyz"
         )  # fmt: skip
         return (*shifts, *turns)
-
-    def sentence(self) -> str:
-        """What happens."""
-        return "The tracker stands elsewhere, and turned, against the base frame."
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """The instrument."""
-        return ("tracker",)
-
-    def applies_to(self, load_cases: LoadCases) -> bool:
-        """Displacements have their axes from the file."""
-        return load_cases.absolute
 
     def frame(self, values: Array) -> tuple[Array, Array]:
         """See `Viewpoint.frame`."""

@@ -23,6 +23,7 @@ class TransmissionError(Geometric):
     name: ClassVar[str] = "transmission_error"
     place: ClassVar[str] = "a joint that turns"
     equation: ClassVar[str] = "q_true = q + sum over k of a_k sin(k q) + b_k cos(k q)"
+    says: ClassVar[str] = "{where} stands off its reading by waves over its turn."
     axes: ClassVar[str] = "the axis of the joint itself"
     needs: ClassVar[str] = "positions"
     only_absolute: ClassVar[bool] = True
@@ -39,10 +40,6 @@ class TransmissionError(Geometric):
             for wave in ("sin", "cos")
         )  # fmt: skip
 
-    def sentence(self) -> str:
-        """What happens."""
-        return f"{self.where} stands off its reading by waves over its turn."
-
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every actuated joint that turns."""
@@ -51,10 +48,6 @@ class TransmissionError(Geometric):
             for joint, slides in zip(robot.actuated, robot.prismatic, strict=True)
             if not slides
         )
-
-    def applies_to(self, load_cases: LoadCases) -> bool:
-        """Displacements hardly show it."""
-        return load_cases.absolute
 
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """The joint itself."""

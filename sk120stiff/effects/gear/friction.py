@@ -50,6 +50,7 @@ class FrictionHysteresis(GearEffect, Switching):
         "q - q_0 = torque / K - h * sign(torque) while loading, + h * sign(torque) while unloading;"
         " with presliding r: - h * p / r, p the change of torque since the last reversal within +-r"
     )
+    says: ClassVar[str] = "Friction in {where} makes loading and unloading differ."
     axes: ClassVar[str] = "the axis of the joint itself"
     twins: ClassVar[tuple[str, ...]] = (LostMotion.name,)  # while loads only grow
 
@@ -94,10 +95,6 @@ class FrictionHysteresis(GearEffect, Switching):
         single = [replace(self, reaches=(r,)) for r in reaches]
         laws = (*single, replace(self, reaches=reaches), replace(self, reaches=(0.0,)))
         return tuple(law for law in laws if law != self)
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"Friction in {self.where} makes loading and unloading differ."
 
     def aliases(self, robot: Robot) -> tuple[Alias, ...]:
         """Of an arm without weight: lost motion with the other sign, until a load is taken off.

@@ -41,6 +41,7 @@ class GearHardening(GearEffect):
     name: ClassVar[str] = "gear_hardening"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3"
+    says: ClassVar[str] = "The gear of {where} gets stiffer as its torque grows."
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
     bends_a_spring: ClassVar[bool] = True
 
@@ -87,10 +88,6 @@ class GearHardening(GearEffect):
         if largest <= 0.0:
             return ()
         return (replace(self, breaks=tuple(float(f"{share * largest:.3g}") for share in STEPS)),)
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The gear of {self.where} gets stiffer as its torque grows."
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""

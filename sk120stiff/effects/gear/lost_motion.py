@@ -41,6 +41,9 @@ class LostMotion(GearEffect, Switching):
         "q - q_0 = torque / K + b * (s(torque) - s(torque of the weight)), s the sign, or tanh "
         "where flanks close gradually"
     )
+    says: ClassVar[str] = (
+        "The gear of {where} has lost motion: it jumps when its torque turns round."
+    )
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
     twins: ClassVar[tuple[str, ...]] = ("friction_hysteresis",)  # while loads only grow
 
@@ -104,10 +107,6 @@ class LostMotion(GearEffect, Switching):
             replace(self, flanks=(0.0, *flanks), sided=True),
         ]
         return tuple(law for law in (*smooth, *unequal, *free) if law != self)
-
-    def sentence(self) -> str:
-        """What happens."""
-        return f"The gear of {self.where} has lost motion: it jumps when its torque turns round."
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`. A position has no zero reading to be subtracted."""
