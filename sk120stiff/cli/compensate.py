@@ -28,9 +28,6 @@ from sk120stiff.cli.compensate_sheet import Judged, check_sheet, measured_words
 from sk120stiff.cli.compensate_words import (
     branch_keys,
     branch_words,
-    doubt_keys,
-    doubt_notes,
-    doubt_words,
     floor_of,
     infeasible,
     largest,
@@ -38,6 +35,9 @@ from sk120stiff.cli.compensate_words import (
     notes,
     parts,
     rms,
+    standing_keys,
+    standing_notes,
+    standing_words,
     warn_of_branch,
 )
 from sk120stiff.cli.frame import Answer
@@ -295,15 +295,15 @@ def command(
         after = standing(truth, found.a, nominal, given.wrench, frame=at)
         before = standing(truth, nominal, nominal, given.wrench, frame=at)
         found = Compensation(found.a, before, after, found.reasons)
-    doubt = standing_uncertainty(judge, found.a, given.wrench, frame=at)
+    uncertainty = standing_uncertainty(judge, found.a, given.wrench, frame=at)
     said = branch_words(branch, robot)
-    judged = Judged(given, judge, nominal, at, part, found.before, after, doubt, measured)
+    judged = Judged(given, judge, nominal, at, part, found.before, after, uncertainty, measured)
     came_back = judged.measured_keys()
-    about = doubt_words(judge, doubt)
+    about = standing_words(judge, uncertainty)
     used = None
     if language is None:
         placed = placement_columns(robot, given, found.a, at)
-        write_joints(out, given, robot, found.a, placed | notes(found, doubt_notes(doubt)))
+        write_joints(out, given, robot, found.a, placed | notes(found, standing_notes(uncertainty)))
     else:
         used = write_program(
             language, out, given, robot, own, frame=at, part=part, by_joints=by_joints,
@@ -332,7 +332,7 @@ def command(
         "cell": around.source or None,
         "infeasible": wrong,
         "judged_by": str(against or model),
-        "uncertainty": uncertainty_keys(judge) | doubt_keys(doubt),
+        "uncertainty": uncertainty_keys(judge) | standing_keys(uncertainty),
         "assumed": (*facts, *assumed),
         "language": "csv" if language is None else language.name,
         "settings": used,

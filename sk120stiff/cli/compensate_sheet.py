@@ -56,7 +56,7 @@ class Judged:
         nominal: (N, n) joints without correction [rad or m].
         frame: The frame that is led along the path; None: the tool frame.
         part: (4, 4) the path's axes in the base.
-        before, after, doubt: Where the tool stands, and ±.
+        before, after, uncertainty: Where the tool stands, and ±.
         measured: The file of points that came back, if any.
     """
 
@@ -67,7 +67,7 @@ class Judged:
     part: Array
     before: Standing
     after: Standing
-    doubt: StandingUncertainty | None
+    uncertainty: StandingUncertainty | None
     measured: Path | None
 
     @property
@@ -101,13 +101,20 @@ class Judged:
 
     def std(self) -> Array | None:
         """(N,) standard distance of a prediction [m]; None where it is not known."""
-        if self.doubt is None or not np.isfinite(root_mean_square(self.doubt.std_parameters)):
+        if self.uncertainty is None or not np.isfinite(
+            root_mean_square(self.uncertainty.std_parameters)
+        ):
             return None
-        left = self.doubt.std_remainder
-        return np.asarray(np.hypot(self.doubt.std_parameters, 0.0 if left is None else left))
+        left = self.uncertainty.std_remainder
+        return np.asarray(np.hypot(self.uncertainty.std_parameters, 0.0 if left is None else left))
 
     def write(
-        self, sheet: Path, named: str, source: Path, facts: Sequence[str], doubt: Sequence[str]
+        self,
+        sheet: Path,
+        named: str,
+        source: Path,
+        facts: Sequence[str],
+        uncertainty: Sequence[str],
     ) -> None:
         """Write the page."""
         from sk120stiff.show import reproducibility
@@ -124,7 +131,7 @@ class Judged:
             before=self.in_path(self.before.away),
             after=self.in_path(self.after.away),
             std=self.std(),
-            doubt=doubt,
+            uncertainty=uncertainty,
             shares=standing_budget(self.model, self.nominal, self.path.wrench, frame=self.frame),
             measured=self.returned,
             facts=facts,

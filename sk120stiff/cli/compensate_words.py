@@ -57,43 +57,43 @@ def infeasible(
     return wrong
 
 
-def doubt_notes(doubt: StandingUncertainty | None) -> dict[str, list[str]]:
+def standing_notes(uncertainty: StandingUncertainty | None) -> dict[str, list[str]]:
     """Columns of the file; blank where nothing is known."""
-    if doubt is None:
+    if uncertainty is None:
         return {}
-    columns = {"after_std_parameters[um]": doubt.std_parameters}
-    if doubt.std_remainder is not None:
-        columns["after_std_remainder[um]"] = doubt.std_remainder
+    columns = {"after_std_parameters[um]": uncertainty.std_parameters}
+    if uncertainty.std_remainder is not None:
+        columns["after_std_remainder[um]"] = uncertainty.std_remainder
     return {
         name: [f"{x * 1e6:.4f}" if np.isfinite(x) else "" for x in std]
         for name, std in columns.items()
     }
 
 
-def doubt_keys(doubt: StandingUncertainty | None) -> dict[str, object]:
+def standing_keys(uncertainty: StandingUncertainty | None) -> dict[str, object]:
     """The key `uncertainty`, what it adds to that of other commands."""
-    if doubt is None:
+    if uncertainty is None:
         return {}
-    left = doubt.std_remainder
+    left = uncertainty.std_remainder
     return {
-        "after_std_parameters_um": root_mean_square(doubt.std_parameters) * 1e6,
+        "after_std_parameters_um": root_mean_square(uncertainty.std_parameters) * 1e6,
         "after_std_remainder_um": None if left is None else root_mean_square(left) * 1e6,
-        "unknown_because": blame_reason(doubt.blame) or None,
+        "unknown_because": blame_reason(uncertainty.blame) or None,
     }
 
 
-def doubt_words(model: Model, doubt: StandingUncertainty | None) -> list[str]:
+def standing_words(model: Model, uncertainty: StandingUncertainty | None) -> list[str]:
     """How far off the corrected tool may stand in truth."""
-    if doubt is None:
+    if uncertainty is None:
         return sentences(model, None, None)
-    if doubt.blame:
-        return [f"How far off it stands in truth is unknown: it {blame_reason(doubt.blame)}."]
-    own, left = root_mean_square(doubt.std_parameters), 0.0
+    if uncertainty.blame:
+        return [f"How far off it stands in truth is unknown: it {blame_reason(uncertainty.blame)}."]
+    own, left = root_mean_square(uncertainty.std_parameters), 0.0
     words = f"{own * 1e6:.2g} µm from the parameters"
-    if doubt.std_remainder is None:
+    if uncertainty.std_remainder is None:
         words += f"; {NO_REMAINDER}"
     else:
-        left = root_mean_square(doubt.std_remainder)
+        left = root_mean_square(uncertainty.std_remainder)
         words += f", {left * 1e6:.2g} µm from what the model leaves unexplained"
     return [f"After ± {np.hypot(own, left) * 1e6:.2g} µm: one standard distance, {words}."]
 
@@ -191,7 +191,7 @@ def largest(values: Array) -> float:
     return float(finite.max()) if len(finite) else float("nan")
 
 
-def notes(found: Compensation, doubt: dict[str, list[str]]) -> dict[str, list[str]]:
+def notes(found: Compensation, uncertainty: dict[str, list[str]]) -> dict[str, list[str]]:
     """Columns of the CSV file: what was off, what is, and why."""
 
     def micrometres(where: Standing) -> list[str]:
@@ -200,7 +200,7 @@ def notes(found: Compensation, doubt: dict[str, list[str]]) -> dict[str, list[st
     return {
         "before[um]": micrometres(found.before),
         "after[um]": micrometres(found.after),
-        **doubt,
+        **uncertainty,
         "remark": list(found.reasons),
     }
 

@@ -16,9 +16,9 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.plan_check import checked
+from sk120stiff.cli.plan_effects import named_parameters, two_effects
 from sk120stiff.cli.plan_program import in_order, language_for, write_route
 from sk120stiff.cli.plan_shown import as_keys, height_words, plan_table
-from sk120stiff.cli.plan_wishes import named_parameters, two_effects
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError

@@ -67,7 +67,7 @@ def command(
     a, load = pose_of(arm, pose), wrench_of(wrench)
     frame = at or arm.tool_frame
     found = loaded_stiffness(believed, a, load, frame)
-    doubt = loaded_uncertainty(believed, a, load, found, frame)
+    uncertainty = loaded_uncertainty(believed, a, load, found, frame)
     document = {
         "robot": arm.name,
         "base_frame": arm.base_frame,
@@ -100,26 +100,29 @@ def command(
             "why_null": found.no_deflection,
         },
         "critical_load_factor": found.critical_factor,
-        "uncertainty": _uncertainty(believed, doubt),
+        "uncertainty": _uncertainty(believed, uncertainty),
         "units": UNITS,
     }
-    parts = _parts(arm.name, frame, found, load, doubt)
-    return Answer(document, parts=[*parts, *_doubts(believed, doubt, load)])
+    parts = _parts(arm.name, frame, found, load, uncertainty)
+    return Answer(document, parts=[*parts, *_uncertainty_notes(believed, uncertainty, load)])
 
 
-def _uncertainty(model: Model, doubt: LoadedUncertainty | None) -> dict[str, object]:
+def _uncertainty(model: Model, uncertainty: LoadedUncertainty | None) -> dict[str, object]:
     keys = uncertainty_keys(model)
-    if doubt is None:
+    if uncertainty is None:
         return keys
-    bent = doubt.deflection
+    bent = uncertainty.deflection
     return {
         **keys,
-        "principal_stiffness": {"std": doubt.principal, "interval_95": doubt.principal_interval},
+        "principal_stiffness": {
+            "std": uncertainty.principal,
+            "interval_95": uncertainty.principal_interval,
+        },
         "deflection": {
             "std_parameters": None if bent is None else _single(bent.std_parameters),
             "std_remainder": None if bent is None else _single(bent.std_remainder),
         },
-        "unknown_because": blame_reason(doubt.blame) or None,
+        "unknown_because": blame_reason(uncertainty.blame) or None,
     }
 
 
@@ -127,15 +130,17 @@ def _single(std: Array | None) -> Array | None:
     return None if std is None else std[0]
 
 
-def _doubts(model: Model, doubt: LoadedUncertainty | None, load: Array) -> list[str]:
-    if doubt is None:
+def _uncertainty_notes(
+    model: Model, uncertainty: LoadedUncertainty | None, load: Array
+) -> list[str]:
+    if uncertainty is None:
         return sentences(model, None, None)
-    bent = doubt.deflection
+    bent = uncertainty.deflection
     said = []
     if load.any() and bent is not None:
         said += sentences(model, bent.std_parameters, bent.std_remainder)
-    if doubt.blame:
-        said.append(f"A ± of '?' {blame_reason(doubt.blame)}.")
+    if uncertainty.blame:
+        said.append(f"A ± of '?' {blame_reason(uncertainty.blame)}.")
     return said
 
 
@@ -156,7 +161,7 @@ def _parts(
     frame: str,
     found: LoadedStiffness,
     load: Array,
-    doubt: LoadedUncertainty | None,
+    uncertainty: LoadedUncertainty | None,
 ) -> list[object]:
     axes = ("x", "y", "z")
     stiffness: object = "K_X does not exist here: in a direction the arm cannot yield."
@@ -173,7 +178,7 @@ def _parts(
         [
             (
                 str(k + 1),
-                _with(value, None if doubt is None else doubt.principal[k], 1e-6),
+                _with(value, None if uncertainty is None else uncertainty.principal[k], 1e-6),
                 *(f"{round(component, 4) + 0.0:.4f}" for component in direction),
             )
             for k, (value, direction) in enumerate(
@@ -191,8 +196,12 @@ def _parts(
         for label, x in deflections.items()
         if np.isfinite(x).all()
     ]
-    if doubt is not None and doubt.deflection is not None and doubt.deflection.std is not None:
-        rows.append(("  ± (one standard deviation)", *_cells(doubt.deflection.std[0]), ""))
+    if (
+        uncertainty is not None
+        and uncertainty.deflection is not None
+        and uncertainty.deflection.std is not None
+    ):
+        rows.append(("  ± (one standard deviation)", *_cells(uncertainty.deflection.std[0]), ""))
     deflection = table("Deflection [µm]", ["", *axes, "length"], rows)
     parts: list[object] = [
         f"{name}, {frame}; what yields: {', '.join(found.soft)}",

@@ -29,7 +29,7 @@ EQUAL_WEIGHTS = NoiseModel(10e-6, zero="separate", freedom=0)
 
 
 @dataclass(frozen=True, eq=False)
-class Attempt:
+class Run:
     """One run of one algorithm: the start of all three springs, and (3,) its end [N·m/rad]."""
 
     method: Method
@@ -53,7 +53,7 @@ class Identified:
 
     fit: Fit
     equal_weights: Fit
-    attempts: tuple[Attempt, ...]
+    attempts: tuple[Run, ...]
     by_pose: dict[str, tuple[Array, Array]]
     F: float
     probability: float
@@ -92,7 +92,7 @@ def identify_springs(
         for start in STARTS:
             far = model.with_public(**dict.fromkeys(model.names, start))
             found = one(far, measured, SHARED_ZERO, method)
-            attempts.append(Attempt(method, start, springs_of(found)))
+            attempts.append(Run(method, start, springs_of(found)))
     labels = np.array(measured.pose)
     alone = {
         pose: one(model, measured.select(np.flatnonzero(labels == pose)), SHARED_ZERO, "trf")

@@ -1,11 +1,11 @@
 """Slips of the pen in measurements: looked for before physics is blamed."""
 
 from sk120stiff.slips.copies import repeated_rows, without_copies
-from sk120stiff.slips.look import Doubts, look, refuse_unbelievable
+from sk120stiff.slips.look import DataChecks, look, refuse_unbelievable
 from sk120stiff.slips.search import Slip, find_slip
 
 __all__ = [
-    "Doubts",
+    "DataChecks",
     "Slip",
     "find_slip",
     "look",

@@ -25,7 +25,7 @@ OVERSTATED = 3.0  # times what is left, where a stated uncertainty exceeds the r
 
 
 @dataclass(frozen=True)
-class Doubts:
+class DataChecks:
     """What looks wrong in readings.
 
     Attributes:
@@ -58,7 +58,7 @@ class Doubts:
             raise Refusal(self.scale.sentence, where=where, remedy=remedy)
 
 
-def look(model: Model, measurements: Measurements) -> Doubts:
+def look(model: Model, measurements: Measurements) -> DataChecks:
     """What looks wrong in readings that a model is held against.
 
     Args:
@@ -67,10 +67,10 @@ def look(model: Model, measurements: Measurements) -> Doubts:
     """
     slip = find_slip(model.robot, measurements)
     scale = None if slip is not None else scale_doubt(model, measurements)
-    return Doubts(slip, scale, limits_doubt(model.robot, measurements))
+    return DataChecks(slip, scale, limits_doubt(model.robot, measurements))
 
 
-def refuse_unbelievable(doubts: Doubts, model: Model, measurements: Measurements) -> None:
+def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurements) -> None:
     """Stop where fitting springs would only put a number on nonsense.
 
     Raises:

@@ -14,7 +14,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.model import Model, ModelCompliance, model_compliance, probing_poses
 from sk120stiff.robot import LinearCoupling, Robot
 from sk120stiff.stiffness import ConstantCompliance, UnderLoad, under_load
-from sk120stiff.workspace.bending import Bending, Doubt, at_poses, bending, doubt_of
+from sk120stiff.workspace.bending import ArmUncertainty, Bending, at_poses, bending, uncertainty_of
 
 BENDING = ("jacobian", "K_C", "K_gravity", "deflection_enhanced")  # what `bending` needs
 
@@ -44,7 +44,7 @@ class ElasticArm:
         lower, upper: (n,) joint limits [rad or m]; infinite where none are known.
         elastic: What yields: constant springs, or the model where they change with the pose.
         robot: Knows where closed loops open; None where there are none.
-        doubt: How well the springs are known; None where nothing says so.
+        uncertainty: How well the springs are known; None where nothing says so.
     """
 
     name: str
@@ -55,7 +55,7 @@ class ElasticArm:
     upper: Array
     elastic: ConstantCompliance | ModelCompliance
     robot: Robot | None = None
-    doubt: Doubt | None = None
+    uncertainty: ArmUncertainty | None = None
 
     @property
     def n(self) -> int:
@@ -91,9 +91,9 @@ class ElasticArm:
             found: `batch` of the same with the quantities of `BENDING`.
         """
         C = self.elastic.compliance_at(a)[..., found.soft[:, None], found.soft]
-        doubt = self.doubt
-        if doubt is not None and isinstance(self.elastic, ModelCompliance):
-            doubt = at_poses(doubt, self.elastic.model, a)
+        uncertainty = self.uncertainty
+        if uncertainty is not None and isinstance(self.elastic, ModelCompliance):
+            uncertainty = at_poses(uncertainty, self.elastic.model, a)
         return tuple(
             bending(
                 found.of("jacobian"),
@@ -102,7 +102,7 @@ class ElasticArm:
                 found.soft,
                 deflection,
                 load,
-                doubt,
+                uncertainty,
             )
             for K_C, deflection, load in zip(
                 found.of("K_C"), found.of("deflection_enhanced"), loads, strict=True
@@ -164,5 +164,5 @@ def elastic_arm(
         upper=robot.upper,
         elastic=model_arm.constant or model_arm,
         robot=robot if robot.closures else None,
-        doubt=doubt_of(physical, probing_poses(robot)),
+        uncertainty=uncertainty_of(physical, probing_poses(robot)),
     )

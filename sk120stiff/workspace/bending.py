@@ -12,7 +12,7 @@ the model holds rigid may yield within their uncertainty; K is left out in those
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from sk120stiff.model.uncertainty import spread
 
 
 @dataclass(frozen=True, eq=False)
-class Doubt:
+class ArmUncertainty:
     """The uncertainty of an arm, as arrays that can be sent anywhere.
 
     Attributes:
@@ -64,7 +64,7 @@ class Bending:
     std_remainder: Array | None
 
 
-def doubt_of(model: Model, poses: Array) -> Doubt | None:
+def uncertainty_of(model: Model, poses: Array) -> ArmUncertainty | None:
     """The uncertainty of a physical model whose compliance is that at the first of poses (M, n).
 
     None if the model has none. See `at_poses` for a compliance that changes with the pose.
@@ -72,14 +72,14 @@ def doubt_of(model: Model, poses: Array) -> Doubt | None:
     known = model.uncertainty
     if known is None:
         return None
-    return Doubt(
+    return ArmUncertainty(
         *known.factors(model.names), _changes(model, poses[:1]), known.floor, known.remainder
     )
 
 
-def at_poses(doubt: Doubt, model: Model, poses: Array) -> Doubt:
+def at_poses(uncertainty: ArmUncertainty, model: Model, poses: Array) -> ArmUncertainty:
     """The same with the derivatives at poses (N, n), for compliances that change with the pose."""
-    return Doubt(doubt.seen, doubt.unseen, _changes(model, poses), doubt.noise, doubt.remainder)
+    return replace(uncertainty, changes=_changes(model, poses))
 
 
 def _changes(model: Model, poses: Array) -> Array:
@@ -99,7 +99,7 @@ def bending(
     soft: Index,
     deflection: Array,
     wrench: Array,
-    doubt: Doubt | None,
+    uncertainty: ArmUncertainty | None,
 ) -> Bending:
     """± of deflections at N poses under one wrench (6,).
 
@@ -110,9 +110,9 @@ def bending(
         soft: (s,) indices of the soft coordinates.
         deflection: (N, 3) enhanced deflection; NaN where the arm does not hold the load.
         wrench: Force [N] and moment [N·m] at the point.
-        doubt: What is uncertain; None: not known.
+        uncertainty: What is uncertain; None: not known.
     """
-    if doubt is None:
+    if uncertainty is None:
         return Bending(deflection, None, None)
     torque = np.einsum("nij,i->nj", jacobian, wrench)
     newton = np.eye(len(soft)) - C @ K
@@ -124,10 +124,12 @@ def bending(
     pull = np.einsum("ni,nij->nj", along, jacobian[:, :3])  # what the load of one along d does
     pull[:, soft] = np.linalg.solve(np.swapaxes(newton, -1, -2), pull[:, soft, None])[..., 0]
     torque[:, soft] += np.einsum("nij,nj->ni", K, z)
-    changes = doubt.changes if doubt.changes.ndim == 4 else doubt.changes[:, None]
+    changes = uncertainty.changes if uncertainty.changes.ndim == 4 else uncertainty.changes[:, None]
     by_parameter = ((pull[:, None] @ changes)[..., 0, :] * torque).sum(axis=-1).T  # (N, P)
-    std = spread(by_parameter @ doubt.seen, by_parameter @ doubt.unseen, doubt.noise)
+    std = spread(
+        by_parameter @ uncertainty.seen, by_parameter @ uncertainty.unseen, uncertainty.noise
+    )
     left = None
-    if doubt.remainder is not None:
-        left = np.sqrt(np.einsum("ni,i->n", along**2, doubt.remainder.std(wrench) ** 2))
+    if uncertainty.remainder is not None:
+        left = np.sqrt(np.einsum("ni,i->n", along**2, uncertainty.remainder.std(wrench) ** 2))
     return Bending(deflection, np.where(held, std, np.nan), left)

@@ -225,10 +225,12 @@ class MapJob:
         chosen = [*STIFFNESS, CONDITIONING]
         chosen += DIRECTIONS if self.with_directions else ()
         if self.bends:
-            doubt = self.arm.doubt
+            uncertainty = self.arm.uncertainty
             chosen += DEFLECTION
-            chosen += [] if doubt is None else [STD_PARAMETERS]
-            chosen += [] if doubt is None or doubt.remainder is None else [STD_REMAINDER]
+            chosen += [] if uncertainty is None else [STD_PARAMETERS]
+            chosen += (
+                [] if uncertainty is None or uncertainty.remainder is None else [STD_REMAINDER]
+            )
         if self.points.cartesian:
             joints = Variable(
                 "joints", "rad", "coordinates (m where the joint slides)", False, "f8",

@@ -84,7 +84,7 @@ def identity_of(job: MapJob, chunks: Chunks) -> str:
         job.loads, [variable.name for variable in job.variables],
         chunks.chunk_shape,
         elastic.model.values if isinstance(elastic, ModelCompliance) else None,
-        arm.doubt.identity if arm.doubt else None,
+        arm.uncertainty.identity if arm.uncertainty else None,
         None if weight is None else (weight.gravity, chain.masses, chain.centres),
     ]  # fmt: skip
     digest = hashlib.sha256()

@@ -12,7 +12,7 @@ import numpy as np
 from sk120stiff import base_model, load_robot, write_measurements
 from sk120stiff.measurements import Measurements
 from tests.attacks.judge import Verdict, apart
-from tests.slips.drawn import drawn
+from tests.slips.random_arms import random_arm
 
 ROBOT = "motoman_sk120"
 MEMORY = 1.0e9  # bytes at most
@@ -40,7 +40,7 @@ def long_chain(joints: int) -> str:
 
 def many_readings(folder: Path, count: int) -> list[str]:
     """`identify` with that many readings, four to a pose."""
-    arm = drawn(load_robot(ROBOT), 1, poses=count // 4)
+    arm = random_arm(load_robot(ROBOT), 1, poses=count // 4)
     write_measurements(replace(arm.readings, robot=ROBOT), folder / "many.csv")
     return ["identify", "many.csv", "--out", "found.yaml"]
 
@@ -63,7 +63,7 @@ def many_joints(folder: Path, count: int) -> list[str]:
     """`explain` of an arm with that many joints."""
     (folder / "chain.urdf").write_text(long_chain(count), encoding="utf-8")
     robot = load_robot(folder / "chain.urdf")
-    data: Measurements = drawn(robot, 3, poses=count).readings
+    data: Measurements = random_arm(robot, 3, poses=count).readings
     write_measurements(replace(data, robot="chain.urdf"), folder / "chain.csv")
     return ["explain", "chain.csv", "--out", "answer"]
 

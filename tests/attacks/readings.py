@@ -10,7 +10,7 @@ from sk120stiff import fit, load_robot, write_measurements
 from sk120stiff.measurements import NoiseStatement
 from sk120stiff.slips import find_slip, look
 from tests.attacks.judge import Verdict, heard
-from tests.slips.drawn import drawn
+from tests.slips.random_arms import random_arm
 from tests.slips.readings import SCALES, Arm, loads_as_if, sk120, spoilt, ur5
 from tests.slips.table import ARMS, SLIPS, has_a_floor
 
@@ -32,7 +32,7 @@ def arms(seeds: Sequence[int]) -> Iterator[tuple[str, Arm]]:
     yield "ur5 of the tests", ur5()
     for name, path in ARMS.items():
         for seed in seeds:
-            arm = drawn(load_robot(str(path)), seed)
+            arm = random_arm(load_robot(str(path)), seed)
             readings = replace(
                 arm.readings,
                 robot=str(path),

@@ -16,7 +16,7 @@ from sk120stiff.slips.of_joints import floors
 from sk120stiff.slips.sheet import sheet_of
 from tests.hidden.generator.build import build
 from tests.hidden.generator.writing import write_case
-from tests.slips.drawn import drawn
+from tests.slips.random_arms import random_arm
 from tests.slips.readings import PUBLIC, UR5, Arm, sk120, spoilt
 
 ARMS = {
@@ -84,7 +84,7 @@ def has_a_floor(arm: Arm) -> bool:
 
 
 def _arm(name: str, seed: int) -> Arm:
-    return drawn(load_robot(str(ARMS[name])), seed)
+    return random_arm(load_robot(str(ARMS[name])), seed)
 
 
 def _said(arm: Arm, slip: str) -> str:
@@ -107,7 +107,7 @@ def sound_readings(seeds: Sequence[int], arms: Sequence[str]) -> Iterator[Outcom
     """Drawn readings without a slip: every second with a missing effect."""
     for name in arms:
         for seed in seeds:
-            arm = drawn(load_robot(str(ARMS[name])), seed, effect=seed % 4 < 3)
+            arm = random_arm(load_robot(str(ARMS[name])), seed, effect=seed % 4 < 3)
             yield _sound(arm, name)
 
 

@@ -9,7 +9,7 @@ from sk120stiff import load_robot
 from sk120stiff.measurements import Measurements
 from sk120stiff.slips import find_slip
 from tests.attacks.loads import long_chain
-from tests.slips.drawn import drawn
+from tests.slips.random_arms import random_arm
 from tests.slips.readings import ARMS, joints_times, spoilt
 
 pytestmark = pytest.mark.timeout(120)  # seconds at most, where milliseconds are usual
@@ -47,7 +47,7 @@ def test_rows_that_moved_are_found_among_very_many(slip: str, said: str | None) 
 
 def test_nonsense_from_an_arm_of_many_joints_comes_to_an_end() -> None:
     """The signs of sixteen joints are 65 536 conventions: they are not gone through."""
-    known = drawn(load_robot(long_chain(16)), 4)
+    known = random_arm(load_robot(long_chain(16)), 4)
     noise = np.random.default_rng(2).normal(0.0, 1e-3, known.readings.wrench[:, :3].shape)
     assert find_slip(known.robot, replace(known.readings, displacement=noise)) is None
 

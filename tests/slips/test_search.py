@@ -9,7 +9,7 @@ from sk120stiff import load_robot
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import explain
 from sk120stiff.slips import find_slip, look
-from tests.slips.drawn import drawn
+from tests.slips.random_arms import random_arm
 from tests.slips.readings import ARMS, UR5, spoilt
 
 # slip, words of the finding, words of the remedy; {k} is a joint's name
@@ -100,7 +100,7 @@ def test_poses_beyond_the_joint_limits_are_told() -> None:
 
 def test_a_slip_is_told_beside_an_effect_that_no_passive_arm_has() -> None:
     """What is missing from the model leaves a tenth of the squares of sound readings."""
-    known = drawn(load_robot(str(UR5)), 90211)
+    known = random_arm(load_robot(str(UR5)), 90211)
     sound = look(known.model, known.readings)
     assert sound.slip is None
     found = find_slip(known.robot, spoilt(known, "sign,1"))

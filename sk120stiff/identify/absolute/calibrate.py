@@ -13,10 +13,10 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.gauge import Frozen, least_set
+from sk120stiff.identify.absolute.gauss_newton import gauss_newton
 from sk120stiff.identify.absolute.left_out import doubted
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.selection import waves_that_show
-from sk120stiff.identify.absolute.settle import settle
 from sk120stiff.identify.absolute.start import in_gravity, loaded, started
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
@@ -215,7 +215,9 @@ def _fitted(
 
 def fitted(problem: PoseProblem) -> Fit:
     """Least squares from the problem's start."""
-    return as_fit(problem, settle(problem.evaluate, problem.start, problem.bounds, problem.prior))
+    return as_fit(
+        problem, gauss_newton(problem.evaluate, problem.start, problem.bounds, problem.prior)
+    )
 
 
 def extended(found: Fit, effects: Sequence[Effect]) -> Fit:

@@ -1,4 +1,4 @@
-"""Several models of the same readings in one table: never a difference without its doubt."""
+"""Several models of the same readings in one table; no difference without its standard error."""
 
 from __future__ import annotations
 
@@ -91,12 +91,12 @@ def compare(
     lines = []
     for name in order:
         error, best = errors[name], errors[order[0]]
-        loss, doubt = (None, None) if error is None or best is None else error.difference(best)
+        loss, std = (None, None) if error is None or best is None else error.difference(best)
         found = fits[name]
-        note = _note(found, loss, doubt, first=name == order[0], bic=found.bic - least_bic)
+        note = _note(found, loss, std, first=name == order[0], bic=found.bic - least_bic)
         lines.append(
             Compared(
-                name, found, error, found.aic - least_aic, found.bic - least_bic, loss, doubt, note
+                name, found, error, found.aic - least_aic, found.bic - least_bic, loss, std, note
             )
         )
     return tuple(lines)
@@ -111,12 +111,12 @@ def _fits(
     return tried[likelier(best)]
 
 
-def _note(found: Fit, loss: float | None, doubt: float | None, *, first: bool, bic: float) -> str:
+def _note(found: Fit, loss: float | None, std: float | None, *, first: bool, bic: float) -> str:
     if first:
         said = "best"
-    elif loss is None or doubt is None:
+    elif loss is None or std is None:
         said = "cannot be held against other poses"
-    elif loss > CLEAR * doubt:
+    elif loss > CLEAR * std:
         said = "worse"
     else:
         said = "not told from the best"

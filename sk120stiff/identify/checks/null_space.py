@@ -18,7 +18,7 @@ from sk120stiff.model import Parameter
 
 VAGUE = 0.5  # relative standard error beyond which a value is no knowledge
 TOGETHER = 0.95  # correlation beyond which two estimates are said to move together
-LINKED = 0.1  # cosine of their parts in blind directions that ties two parameters
+LINKED = 0.1  # cosine of their parts in null directions that ties two parameters
 
 
 def weak_directions(fit: Fit) -> tuple[str, ...]:
@@ -34,7 +34,7 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
     for overlay in fit.overlays:
         said.append(overlaid_sentence(fit, overlay))
         told.update(overlay.members)
-    for group, size in _blind_groups(fit):
+    for group, size in _null_groups(fit):
         if not told.issuperset(group):
             said.append(_unseen(fit, group, size))
             told.update(group)
@@ -81,7 +81,7 @@ def overlaid_sentence(fit: Fit, group: Overlay) -> str:
 
 
 def _known_of(fit: Fit, group: Overlay) -> str:
-    """The one combination of overlaid parameters that the readings tell, with its doubt."""
+    """The one combination of overlaid parameters that the readings tell, with its uncertainty."""
     own = list(group.members)
     members = [fit.parameters[k] for k in own]
     size = np.linalg.norm(fit.jacobian[:, own], axis=0) / fit.problem.scale[own]
@@ -127,14 +127,14 @@ def words_for(parameter: Parameter) -> str:
     return f"{what} {detail} ({parameter.effect.where})".replace("  ", " ")
 
 
-def _blind_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
-    """Sets of lost parameters that blind directions tie, and how many of these each has."""
+def _null_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
+    """Sets of lost parameters that null directions tie, and how many of these each has."""
     moving = np.flatnonzero(~fit.held)
     span = fit.problem.span
-    blind = seen_directions(fit.jacobian[:, moving], span[moving])[3]
+    null = seen_directions(fit.jacobian[:, moving], span[moving])[3]
     covariance = covariance_of(fit.jacobian, fit.held, span)
     left = [int(k) for k in np.flatnonzero(np.isinf(np.diag(covariance)[moving]))]
-    part = blind / np.maximum(np.linalg.norm(blind, axis=1, keepdims=True), 1e-300)
+    part = null / np.maximum(np.linalg.norm(null, axis=1, keepdims=True), 1e-300)
     tied = np.abs(part @ part.T) > LINKED
     while left:
         group = [left.pop(0)]
@@ -142,7 +142,7 @@ def _blind_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
             joined = [k for k in left if tied[member, k]]
             group += joined
             left = [k for k in left if k not in joined]
-        size = int(np.linalg.matrix_rank(part[group], tol=LINKED)) if blind.size else 0
+        size = int(np.linalg.matrix_rank(part[group], tol=LINKED)) if null.size else 0
         yield [int(moving[k]) for k in sorted(group)], max(size, 1)
 
 
@@ -167,9 +167,9 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
 
 def _pair(fit: Fit, group: Sequence[int]) -> str:
     moving = np.flatnonzero(~fit.held)
-    blind = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[3]
+    null = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[3]
     place = [int(np.flatnonzero(moving == k)[0]) for k in group]
-    part = blind[place] * (fit.problem.span * fit.problem.scale)[list(group)][:, None]
+    part = null[place] * (fit.problem.span * fit.problem.scale)[list(group)][:, None]
     strongest = part[:, int(np.argmax(np.linalg.norm(part, axis=0)))]
     known, value, std = _combination(fit, group, strongest)
     first, second = (fit.parameters[k] for k in group)
@@ -179,10 +179,10 @@ def _pair(fit: Fit, group: Sequence[int]) -> str:
     )
 
 
-def _combination(fit: Fit, group: Sequence[int], blind: Array) -> tuple[str, float, float]:
-    """What stays the same along a blind direction (2,) of two internal values, in words."""
+def _combination(fit: Fit, group: Sequence[int], null: Array) -> tuple[str, float, float]:
+    """What stays the same along a null direction (2,) of two internal values, in words."""
     first, second = (fit.parameters[k] for k in group)
-    ratio = float(-blind[0] / blind[1])  # first + ratio · second is invariant
+    ratio = float(-null[0] / null[1])  # first + ratio · second is invariant
     kind = "compliances" if first.spec.reciprocal and second.spec.reciprocal else "values"
     if abs(ratio - 1.0) < 0.05:
         known, ratio = f"the sum of their {kind}", 1.0

@@ -1,4 +1,4 @@
-"""Identified values with their doubt, as a table drawn beside a forest plot."""
+"""Identified values with their uncertainty, as a table drawn beside a forest plot."""
 
 from __future__ import annotations
 

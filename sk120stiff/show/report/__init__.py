@@ -1,6 +1,5 @@
 """The report: content in plain blocks, one look for every command that writes one."""
 
-from sk120stiff.show.report.attempts import attempted, failure
 from sk120stiff.show.report.blocks import (
     Block,
     Code,
@@ -13,6 +12,7 @@ from sk120stiff.show.report.blocks import (
     Section,
     Table,
 )
+from sk120stiff.show.report.fallback import failure, section_or_note
 from sk120stiff.show.report.provenance import reproducibility
 from sk120stiff.show.report.rendering import Report
 
@@ -28,7 +28,7 @@ __all__ = [
     "SceneFrame",
     "Section",
     "Table",
-    "attempted",
     "failure",
     "reproducibility",
+    "section_or_note",
 ]

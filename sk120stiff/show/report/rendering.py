@@ -18,8 +18,8 @@ from markupsafe import Markup
 from sk120stiff.files import write_atomically
 from sk120stiff.show import palette
 from sk120stiff.show.figures.saving import inline_svg
-from sk120stiff.show.report.attempts import failure
 from sk120stiff.show.report.blocks import Block, Picture, SceneFrame, Section, Table
+from sk120stiff.show.report.fallback import failure
 
 WHOLE = 1e4  # up to here a number without digits after the point is easier read than a power
 

@@ -16,7 +16,7 @@ from sk120stiff.show.report import (
     Note,
     Report,
     Section,
-    attempted,
+    section_or_note,
 )
 from sk120stiff.show.stories.budget_section import budget_section
 from sk120stiff.show.stories.evidence_section import evidence_section
@@ -68,7 +68,7 @@ def explain_report(
         "What these readings cannot show": lambda: blind_section(answer),
         "What to measure next": lambda: next_section(answer, next_poses),
     }
-    sections = [attempted(title, build) for title, build in told.items()]
+    sections = [section_or_note(title, build) for title, build in told.items()]
     used = readings.masked()
     robot = answer.base.model.robot.name
     counts = f"{counted(used.n_readings, 'reading')} at {counted(len(used.poses), 'pose')}"

@@ -39,7 +39,7 @@ class PathSheet:
         position: (N, 3) where the tool should stand [m].
         before, after: (N, 3) how far off it stands, predicted [m]; NaN: nowhere.
         std: (N,) standard distance of a prediction [m]; None: nothing is stored.
-        doubt: The same in words.
+        uncertainty: The same in words.
         shares: What each effect brings, uncorrected.
         measured: What came back, run by run.
         facts: Sentences about what was assumed.
@@ -53,7 +53,7 @@ class PathSheet:
     before: Array
     after: Array
     std: Array | None
-    doubt: Sequence[str]
+    uncertainty: Sequence[str]
     shares: Sequence[Share]
     measured: Sequence[Returned]
     facts: Sequence[str]
@@ -137,8 +137,8 @@ class PathSheet:
                 f" {um_or_less(_rms(after))} µm after compensation (rms).",
                 caption="How far the loaded tool stands off its target, along the path.",
             ),
-            *([Note(" ".join(self.doubt), "caution" if self.std is None else "note")]
-              if self.doubt else []),
+            *([Note(" ".join(self.uncertainty), "caution" if self.std is None else "note")]
+              if self.uncertainty else []),
         ]  # fmt: skip
 
     def _worst(self) -> list[Block]:

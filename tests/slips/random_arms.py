@@ -1,4 +1,4 @@
-"""Sound readings of any arm, drawn: poses, loads, springs, noise, and a missing effect or none."""
+"""Sound readings of a random arm: poses, loads, springs, noise, and a missing effect or none."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ SIGNAL = (30.0, 300.0)  # displacements over noise
 WITHIN = 0.8  # of the joint limits that poses keep to
 
 
-def drawn(robot: Robot, seed: int, *, poses: int = 16, loads: int = 4, effect: bool = True) -> Arm:
+def random_arm(
+    robot: Robot, seed: int, *, poses: int = 16, loads: int = 4, effect: bool = True
+) -> Arm:
     """Readings of an arm with springs that are usual for its size; σ is stated every other time."""
     rng = np.random.default_rng(seed)
     q = np.repeat(_poses(robot, rng, poses), loads, axis=0)

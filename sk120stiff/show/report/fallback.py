@@ -12,7 +12,7 @@ from sk120stiff.show.report.blocks import Note, Section
 _LOG = logging.getLogger(__name__)
 
 
-def attempted(title: str, build: Callable[[], Section | None]) -> Section | None:
+def section_or_note(title: str, build: Callable[[], Section | None]) -> Section | None:
     """The section, or a section of that title that says what went wrong.
 
     Warns:

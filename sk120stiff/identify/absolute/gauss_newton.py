@@ -19,7 +19,9 @@ STEPS, HALVINGS = 60, 8  # an unknown load on unknown springs takes a curved way
 ENOUGH = 1e-3  # a step that changes the predictions by less than this share of their noise is none
 
 
-def settle(evaluate: Evaluate, start: Array, bounds: tuple[Array, Array], span: Array) -> Minimum:
+def gauss_newton(
+    evaluate: Evaluate, start: Array, bounds: tuple[Array, Array], span: Array
+) -> Minimum:
     """Least squares within bounds from a start that is near.
 
     Args:
