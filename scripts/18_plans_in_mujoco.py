@@ -1,9 +1,10 @@
 """Plans for public arms, held against MuJoCo's contacts and inverse dynamics on the same URDF.
 
 Nothing of the toolkit's own physics judges here: MuJoCo reads the file, its shapes and masses, says
-what touches, and what every motor must give.
+what touches, and what every motor must give. The way through the first poses of each plan is asked
+every half degree.
 
-Run from the repository:  python scripts/18_plans_in_mujoco.py [--poses 100]
+Run from the repository:  python scripts/18_plans_in_mujoco.py [--poses 100] [--driven 12]
 """
 
 import argparse
@@ -14,13 +15,19 @@ from tests.plan.planned_rows import ARMS, rows_of
 
 options = argparse.ArgumentParser()
 options.add_argument("--poses", type=int, default=100, help="poses planned for each arm")
-poses = options.parse_args().poses
-print("arm                    rows  wrong  random poses that touch something")
+options.add_argument("--driven", type=int, default=12, help="poses that are driven through")
+options = options.parse_args()
+print("arm                    rows  wrong  on the way  wrong  random poses that touch something")
 bad = 0
 for name in ARMS:
-    count, wrong, random = rows_of(name, poses)
+    found = rows_of(name, options.poses, driven=options.driven)
+    wrong = [*found.wrong, *found.run_into]
     bad += len(wrong)
-    print(f"{name:22s} {count:4d}  {len(wrong):5d}  {100 * random:4.0f} %", flush=True)
-    for fault in wrong:
+    print(
+        f"{name:22s} {found.rows:4d}  {len(found.wrong):5d}  {found.on_the_way:10d}  "
+        f"{len(found.run_into):5d}  {100 * found.touching:4.0f} %",
+        flush=True,
+    )
+    for fault in dict.fromkeys(wrong):
         print(f"    {fault}")
 sys.exit(int(bad > 0))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -12,36 +11,30 @@ import typer
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.cell import CellOption, as_measured, opened_cell
+from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import declare_readings, model_for, open_data, open_model
+from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.plan_check import checked
-from sk120stiff.cli.plan_effects import named_parameters, two_effects
+from sk120stiff.cli.plan_chosen import precise, telling
+from sk120stiff.cli.plan_places import Places, places_of
 from sk120stiff.cli.plan_program import in_order, language_for, write_route
-from sk120stiff.cli.plan_shown import as_keys, height_words, plan_table
-from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.cli.plan_shown import as_keys, height_words, plan_table, write_page
+from sk120stiff.cli.tables import progress_bar
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
-from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
 from sk120stiff.plan import (
     Cell,
     Pool,
-    d_optimal,
     feasible_pool,
     lowest_points,
-    promised,
-    random_choice,
-    rivalry,
     to_be_taken,
-    well_spread,
 )
-from sk120stiff.plan.design import refuse_count
 from sk120stiff.units import parse_size, parse_values
 
-DRAWS = 50  # random and well-spread choices that a plan is held against
 MOST_CANDIDATES = 1_000_000
 
 
@@ -139,6 +132,34 @@ def command(
             "collisions: .src (KUKA), .mod (ABB), .ls (FANUC), .jbi (Motoman), .script (UR).",
         ),
     ] = None,
+    places: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CSV",
+            help="Poses that put the point at these places, one at each; with --count so many of "
+            "them all. Columns point, x[mm], y[mm], z[mm] in the base, with roll[deg], pitch, yaw "
+            "of the tool or not.",
+            show_default="poses all over the joints' ranges",
+        ),
+    ] = None,
+    axis: Annotated[
+        str | None,
+        typer.Option(
+            "--tool-axis",
+            metavar="X,Y,Z",
+            help="Direction of the tool's z axis at the places, rotation about it free.",
+            show_default="any, or that of the file",
+        ),
+    ] = None,
+    page: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="HTML",
+            help="Write a page: the arm in 3-D at every pose of the plan, in order, with its "
+            "loads.",
+            show_default="none",
+        ),
+    ] = None,
     seed: SeedOption = 0,
 ) -> Answer:
     """The poses and loads to measure next.
@@ -148,25 +169,36 @@ def command(
     precision (or evidence) over that of random poses.
 
     Example: sk120stiff plan --model model.yaml --count 15 --floor '-0.8 m' --out plan.csv
+    Example: sk120stiff plan --model model.yaml --places reach.csv --page plan.html
     Example: sk120stiff plan --check plan.csv --cell cell.yaml
     """
     if check is not None:
         return checked(check, cell, lambda found: _stated(found, lowest, box))
-    if model is None or count is None:
+    if model is None or (count is None and places is None):
         raise InputError(
-            "a plan needs --model and --count",
+            "a plan needs --model and --count, or --places",
             remedy="Write --model model.yaml --count 12; --check plan.csv checks one there is.",
         )
+    if axis is not None and places is None:
+        raise InputError("this says how the tool stands at --places", where="--tool-axis")
     declare_readings(out)
     will_write(program, "--program")
+    will_write(page, "--page")
+    will_draw(None, page)
     language = None if program is None else language_for(program)
     known, start = _opened(model, data)
     at, force_at = _points(known, point)
     within = _stated(opened_cell(start.robot, cell, data, model), lowest, box)
     within = as_measured(start.robot, within, known)
+    given: Places | None = None
+    wanted_poses = count or 0
+    if places is not None:
+        towards = None if axis is None else direction_of(axis, "--tool-axis")
+        with progress_bar("poses at the places"):
+            given = places_of(places, start, within, at, towards)
     pool = feasible_pool(
         start.robot,
-        poses=candidates,
+        poses=candidates if given is None else given.a,
         directions=directions,
         force=parse_size(force, "force", where="--force", like="400 N"),
         point=at,
@@ -174,16 +206,22 @@ def command(
         seed=seed,
         cell=within,
     )
+    if given is not None and count is None:
+        pool = given.one_each(start, pool)
+        wanted_poses = len(np.unique(pool.pose))
     sigma = _sigma(known, noise)
     before = None if known is None else Pool(load_cases_of(start.robot, known.masked()))
     with progress_bar("plan"):
         if between is None:
-            chosen = _precise(start, pool, known, wanted, (count, loads), sigma, seed)
+            chosen = precise(start, pool, known, wanted, (wanted_poses, loads), sigma, seed)
         else:
-            chosen = _telling(start, pool, before, between, (count, loads), sigma, seed)
+            chosen = telling(start, pool, before, between, (wanted_poses, loads), sigma, seed)
     rows, document, said = chosen
     zero = "unknown" if known is None else known.zero
     plan = to_be_taken(start.robot, pool, rows, zero=zero)
+    remarks = pool.remarks
+    if given is not None:
+        plan, remarks = given.named(plan), (*given.remarks, *remarks)
     way: dict[str, object] | None = None
     if language is not None and program is not None:
         labels = plan.poses
@@ -210,132 +248,20 @@ def command(
         "cell": within.source or None,
         "floor_m": within.floor if np.isfinite(within.floor) else None,
         "lowest_m": float(heights.min()),
-        "remarks": pool.remarks,
+        "remarks": remarks,
         "route": way,
         "program": program,
+        "page": page,
         "out": out,
     }
-    said += [*pool.remarks, height_words(plan, heights, within.floor)]
+    said += [*remarks, height_words(plan, heights, within.floor)]
+    if page is not None:
+        write_page(page, start, plan)
+        said.append(f"Shown in {page}.")
     if out is not None:
         write_measurements(plan, out)
         said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
     return Answer(document, [plan_table(plan), *said])
-
-
-Chosen = tuple[Sequence[int], dict[str, object], list[object]]
-
-
-def _precise(
-    model: Model,
-    pool: Pool,
-    known: Measurements | None,
-    wanted: Sequence[str] | None,
-    count: tuple[int, int],
-    sigma: float,
-    seed: int,
-) -> Chosen:
-    names: list[str] = []
-    for text in wanted or ():
-        model, found = named_parameters(model, text)
-        names += found
-    before = None if known is None else Pool(load_cases_of(model.robot, known.masked()))
-    design = d_optimal(
-        model, pool, count=count[0], loads=count[1], sigma=sigma, parameters=names or None,
-        known=before,
-    )  # fmt: skip
-    random, spread = _held_against(design.gain_over, pool, len(design.rows), seed)
-    zero = "unknown" if known is None else known.zero
-    plan = to_be_taken(model.robot, pool, design.rows, zero=zero)
-    every = dict(
-        zip((model.names[k] for k in model.free), promised(model, plan, sigma, known), strict=True)
-    )
-    expected: list[dict[str, object]] = []
-    rows: list[tuple[object, ...]] = []
-    chosen = pool.load_cases.rows(np.array(design.rows, dtype=np.intp))
-    blind: list[object] = []
-    for name in design.parameters:
-        std = every[name]
-        p = model.parameter(name)
-        public, unit = p.spec.public_std(p.internal, float(std)), p.spec.unit
-        why = why_unseen(chosen, p)
-        expected.append(
-            {
-                "name": name,
-                "value": p.value,
-                "std": None if why else public,
-                "unit": unit,
-                "internal_std": None if why else float(std),
-                "internal_unit": p.spec.internal_unit,
-                "reason": why,
-            }
-        )
-        if why:
-            blind.append(f"{name} cannot be seen: {why}.")
-            rows.append((name, p.value, "cannot be seen", unit))
-            continue
-        shown = (public, unit) if np.isfinite(public) else (float(std), p.spec.internal_unit)
-        rows.append((name, p.value, *shown))
-    document: dict[str, object] = {
-        "criterion": "D-optimal",
-        "for": design.parameters,
-        "gain": random,
-        "gain_over_spread": spread,
-        "expected": expected,
-    }
-    said: list[object] = [
-        table("To expect", ["parameter", "value", "std. error", "unit"], rows),
-        f"Standard errors {random:.2f} times smaller than with random poses, {spread:.2f} times "
-        "smaller than with well-spread ones.",
-        *blind,
-    ]
-    return design.rows, document, said
-
-
-def _telling(
-    model: Model,
-    pool: Pool,
-    before: Pool | None,
-    between: str,
-    count: tuple[int, int],
-    sigma: float,
-    seed: int,
-) -> Chosen:
-    first, second = two_effects(model, between)
-    rivals = rivalry(model, first, second, pool, sigma=sigma, known=before)
-    refuse_count(pool, *count)
-    choice = rivals.best(count[0], pool.pose, count[1])
-
-    def gain_over(rows: Sequence[int]) -> float:
-        return choice.after / max(rivals.evidence_of(rows), 1e-12)
-
-    random, spread = _held_against(gain_over, pool, len(choice.rows), seed)
-    document: dict[str, object] = {
-        "criterion": "T-optimal",
-        "between": [first.id, second.id],
-        "gain": random,
-        "gain_over_spread": spread,
-        "evidence": choice.after,
-        "evidence_before": choice.before,
-    }
-    verdict = (
-        "enough to tell them apart" if choice.after > 3.3 else "not enough: plan more readings"
-    )
-    said: list[object] = [
-        f"Evidence between {first.id} and {second.id}: {choice.after:.2f} standard errors "
-        f"({verdict}), {choice.before:.2f} before.",
-        f"{random:.2f} times that of random poses, {spread:.2f} times that of well-spread ones.",
-    ]
-    return choice.rows, document, said
-
-
-def _held_against(
-    gain_over: Callable[[Sequence[int]], float], pool: Pool, count: int, seed: int
-) -> tuple[float, float]:
-    """Median gain over random and over well-spread choices."""
-    rng = np.random.default_rng(seed + 1)
-    random = [gain_over(random_choice(pool, count, rng)) for _ in range(DRAWS)]
-    spread = [gain_over(well_spread(pool, count, rng)) for _ in range(DRAWS)]
-    return float(np.median(random)), float(np.median(spread))
 
 
 def _opened(model: Path, data: Path | None) -> tuple[Measurements | None, Model]:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.tables import table
 from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
 
 
 def height_words(plan: Measurements, heights: Array, floor: float) -> str:
@@ -30,6 +34,25 @@ def as_keys(plan: Measurements) -> list[dict[str, object]]:
         }
         for label, a, wrench in zip(plan.pose, plan.joints, plan.wrench, strict=True)
     ]
+
+
+def write_page(file: Path, model: Model, plan: Measurements) -> None:
+    """The arm at every pose of a plan, in its order, with the loads there."""
+    from sk120stiff.show import scene_of_model, static_scene
+    from sk120stiff.show.scene.path import ScenePath
+
+    scene = scene_of_model(
+        model,
+        plan,
+        title=f"{model.robot.name}: plan",
+        subtitle=f"{len(plan.poses)} poses in their order, {plan.n_readings} loads",
+    )
+    stands = np.array([pose.a for pose in scene.poses])
+    at = model.robot.screws(stands, point=plan.point).position
+    path = ScenePath(
+        at, at, 0, said=f"first: {plan.poses[0]}", freedom="", mark="the first pose's point"
+    )
+    static_scene(file, replace(scene, path=path))
 
 
 def plan_table(plan: Measurements) -> object:

@@ -31,14 +31,14 @@ UNEXPLAINED = 1e-4  # probability of the misfit below which no hypothesis will d
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
-    """One set of effects with its most probable size.
+    """One set of effects.
 
     Attributes:
         members: Positions of its effects in the map.
         log_weight: ln of prior times evidence, over the sizes.
         columns: Its parameters' columns, the base's first.
-        mean, covariance: Their posterior at the most probable size, typical sizes.
-        misfit: χ² that it leaves.
+        mean, covariance: Moments of their posterior over all sizes, typical sizes.
+        misfit: χ² that it leaves at the most probable size.
     """
 
     members: tuple[int, ...]
@@ -168,8 +168,13 @@ class Belief:
         if bound.any():
             variance = np.diagonal(covariances, axis1=1, axis2=2)[:, bound]
             logs += (log_ndtr(means[:, bound] / np.sqrt(variance)) + np.log(2.0)).sum(axis=1)
-        likeliest = int(np.argmax(logs))
-        mean, covariance = means[likeliest], covariances[likeliest]
-        misfit = self.sums.square - 2.0 * float(mean @ moment) + float(mean @ gram @ mean)
-        total = float(np.logaddexp.reduce(logs)) - float(np.log(len(sizes))) + prior
+        best = means[int(np.argmax(logs))]
+        misfit = self.sums.square - 2.0 * float(best @ moment) + float(best @ gram @ best)
+        evidence = float(np.logaddexp.reduce(logs))
+        # One size alone, the smallest while little is known, would hide what a reading could show.
+        share = np.exp(logs - evidence)
+        mean = share @ means
+        off = means - mean
+        covariance = np.einsum("s,sij->ij", share, covariances + off[:, :, None] * off[:, None])
+        total = evidence - float(np.log(len(sizes))) + prior
         return Hypothesis(members, total, columns, mean, covariance, misfit)

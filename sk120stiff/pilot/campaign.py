@@ -23,7 +23,7 @@ from sk120stiff.plan.design import DISPLACEMENT
 from sk120stiff.slips import without_copies
 
 SURE = 0.95
-OPEN = 0.05  # probability from which on a rival counts
+OPEN = 0.05  # probability from which on another name counts, against a sure one or beside it
 FIRST = 4  # readings before which nothing is said
 APART = 3.3  # √λ at which two names are told apart
 LITTLE = 0.01  # nat: a reading that brings less about names tells next to nothing
@@ -124,9 +124,8 @@ class Campaign:
         v = np.zeros(size)
         found = Belief(linear, Sums.none(size), self.given)
         for _ in range(ROUNDS):
-            at = linear.model.with_values(start + v * linear.scale)
-            predicted, derivative = at.predict_with_sensitivities(problem.load_cases)
-            X = problem.whitener.apply(derivative * linear.scale)
+            predicted, derivative = self.rows(problem.load_cases, v)
+            X = problem.whitener.apply(derivative)
             y = problem.whitener.apply(problem.measured - predicted) + X @ v
             found = Belief(linear, Sums.none(size).plus(X, y), self.given)
             leader = found.leader
@@ -136,6 +135,17 @@ class Campaign:
             base = start / linear.scale
             v = np.maximum(base + v, np.where(base > 0.0, 0.2 * base, least)) - base
         return found
+
+    def rows(self, load_cases: LoadCases, v: Array) -> tuple[Array, Array]:
+        """(N, 3) predictions and (N, 3, P) changes per typical size [m], v of these off the start.
+
+        Args:
+            v: (P,) typical sizes.
+        """
+        linear = self.linear
+        at = linear.model.with_values(linear.model.values + v * linear.scale)
+        predicted, derivative = at.predict_with_sensitivities(load_cases)
+        return predicted, derivative * linear.scale
 
     def state(self, readings: Measurements | None) -> State:
         """What is known, what comes next, or why to stop."""

@@ -15,6 +15,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.pilot.belief import Belief, Hypothesis
 
+NEGLIGIBLE = 1e-3  # probability of a hypothesis that is not weighed at all
 WEIGHED = 14  # hypotheses whose predictions are held against each other
 SIZE_SHARE = 0.3  # of information about sizes, against that about names
 
@@ -39,7 +40,7 @@ class Expected:
 
 def expected(belief: Belief, X: Array) -> Expected:
     """Expected information of readings with whitened columns X (M, 3, P)."""
-    rows = belief.likely(WEIGHED)
+    rows = [(weight, h) for weight, h in belief.likely(WEIGHED) if weight > NEGLIGIBLE]
     means, covariances = [], []
     for _, h in rows:
         own = X[:, :, h.columns]
@@ -47,19 +48,30 @@ def expected(belief: Belief, X: Array) -> Expected:
         covariances.append(np.eye(3) + own @ h.covariance @ own.transpose(0, 2, 1))
     p = np.array([weight for weight, _ in rows])
     mu, S = np.array(means), np.array(covariances)  # (K, M, 3), (K, M, 3, 3)
-    logdet = np.linalg.slogdet(S)[1]
+    logdet, _ = _within(S, np.zeros(3))
     sizes = 0.5 * p @ logdet
     K = len(rows)
     overlap = np.ones((K, K, len(X)))
-    for i in range(K):
-        for j in range(i):
-            both = 0.5 * (S[i] + S[j])
-            off = mu[i] - mu[j]
-            far = 0.125 * np.einsum("mi,mi->m", off, np.linalg.solve(both, off[..., None])[..., 0])
-            far += 0.5 * (np.linalg.slogdet(both)[1] - 0.5 * (logdet[i] + logdet[j]))
-            overlap[i, j] = overlap[j, i] = np.exp(-far)
+    i, j = np.triu_indices(K, 1)
+    middle, square = _within(0.5 * (S[i] + S[j]), mu[i] - mu[j])
+    far = 0.125 * square + 0.5 * middle - 0.25 * (logdet[i] + logdet[j])
+    overlap[i, j] = overlap[j, i] = np.exp(-far)
     names = -p @ np.log(np.einsum("j,ijm->im", p, overlap))
     return Expected(np.maximum(names, 0.0), sizes)
+
+
+def _within(S: Array, x: Array) -> tuple[Array, Array]:
+    """ln det S and xᵀ S⁻¹ x of S (..., 3, 3) by its LDLᵀ, written out: LAPACK's calls cost more."""
+    a, b, c, d, e, f = (S[..., i, j] for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)))
+    p, q = b / a, c / a
+    second = d - b * p
+    r = (e - c * p) / second
+    third = f - c * q - second * r * r
+    u = x[..., 0]
+    v = x[..., 1] - p * u
+    w = x[..., 2] - q * u - r * v
+    square = u * u / a + v * v / second + w * w / third
+    return np.log(a) + np.log(second) + np.log(third), square
 
 
 def separation(

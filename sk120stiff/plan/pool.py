@@ -52,7 +52,7 @@ class Pool:
 def random_pool(
     robot: Robot,
     *,
-    poses: int,
+    poses: int | Array,
     directions: int,
     force: float,
     point: Array,
@@ -64,7 +64,8 @@ def random_pool(
 
     Args:
         robot: The robot.
-        poses, directions: Number of poses, and of load directions at each.
+        poses, directions: Number of poses, or these themselves (K, n) [rad or m], and number of
+            load directions at each.
         force: Size of the loads [N].
         point, force_point: (3,) measured point and point of the force in the tool frame [m]; the
             force acts at the measured point unless said otherwise.
@@ -75,7 +76,9 @@ def random_pool(
         Refusal: Next to no pose can be had.
     """
     rng = np.random.default_rng(seed)
-    if cell is None:
+    if not isinstance(poses, int):
+        a = poses
+    elif cell is None:
         a = random_poses(robot, poses, rng)
     else:
         a = poses_in(robot, poses, rng, cell, point)
@@ -90,7 +93,7 @@ def random_pool(
 def feasible_pool(
     robot: Robot,
     *,
-    poses: int,
+    poses: int | Array,
     directions: int,
     force: float,
     point: Array,

@@ -23,7 +23,13 @@ from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
 from sk120stiff.workspace.mapping import MapReport, write_map
-from sk120stiff.workspace.path import LoadedPath, joints_along, read_path, write_joints
+from sk120stiff.workspace.path import (
+    LoadedPath,
+    different,
+    joints_along,
+    read_path,
+    write_joints,
+)
 from sk120stiff.workspace.posture import (
     BestPosture,
     PathTask,
@@ -65,6 +71,7 @@ __all__ = [
     "branch_of",
     "compensate",
     "damaged_map",
+    "different",
     "elastic_arm",
     "elbow_sides",
     "joint_heights",

@@ -228,17 +228,21 @@ def _branches(
         rotation=None if first.rotation is None else np.repeat(first.rotation, STARTS, axis=0),
     )
     reached = solve_inverse(arm, many, starts)
-    found = reached.a[reached.found]
-    different: list[Array] = []
-    for a in found:
-        if all(np.abs(a - other).max() > SAME_BRANCH for other in different):
-            different.append(a)
-    found = np.array(different).reshape(-1, arm.n)
+    found = different(reached.a[reached.found])
     distance = np.linalg.norm(found - rest, axis=1)
     sinks = np.zeros(len(found), dtype=bool)
     if start is None and stays_above is not None and len(found):
         sinks = ~stays_above(found)
     return np.asarray(found[np.lexsort((distance, sinks))])
+
+
+def different(poses: Array) -> Array:
+    """(K, n) of coordinates (M, n) those that are not one and the same pose."""
+    kept: list[Array] = []
+    for a in poses:
+        if all(np.abs(a - other).max() > SAME_BRANCH for other in kept):
+            kept.append(a)
+    return np.array(kept).reshape(-1, poses.shape[1])
 
 
 def without_turns(arm: ElasticArm, joints: Array) -> Array:

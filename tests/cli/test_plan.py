@@ -170,3 +170,28 @@ def test_the_way_is_written_as_a_program(run, tmp_path: Path) -> None:
     assert text.count("\nHALT\n") == 4  # nobody hangs on loads while the arm goes on
     wrong = run("plan", "--model", MODEL, "--count", "4", *FEW, "--program", "way.nc")
     assert wrong.code == 2 and "joint values" in wrong.stderr
+
+
+def test_poses_are_given_as_places_of_the_point(run, tmp_path: Path) -> None:
+    """One pose at each, feasible and as asked; what cannot be reached is named, and why."""
+    places, out, page = (tmp_path / name for name in ("places.csv", "plan.csv", "plan.html"))
+    places.write_text(
+        "point,x[mm],y[mm],z[mm]\nA,1200,0,300\nB,1300,400,500\nfar,5000,0,0\nlow,1100,300,-700\n"
+    )
+    words = ("--model", MODEL, "--places", str(places), "--tool-axis", "0,0,-1")
+    words += ("--point=-60,40,150 mm", "--floor=-0.6 m", "--directions", "4", "--loads", "2")
+    outcome = run("plan", *words, "--out", str(out), "--page", str(page), "--json")
+    assert outcome.code == 0, outcome.stderr
+    plan = read_measurements(out)
+    assert set(plan.poses) == {"A", "B"} and plan.n_readings == 4
+    robot = load_robot("motoman_sk120")
+    where = robot.screws(plan.joints, point=plan.point)
+    wanted = {"A": (1.2, 0.0, 0.3), "B": (1.3, 0.4, 0.5)}
+    np.testing.assert_allclose(where.position, [wanted[p] for p in plan.pose], atol=1e-6)
+    np.testing.assert_allclose(where.rotation[:, :, 2], [[0, 0, -1]] * 4, atol=1e-6)
+    remarks = " ".join(outcome.document["remarks"])
+    assert "far: no pose reaches it" in remarks and "low: of" in remarks and "floor" in remarks
+    assert '"label":"pose B"' in page.read_text()
+    places.write_text("point,x[mm],y[mm],z[mm]\nfar,5000,0,0\n")
+    assert run("plan", *words).code == 1
+    assert run("plan", "--model", MODEL, "--count", "3", "--tool-axis", "0,0,1").code == 2

@@ -118,3 +118,24 @@ def test_what_no_reading_separates_is_called_hopeless() -> None:
     assert "base_rocking:base_link" in meant
     if stop.reason == "class":
         assert "would" in stop.sentence
+
+
+def test_all_sizes_count_before_anything_is_known() -> None:
+    """What a reading could show of an effect is not that of its smallest size alone."""
+    made = bench().campaign
+    belief = Belief(made.linear, Sums.none(made.X.shape[2]))
+    k = len(made.linear.base)
+    for h in belief.hypotheses:
+        if len(h.members) == 1:
+            own = np.diag(h.covariance)[k:]
+            np.testing.assert_allclose(own, np.mean(np.square(SIZES)))
+
+
+def test_the_bench_remembers_what_a_campaign_works_out() -> None:
+    made = bench().campaign
+    plain = Campaign.of(made.model, made.pool, SIGMA)
+    exact = made.model.predict(made.pool.load_cases)
+    readings = bench().read(exact, np.full_like(exact, 1e-5), [3, 4, 50])
+    ours, theirs = made.state(readings), plain.state(readings)
+    assert ours.row == theirs.row
+    np.testing.assert_allclose(ours.belief.sums.gram, theirs.belief.sums.gram, rtol=1e-9)

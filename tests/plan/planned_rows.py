@@ -1,13 +1,15 @@
 """Plans for public arms, and MuJoCo's word on each of their rows."""
 
+import itertools
 import tempfile
 import warnings
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from sk120stiff.errors import ToolkitWarning
-from sk120stiff.plan import Cell, feasible_pool, lowest_points, random_poses
+from sk120stiff.plan import Cell, feasible_pool, lowest_points, random_poses, route
 from sk120stiff.robot import Robot, load_robot
 from tests.corpus.robots import example
 from tests.oracles.mujoco_cell import MujocoCell
@@ -25,11 +27,29 @@ ARMS = {
     "ur5e": None,
     "motoman_sk120": None,
 }
+SAMPLED = np.deg2rad(0.5)  # rad, or m, between two questions on a way
 PINS = {"motoman_sk120": [("crank", "rod"), ("rod", "link_3_u")]}  # its parallelogram
 
 
-def rows_of(name: str, poses: int, seed: int = 7) -> tuple[int, list[str], float]:
-    """Number of planned rows, what MuJoCo finds wrong with them, and with random poses."""
+class Checked(NamedTuple):
+    """What MuJoCo says of an arm's plan.
+
+    Attributes:
+        rows, wrong: Planned rows, and what is wrong with them.
+        touching: Share of random poses that touch something.
+        on_the_way, run_into: Poses sampled on the way between the first planned ones, and what
+            touches there.
+    """
+
+    rows: int
+    wrong: list[str]
+    touching: float
+    on_the_way: int
+    run_into: list[str]
+
+
+def rows_of(name: str, poses: int, *, driven: int = 0, seed: int = 7) -> Checked:
+    """Plan for an arm, ask MuJoCo of every row, and of the way through the first `driven` poses."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ToolkitWarning)
         robot = load_robot(example(name) if name.endswith("urdf") else name, tool=ARMS[name])
@@ -52,7 +72,23 @@ def rows_of(name: str, poses: int, seed: int = 7) -> tuple[int, list[str], float
             for fault in _faults(judge, robot, row, a, wrench)
         ]
         spoilt = np.mean([bool(judge.contacts(values)) for values in standing])
-    return pool.count, wrong, float(spoilt)
+        way = _way(robot, cell, np.unique(pool.a, axis=0)[:driven]) if driven else []
+        run_into = [
+            f"between stops {leg} and {leg + 1}: {pair[0]} touches {pair[1]}"
+            for leg, a in way
+            for pair in judge.contacts(_values(robot, a))
+        ]
+    return Checked(pool.count, wrong, float(spoilt), len(way), run_into)
+
+
+def _way(robot: Robot, cell: Cell, a: np.ndarray) -> list[tuple[int, np.ndarray]]:
+    """Poses half a degree apart on the way through some, with the leg that each lies on."""
+    stops = route(robot, cell, a, point=POINT).a
+    out = []
+    for leg, (p, q) in enumerate(itertools.pairwise(stops)):
+        count = int(np.ceil(np.abs(q - p).max() / SAMPLED))
+        out += [(leg, p + share * (q - p)) for share in np.linspace(0.0, 1.0, count + 1)]
+    return out
 
 
 def _faults(judge: MujocoCell, robot: Robot, row: int, a: np.ndarray, wrench: np.ndarray):

@@ -7,6 +7,7 @@ from tests.plan.planned_rows import rows_of
 
 @pytest.mark.parametrize("name", ["ur10_robot.urdf", "panda.urdf"])
 def test_planned_rows_touch_nothing_and_motors_hold_them(name: str) -> None:
-    count, wrong, random = rows_of(name, poses=25)
-    assert count > 25 and not wrong
-    assert random > 0.15
+    found = rows_of(name, poses=25, driven=4)
+    assert found.rows > 25 and not found.wrong
+    assert found.touching > 0.15
+    assert found.on_the_way > 300 and not found.run_into

@@ -19,6 +19,7 @@ class ScenePath:
         before, after: (N, 3) as they were given, and as they were placed.
         worst: Number of the point that counts.
         said: What is told at that point.
+        mark: What that point is, in the legend.
         freedom: What was free, in words.
         middle, reach: (3,) middle of the path as given and the half widths by which the middle may
             be moved; None where it may not.
@@ -33,6 +34,7 @@ class ScenePath:
     middle: Array | None = None
     reach: Array | None = None
     turns: bool = False
+    mark: str = "its weakest point"
 
     def __post_init__(self) -> None:
         shapes = np.shape(self.before), np.shape(self.after)
@@ -50,6 +52,7 @@ class ScenePath:
             "moved": bool(np.abs(self.after - self.before).max() > 1e-6),
             "worst": self.worst,
             "said": self.said,
+            "mark": self.mark,
             "freedom": self.freedom,
             "box": box,
             "turns": self.turns,

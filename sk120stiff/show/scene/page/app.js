@@ -130,8 +130,10 @@ SK.start = (scene) => {
     }
     const times = `\u00d7 ${Number(state.exaggeration.toPrecision(3))}`;
     if (state.show.deflected && m.norm(state.wrench) > 0) rows.push(entry("deflected", frame.deflected ? `deflected shape, ${times}` : "no equilibrium: beyond the critical load"));
-    if (currentReading() && state.show.displacements)
-      rows.push(entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", `predicted, ${state.model}`), entry("gap", `gap, \u00d7 ${Number(scale.gap.toPrecision(3))}`)] : []),
+    const reading = currentReading(), predicted = `predicted, ${state.model}`;
+    if (reading && !reading.measured && state.model && state.show.displacements) rows.push(entry("predicted", `${predicted}, ${times}`));
+    if (reading && reading.measured && state.show.displacements)
+      rows.push(entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", predicted), entry("gap", `gap, \u00d7 ${Number(scale.gap.toPrecision(3))}`)] : []),
         ...(scene.models.length > 1 && state.model !== scene.models[0] ? [entry("before", `gap ${scene.models[0]}, the same scale`)] : []));
     if (scene.marks.length) rows.push(entry("named", "where what was named acts"));
     if (path) rows.push(...path.legend.map((row) => entry(...row)));

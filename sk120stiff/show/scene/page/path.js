@@ -36,7 +36,7 @@ SK.makePath = (stage, actors, path) => {
     stage.put(["path", "turn"], ring);
   }
   return {
-    legend: [["path", path.moved ? "path as placed" : "path"], ...(path.moved ? [["before", "path as given"]] : []), ["worst", "its weakest point"],
+    legend: [["path", path.moved ? "path as placed" : "path"], ...(path.moved ? [["before", "path as given"]] : []), ["worst", path.mark],
       ...(path.box || path.turns ? [["freedom", path.freedom]] : [])],
     // The ring stands about the tool's axis, wherever the tool is.
     follow({ position, rotation }) {
