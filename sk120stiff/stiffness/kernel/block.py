@@ -156,13 +156,8 @@ def _hang(fold: Fold, rows: Scratch) -> None:
     for i in range(3):
         for k in range(BLOCK):
             x[(LOAD + i) * BLOCK + k] = fold.gravity[i]
-    if fold.given:
-        place_joints(fold, rows)
-        carry(fold, rows)
-        complementary(fold, rows, rows.carried, rows.K_g, True, False)
-        return
     start = at(rows.pose + fold.actuated)
-    for k in range((fold.n - fold.actuated) * BLOCK):
+    for k in range(0 if fold.given else (fold.n - fold.actuated) * BLOCK):
         x[start + k] = 0.0
     start = at(rows.bent)
     for k in range(s * BLOCK):
@@ -170,7 +165,10 @@ def _hang(fold: Fold, rows: Scratch) -> None:
     for _ in range(BENDS):
         place_joints(fold, rows)
         carry(fold, rows)
-        complementary(fold, rows, rows.carried, rows.K_g, True, False)
+        # neither is a literal, for which it would be compiled once more
+        complementary(fold, rows, rows.carried, rows.K_g, fold.weighs, not fold.weighs)
+        if fold.given:
+            return
         factorise(fold, rows, rows.K_g)
         if sag(fold, rows) <= REST:
             break
