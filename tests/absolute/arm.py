@@ -34,6 +34,7 @@ class Arm:
     waves: Array = field(default_factory=lambda: np.zeros((6, 2)))  # sin q, cos q
     play: Array = field(default_factory=lambda: np.zeros(6))  # half of it
     flank: float = 0.0  # N·m over which teeth take hold
+    hardens: Array = field(default_factory=lambda: np.zeros(6))  # rad/(N·m)²
     weighs: bool = True
 
     def pose(self, q: Array) -> tuple[Array, Array, Array]:
@@ -56,6 +57,7 @@ class Arm:
             torque = -np.stack([self._slope(q, k) for k in range(6)], axis=1)
             side = np.tanh(torque / self.flank) if self.flank else np.sign(torque)
             q = start + self.compliance * torque + self.play * side
+            q -= self.hardens * torque * np.abs(torque)
         x, R, _ = self.pose(q)
         return x, R
 

@@ -13,6 +13,7 @@ from sk120stiff.explain.absolute.choose import choose
 from sk120stiff.explain.absolute.run import Explained, explain_positions
 from sk120stiff.model import Model
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
+from tests.absolute.test_forms import _with
 
 SIGMA = 2e-5
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
@@ -79,8 +80,6 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
 
 def test_a_payload_that_nobody_stated_is_named_from_a_rigid_start(tmp_path: Path) -> None:
     """A load bends nothing that is rigid: it shows only beside springs that were named before."""
-    from tests.absolute.test_forms import _with
-
     a = poses(70, 5)
     arm = _with(payload=(30.0, np.array([0.0, 0.0, 0.12])))
     found = explained(tmp_path, a, arm.stands(a)[0])
@@ -111,3 +110,24 @@ def test_play_whose_teeth_take_hold_gradually_is_named_with_its_law(tmp_path: Pa
     assert all("_flank_" in spec.name for spec in law.parameters)
     spring = found.final.fit.model.parameter("joint_springs:j3.stiffness")
     assert spring.value == pytest.approx(5e5, abs=2.0 * spring.std) and spring.std < 4e4
+
+
+def test_a_gear_that_hardens_under_weight_and_payload_is_no_wave(tmp_path: Path) -> None:
+    """Nor is its spring named before it: each alone is hidden by the waves of that joint."""
+    mass = np.where(np.arange(70) % 2, 80.0, 0.0)
+    arm = _with(payload=(mass, np.zeros(3)))  # type: ignore[arg-type]
+    arm.hardens[1] = 6e-10
+    a = poses(70, 8)
+    x = tracked(arm.stands(a)[0]) + SIGMA * np.random.default_rng(7).normal(size=(70, 3))
+    path = write(tmp_path, a, x, FIT + NOISE, more=",payload[kg]", cells=[f"{m:g}" for m in mass])
+    data = sk.read(path)
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    found = explain_positions(Model(robot), data.with_joints(robot.actuated))
+    ids = {item.effect.id for item in found.named}
+    assert {"gear_hardening:j2", "joint_springs:j2"} <= ids, ids
+    assert not any(name.startswith("transmission_error") for name in ids), ids
+    model = found.final.fit.model
+    bends = model.parameter("gear_hardening:j2.quadratic")
+    assert bends.value == pytest.approx(6e-10, abs=3.0 * bends.std) and bends.std < 6e-11
+    spring = model.parameter("joint_springs:j2.stiffness")
+    assert spring.value == pytest.approx(8e5, abs=3.0 * spring.std) and spring.std < 3e4

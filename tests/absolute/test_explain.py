@@ -50,6 +50,21 @@ def test_nothing_missing_is_nothing_named(tmp_path: Path) -> None:
     assert found.verdict == "none" and not found.named
 
 
+def test_what_hides_what_at_poses_left_out_is_confirmed_together(tmp_path: Path) -> None:
+    """One axis a row: 60 numbers. One by one the frames are not confirmed, all of them are."""
+    a, arm, rng = poses(60, 42), errors(1), np.random.default_rng(1)
+    arm.shift *= 2.0
+    arm.turn *= 2.0
+    x = arm.stands(a)[0]
+    x = x + 2e-5 * rng.normal(size=x.shape)
+    x[np.arange(60)[:, None] % 3 != np.arange(3)] = np.nan
+    data = sk.read(write(tmp_path, a, x, FIT.replace("unknown", "base") + NOISE))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    found = explain_positions(Model(robot), data.with_joints(robot.actuated))
+    assert {"joint_springs:j2", "joint_springs:j3"} <= {item.effect.id for item in found.named}
+    assert found.chance > 1e-3
+
+
 def test_waves_are_named_with_their_joint(tmp_path: Path) -> None:
     waves = np.zeros((6, 2))
     waves[1] = 2e-4, -1.5e-4

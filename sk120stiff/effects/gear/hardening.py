@@ -90,10 +90,12 @@ class GearHardening(GearEffect):
         return (replace(self, breaks=tuple(float(f"{share * largest:.3g}") for share in STEPS)),)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
-        """See `Elastic.elongation`."""
+        """See `Elastic.elongation`. A position has no zero reading to be subtracted."""
         weight = self.weight_torque(load_cases)
         total = torques + weight
-        by_parameter = self._shapes(total) - self._shapes(weight)
+        by_parameter = self._shapes(total)
+        if not load_cases.absolute:
+            by_parameter = by_parameter - self._shapes(weight)
         return Elongation(
             value=by_parameter @ values,
             by_torque=(self._slopes(total) @ values)[..., None],

@@ -53,9 +53,8 @@ def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
     Q = np.asarray(np.linalg.qr(np.column_stack([linear.base, linear.columns])[:, inside])[0])
     left = linear.columns - Q @ (Q.T @ linear.columns)
     out = []
-    for e, (effect, own) in enumerate(zip(linear.candidates, linear.slices, strict=True)):
-        if e in chosen:
-            continue
+    for e in linear.may_join(chosen):
+        effect, own = linear.candidates[e], linear.slices[e]
         block = left[:, own]
         volume = float(np.linalg.slogdet(np.eye(block.shape[1]) + block.T @ block / noise)[1])
         price = 2.0 * entry_price(linear, e) + volume
@@ -81,8 +80,9 @@ def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
             out[name] = max(out.get(name, 0.0), share)
     noise = linear.noise(found.order)
     now = linear.score(found.order, noise)
-    for e, effect in enumerate(linear.candidates):
-        if e in found.order or e in found.dropped or effect.id in out:
+    for e in linear.may_join(found.order):
+        effect = linear.candidates[e]
+        if e in found.dropped or effect.id in out:
             continue
         odds = linear.score((*found.order, e), noise) - now - entry_price(linear, e)
         out[effect.id] = float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))

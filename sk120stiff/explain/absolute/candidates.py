@@ -21,7 +21,7 @@ from sk120stiff.effects import (
     ReadingError,
     load_cases_of,
 )
-from sk120stiff.effects.gear import LostMotion
+from sk120stiff.effects.gear import GearHardening, LostMotion
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.explain.absolute.linear import FAINT, Linear
 from sk120stiff.explain.options import Options
@@ -37,6 +37,7 @@ from sk120stiff.robot import Robot
 FOLDS = 5
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
+_SHOWN_BY_WEIGHT = (LinearElastic, LostMotion, GearHardening)
 _ONLY_LOADED = ("reading_rotation", "zero_offset", "joint_offset", "link_length")
 
 
@@ -48,7 +49,7 @@ def candidates_at(
     options: Options,
     catalogue: Catalogue,
 ) -> tuple[Effect, ...]:
-    """Every effect at every place that could show in these positions and is not in the model.
+    """Every effect at every place that could show in these positions and is not `present`.
 
     Errors of joint frames hold those of joint offsets and link lengths.
     """
@@ -56,11 +57,11 @@ def candidates_at(
     loaded = bool(readings.wrench.any())
     out = []
     for kind in catalogue:
-        if kind.name in _ONLY_LOADED or kind.bends_a_spring:
+        if kind.name in _ONLY_LOADED:
             continue
         if issubclass(kind, LoadError) and not (loaded or kind.only_absolute):
             continue
-        if issubclass(kind, Elastic) and not issubclass(kind, LinearElastic | LostMotion):
+        if issubclass(kind, Elastic) and not issubclass(kind, _SHOWN_BY_WEIGHT):
             continue
         for where in kind.places(model_robot):
             effect = kind.at(model_robot, where, told)

@@ -81,32 +81,42 @@ def _searched(
         noise = linear.noise(chosen)
         now = linear.score(chosen, noise)
         tried = {
-            e: linear.score((*chosen, e), noise) - now + usual(linear.candidates[e])
-            for e in range(len(linear.candidates))
-            if e not in chosen and e not in dropped
+            step: linear.score((*chosen, *step), noise)
+            - now
+            + sum(usual(linear.candidates[e]) for e in step)
+            - threshold * len(step)
+            for step in _steps(linear, chosen)
+            if not set(step) & dropped.keys()
         }
         if not tried:
             break
-        best = max(tried, key=lambda e: tried[e])
-        if tried[best] < threshold:
+        best = max(tried, key=lambda step: tried[step])
+        if tried[best] < 0.0:
             break
-        chosen = _backward(linear, _plainer(linear, (*chosen, best)), threshold)
+        chosen = _backward(linear, _plainer(linear, (*chosen, *best)), threshold)
         if frozenset(chosen) in seen:
             break
         seen.add(frozenset(chosen))
-        gained = gain(linear, chosen, best) if at_once and best in chosen else None
-        if gained is not None and not _confirmed(gained, linear):
-            dropped[best] = (
-                f"{linear.candidates[best].id} fits, but at poses left out it takes off no more "
-                f"than {100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard errors)."
-            )
-            chosen = tuple(e for e in chosen if e != best)
+        for e in best if at_once else ():
+            gained = gain(linear, chosen, e) if e in chosen else None
+            if gained is not None and not _confirmed(gained, linear):
+                dropped[e] = (
+                    f"{linear.candidates[e].id} fits, but at poses left out it takes off no more "
+                    f"than {100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard "
+                    "errors)."
+                )
+                chosen = linear.less(chosen, e)
     for e in list(chosen):
-        gained = gain(linear, chosen, e)
-        if not _confirmed(gained, linear):
-            chosen = tuple(c for c in chosen if c != e)
+        if e in chosen and not _confirmed(gain(linear, chosen, e), linear):
+            chosen = linear.less(chosen, e)
             dropped[e] = f"{linear.candidates[e].id} is not confirmed by poses left out."
     return chosen, dropped
+
+
+def _steps(linear: Linear, chosen: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Candidates that may join next: one by one, and what bends a spring together with it."""
+    pairs = ((s, e) for e, s in linear.bent.items() if not {s, e} & set(chosen))
+    return [*((e,) for e in linear.may_join(chosen)), *pairs]
 
 
 def _beside_frames(
@@ -123,7 +133,7 @@ def _beside_frames(
         return chosen
     for e in [e for e in chosen if usual(linear.candidates[e]) == 0.0]:
         noise = linear.noise(chosen)
-        rest = _less(chosen, e)
+        rest = linear.less(chosen, e)
         wide = tuple(dict.fromkeys((*rest, *frames)))
         if linear.score((*wide, e), noise) - linear.score(wide, noise) >= CLEAR:
             continue
@@ -173,7 +183,7 @@ def _plainer(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
             continue
         noise = linear.noise(chosen)
         aim = linear.score(chosen, noise) - RIVAL
-        tried = _less(chosen, e)
+        tried = linear.less(chosen, e)
         while rest := [s for s in springs if s not in tried]:
             score, best = max((linear.score((*tried, s), noise), s) for s in rest)
             tried = (*tried, best)
@@ -192,16 +202,12 @@ def _backward(linear: Linear, chosen: tuple[int, ...], threshold: float) -> tupl
     while len(chosen) > 1:
         noise = linear.noise(chosen)
         whole = linear.score(chosen, noise)
-        lost = {e: whole - linear.score(_less(chosen, e), noise) for e in chosen}
+        lost = {e: whole - linear.score(linear.less(chosen, e), noise) for e in chosen}
         weakest = min(lost, key=lambda e: lost[e])
         if lost[weakest] >= threshold:
             return chosen
-        chosen = _less(chosen, weakest)
+        chosen = linear.less(chosen, weakest)
     return chosen
-
-
-def _less(chosen: tuple[int, ...], e: int) -> tuple[int, ...]:
-    return tuple(c for c in chosen if c != e)
 
 
 def gain(linear: Linear, chosen: tuple[int, ...], e: int) -> Gain:
@@ -212,7 +218,7 @@ def gain(linear: Linear, chosen: tuple[int, ...], e: int) -> Gain:
     """
     noise = linear.noise(chosen)
     after = linear.gap(chosen, noise, held_out=True)
-    taken = linear.gap(_less(chosen, e), noise, held_out=True) - after
+    taken = linear.gap(linear.less(chosen, e), noise, held_out=True) - after
     saved = (2.0 * after + taken) * taken
     error = 2.0 * float(np.linalg.norm(np.bincount(linear.row, after * taken)))
     per_fold = [float(saved[linear.fold == f].sum()) for f in range(linear.folds)]
@@ -244,14 +250,14 @@ def _rivals(
 ) -> tuple[tuple[int, ...], list[float], Array]:
     """Rivals, their usual odds with those of the chosen one first, and weights, last of nothing."""
     noise = linear.noise(chosen)
-    rest = _less(chosen, e)
+    rest = linear.less(chosen, e)
     nothing = linear.score(rest, noise)
     own = linear.score(chosen, noise)
     frames = set(_frames(linear))
     alone = e in frames and frames & set(rest)  # no frame is exact where others are off
     others = {
         c: linear.score((*rest, c), noise)
-        for c in range(len(linear.candidates))
+        for c in linear.may_join(rest)
         if c not in chosen and not alone
     }
     rivals = tuple(

@@ -13,11 +13,16 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect
+from sk120stiff.effects import Effect, LoadCases
 from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
 from sk120stiff.explain.absolute.choose import alternatives
 from sk120stiff.explain.absolute.linear import Linear
-from sk120stiff.explain.judge.selection_uncertainty import LAWS, LOOKED_AT, REFUTED
+from sk120stiff.explain.judge.selection_uncertainty import (
+    LAWS,
+    LOOKED_AT,
+    REFUTED,
+    bent_at_no_load,
+)
 from sk120stiff.explain.select.score import SWEEPS, price_of_law
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import COUNTED, frames_off
@@ -96,12 +101,13 @@ def beside_laws(
     final: Calibration, linear: Linear, chosen: tuple[int, ...], laws: Laws
 ) -> Calibration:
     """The calibration, its errors widened by laws and names that the positions do not refute."""
-    noise = linear.noise(chosen)
-    here = linear.values(chosen, noise)
+    noise, load_cases = linear.noise(chosen), final.problem.load_cases
+    here = _at_rest(linear, chosen, noise, load_cases)
     doubt = dict.fromkeys(here, 0.0)
     for other in _others(linear, chosen, laws, noise):
-        for name in doubt.keys() & other.keys():
-            doubt[name] = max(doubt[name], abs(other[name] - here[name]))
+        there = _at_rest(*other, noise, load_cases)
+        for name in doubt.keys() & there.keys():
+            doubt[name] = max(doubt[name], abs(there[name] - here[name]))
     fit = final.fit
     more = [
         0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.name, 0.0) for p in fit.parameters
@@ -111,20 +117,31 @@ def beside_laws(
     return replace(final, fit=with_values(replace(fit, doubt=whole)))
 
 
+def _at_rest(
+    linear: Linear, chosen: tuple[int, ...], noise: float, load_cases: LoadCases
+) -> dict[str, float]:
+    """Values of the chosen by name; of a spring that a law bends the whole compliance at rest."""
+    values = linear.values(chosen, noise)
+    for e, spring in linear.bent.items():
+        if {e, spring} <= set(chosen):
+            effect, (own,) = linear.candidates[e], linear.candidates[spring].parameters
+            bends = np.array([values[f"{effect.id}.{spec.name}"] for spec in effect.parameters])
+            slope = bent_at_no_load(effect, load_cases, bends)
+            values[f"{linear.candidates[spring].id}.{own.name}"] += slope
+    return values
+
+
 def _others(
     linear: Linear, chosen: tuple[int, ...], laws: Laws, noise: float
-) -> Iterator[dict[str, float]]:
-    """Values by other laws, the likeliest of those not refuted, and by other names."""
+) -> Iterator[tuple[Linear, tuple[int, ...]]]:
+    """The same by other laws, the likeliest of those not refuted, and by other names."""
     small, whole = linear.only(chosen), tuple(range(len(chosen)))
     most = small.solved(whole, noise).square + REFUTED * noise
     for e, own in laws.items():
         k = chosen.index(e)
         tried = [small.by_law(k, *law) for law in own if law[0] != linear.candidates[e]]
         near = sorted(tried, key=lambda each: each.solved(whole, noise).square)[:LAWS]
-        yield from (
-            each.values(whole, noise) for each in near if each.solved(whole, noise).square < most
-        )
+        yield from ((each, whole) for each in near if each.solved(whole, noise).square < most)
     for e in chosen:
-        rest = tuple(c for c in chosen if c != e)
         for rival in alternatives(linear, chosen, e)[0][:LOOKED_AT]:
-            yield linear.values((*rest, rival), noise)
+            yield linear, (*linear.less(chosen, e), rival)

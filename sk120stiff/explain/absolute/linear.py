@@ -64,6 +64,25 @@ class Linear:
         """Number of parts."""
         return int(self.fold.max()) + 1
 
+    @cached_property
+    def bent(self) -> dict[int, int]:
+        """Candidate that bends the spring of a joint → the candidate that is this spring."""
+        springs = {each.where: e for e, each in enumerate(self.candidates) if each.joint_spring}
+        return {
+            e: springs[each.where]
+            for e, each in enumerate(self.candidates)
+            if each.bends_a_spring and each.where in springs
+        }
+
+    def may_join(self, chosen: tuple[int, ...]) -> list[int]:
+        """Candidates that are not chosen; what bends a spring only where that is."""
+        others = (e for e in range(len(self.candidates)) if e not in chosen)
+        return [e for e in others if self.bent.get(e, e) in (e, *chosen)]
+
+    def less(self, chosen: tuple[int, ...], e: int) -> tuple[int, ...]:
+        """The chosen without one, and without what bends it."""
+        return tuple(c for c in chosen if c != e and self.bent.get(c) != e)
+
     def picked(self, chosen: tuple[int, ...]) -> Index:
         """Columns of the chosen candidates, numbered behind those of the base."""
         P = self.base.shape[1]

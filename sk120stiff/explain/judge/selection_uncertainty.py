@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect, Elastic
+from sk120stiff.effects import Effect, Elastic, LoadCases
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.attribution import unit
@@ -57,16 +57,21 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
 def _at_no_load(fit: Fit) -> Array:
     """(P_free,) the estimates; of springs that a law bends, the whole compliance at no load."""
     x, model, load_cases = fit.x.copy(), fit.model, fit.problem.load_cases
-    rest = np.zeros((load_cases.count, 1))
     for effect in model.effects:
-        if not (effect.bends_a_spring and isinstance(effect, Elastic)):
-            continue
         values = np.array([p.internal for p in model.parameters if p.effect == effect])
-        slope = float(effect.elongation(rest, load_cases, values).by_torque.mean())
+        slope = bent_at_no_load(effect, load_cases, values)
         for k, parameter in enumerate(fit.parameters):
-            if parameter.effect.joint_spring and parameter.effect.where == effect.where:
+            if slope and parameter.effect.joint_spring and parameter.effect.where == effect.where:
                 x[k] += slope / fit.problem.scale[k]
     return np.asarray(x)
+
+
+def bent_at_no_load(effect: Effect, load_cases: LoadCases, values: Array) -> float:
+    """Compliance at no load that a law with these values (p,) adds to its joint's spring; or 0."""
+    if not (effect.bends_a_spring and isinstance(effect, Elastic)):
+        return 0.0
+    rest = np.zeros((load_cases.count, 1))
+    return float(effect.elongation(rest, load_cases, values).by_torque.mean())
 
 
 def _others(found: Selection, findings: Sequence[Finding]) -> Iterator[tuple[list[Effect], bool]]:
