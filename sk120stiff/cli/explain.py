@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from sk120stiff.cli.calibration import refuse_unused
+from sk120stiff.cli.cell import CellOption, opened_cell
 from sk120stiff.cli.explain_output import (
     Task,
     check_folder,
@@ -64,6 +65,7 @@ def command(
             "is 0.1; may be repeated).",
         ),
     ] = None,
+    cell: CellOption = None,
     seed: SeedOption = 0,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Write no report.html and no scene.html.")
@@ -73,8 +75,8 @@ def command(
 
     Finds where the gap lives, names the missing effect, adds it to the model and shows the gap
     shrink. Writes report.html, scene.html, model.yaml, gaps.csv, verdict.json and, where two names
-    cannot be told apart, next_poses.csv. Slips of the pen in the readings are looked for first and
-    stop it, with what mends them.
+    cannot be told apart, next_poses.csv, which keeps to the cell. Slips of the pen in the readings
+    are looked for first and stop it, with what mends them.
 
     Example: sk120stiff explain readings.csv --holdout others.csv --out explained
     """
@@ -91,11 +93,12 @@ def command(
         alpha=alpha,
         prior=priors_from(prior or ()),
         seed=seed,
+        cell=opened_cell(robot, cell, data, model),
     )
     if readings.absolute is not None:
         refuse_unused(data, {
             "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,
-            "--alpha": alpha != Options.alpha, "--prior": prior,
+            "--alpha": alpha != Options.alpha, "--prior": prior, "--cell": cell,
         })  # fmt: skip
         base = Model(robot) if model is None else start_model(robot, model)
         return positions_answer(base, readings, others, options, data, out, report=not no_report)

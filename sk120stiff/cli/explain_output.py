@@ -185,7 +185,7 @@ def parts(
     shown.append(f"What to do now: {next_step(answer)}")
     if answer.next_poses is not None:
         shown.append(f"Measure next what stands in {out / 'next_poses.csv'}.")
-        shown += answer.details.get("next_remarks", ())
+    shown += answer.details.get("next_remarks", ())
     if report is not None:
         shown.append(f"Report: {report}")
     shown.append(f"Results are in {out}.")

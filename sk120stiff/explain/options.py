@@ -11,6 +11,7 @@ from sk120stiff.effects import CATALOGUE, Catalogue, Effect, all_effects, load_c
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
+from sk120stiff.plan import Cell
 
 POSES_WITH_OFFSETS = 60  # beyond which offsets of single poses cost more than all else
 MOST_EFFECTS = 8  # looked for unless the user says otherwise
@@ -30,6 +31,7 @@ class Options:
         prior: How probable effects are before anything is measured, by ``name`` or ``name:where``;
             the others are as probable as `priors.py` has them.
         seed: Of folds and resampling.
+        cell: What poses to measure next must keep to; None: what the readings tell of it.
 
     Examples:
         >>> import sk120stiff as sk
@@ -48,6 +50,7 @@ class Options:
     alpha: float = 0.01
     prior: Mapping[str, float] = field(default_factory=dict)
     seed: int = 0
+    cell: Cell | None = None
 
     @property
     def limits(self) -> tuple[str, ...]:

@@ -137,7 +137,7 @@ def explain(
         catalogue=catalogue,
     )
     tell("what these readings cannot tell", 0.85)
-    return completed(answer, found.regression, seed=options.seed)
+    return completed(answer, found.regression, seed=options.seed, cell=options.cell)
 
 
 def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ from sk120stiff.slips import without_copies
 
 SURE = 0.95
 OPEN = 0.05  # probability from which on another name counts, against a sure one or beside it
-FIRST = 4  # readings before which nothing is said
+SPARE = 3  # numbers read beyond the parameters of a name: else no misfit could speak against it
 APART = 3.3  # √λ at which two names are told apart
 LITTLE = 0.01  # nat: a reading that brings less about names tells next to nothing
 QUIET, ENOUGH = 0.7, 12  # probability of nothing, and readings, from which silence counts
@@ -155,7 +155,8 @@ class Campaign:
         springs = self._springs(belief)
         row, found = best(belief, self.X, ~taken)
         decides = self._decides(belief, row)
-        stop = None if count < FIRST else self._stop(belief, count, springs, found.names[~taken])
+        bare = belief.sums.count - len(belief.leader.columns) < SPARE
+        stop = None if bare else self._stop(belief, count, springs, found.names[~taken])
         return State(count, belief, springs, None if taken.all() else row, decides, stop)
 
     def load_cases(self, row: int) -> LoadCases:

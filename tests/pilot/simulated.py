@@ -98,7 +98,7 @@ class Bench:
     campaign: Campaign
 
     @classmethod
-    def of(cls, arm: str, *, poses: int = 300, directions: int = 12) -> "Bench":
+    def of(cls, arm: str, *, poses: int = 120, directions: int = 6) -> "Bench":
         robot = load_robot(arm)
         point, force = ARMS[arm]
         model = springs_of(robot) or typical_model(robot)

@@ -12,7 +12,7 @@ from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.explain.advise.consequences import next_poses
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
-from sk120stiff.plan import Cell, feasible, feasible_pool, lowest_points, random_poses
+from sk120stiff.plan import Cell, Rig, feasible, feasible_pool, lowest_points, random_poses
 from sk120stiff.robot import Robot, load_robot
 from sk120stiff.robot.anatomy import arm_length
 from tests.corpus.robots import example
@@ -147,6 +147,11 @@ def test_the_next_poses_of_an_explanation_are_feasible_too() -> None:
     assert feasible(robot, Cell(), a, wrench, point=POINT).ok.all()
     asked = np.abs(at.torques(wrench) + robot.gravity_torque(a))
     assert (asked <= 0.9 * efforts("ur10_robot.urdf", robot) + 1e-6).all()
+    up = Rig("a cable", anchors=np.array([[0.8, 0.0, 3.0]]))
+    cell = Cell(low=np.array([0.2, -2.0, 0.0]), rig=up)
+    assert not feasible(robot, cell, a, wrench, point=POINT).ok.all()
+    a, wrench, _ = next_poses(answer, seed=0, cell=cell)  # type: ignore
+    assert feasible(robot, cell, a, wrench, point=POINT).ok.all()
 
 
 def test_an_arm_on_a_rail_has_no_column() -> None:

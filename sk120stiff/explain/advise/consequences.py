@@ -18,12 +18,17 @@ READINGS_TO_MEASURE = 10  # proposed: half a day with a tracker
 SHARES_OF_LOAD = (1.0, 0.5, 0.25, 0.1)  # tried until the model holds the load at every pose
 
 
-def completed(answer: Explanation, regression: Regression, *, seed: int) -> Explanation:
+def completed(
+    answer: Explanation, regression: Regression, *, seed: int, cell: Cell | None = None
+) -> Explanation:
     """The answer with where the gap lives, detectable sizes, what is hidden, the next poses."""
     smallest, invisible = detectable(answer, regression)
     found = localise(answer.base)
-    following = next_poses(answer, seed=seed)
-    told = {} if following is None else {"next_remarks": following[2]}
+    try:
+        following = next_poses(answer, seed=seed, cell=cell)
+        told = {} if following is None else {"next_remarks": following[2]}
+    except Refusal as error:  # nothing that can be driven or held: the answer stands without
+        following, told = None, {"next_remarks": (f"No poses to measure next: {error}",)}
     return replace(
         answer,
         where=where_sentences(found),
@@ -35,13 +40,17 @@ def completed(answer: Explanation, regression: Regression, *, seed: int) -> Expl
 
 
 def next_poses(
-    answer: Explanation, *, seed: int, count: int = READINGS_TO_MEASURE
+    answer: Explanation, *, seed: int, count: int = READINGS_TO_MEASURE, cell: Cell | None = None
 ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]] | None:
     """Poses (K, n) and wrenches (K, 6) that tell the first unsettled pair of names apart.
 
     With them what is to be said of the loads: where motors limit them, and what was not checked.
 
-    They go no lower than the poses that were measured: what was measured could be driven.
+    They keep to the cell; where it names no floor or rig they go no lower than the poses that were
+    measured, and loads come as they did: what was measured could be driven.
+
+    Raises:
+        Refusal: Nothing else can be driven or held there.
     """
     for finding in answer.findings:
         rivals = [name for name in finding.alternatives if name not in finding.exact]
@@ -50,8 +59,8 @@ def next_poses(
         load_cases = answer.final.problem.load_cases
         model = answer.final.model
         force = float(np.linalg.norm(load_cases.wrench[:, :3], axis=1).max())
-        cell = cell_from_data(
-            model.robot, Cell(), load_cases.a, load_cases.wrench, load_cases.point
+        within = cell_from_data(
+            model.robot, cell or Cell(), load_cases.a, load_cases.wrench, load_cases.point
         )
         pool = feasible_pool(
             model.robot,
@@ -61,12 +70,15 @@ def next_poses(
             point=load_cases.point,
             force_point=load_cases.force_point,
             seed=seed,
-            cell=cell,
+            cell=within,
         )
         rival = answer.effect(rivals[0])
         sigma = answer.noise.sigma * answer.final.noise_factor
         for share in SHARES_OF_LOAD:
             weaker = replace(pool.load_cases, wrench=share * pool.load_cases.wrench)
+            weaker = weaker.rows(within.rig.has(np.linalg.norm(weaker.wrench[:, :3], axis=1)))
+            if not weaker.count:  # the rig has no such steps
+                continue
             held = replace(pool, load_cases=weaker)
             try:
                 choice = discriminating_readings(
