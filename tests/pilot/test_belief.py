@@ -139,3 +139,19 @@ def test_the_bench_remembers_what_a_campaign_works_out() -> None:
     ours, theirs = made.state(readings), plain.state(readings)
     assert ours.row == theirs.row
     np.testing.assert_allclose(ours.belief.sums.gram, theirs.belief.sums.gram, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("cause", "readings"), [("gear_hardening", 3), ("tool_compliance", 4)])
+def test_a_name_waits_until_a_misfit_could_speak_against_it(cause: str, readings: int) -> None:
+    """Three numbers beyond three springs and what the cause has: one parameter here, six there."""
+    made = bench().campaign
+    model, name, _ = bench().truth(cause, np.random.default_rng(0))
+    exact = model.predict(made.pool.load_cases)
+    rows: list[int] = []
+    state = made.state(None)
+    while state.stop is None and state.row is not None and len(rows) < 9:
+        rows.append(state.row)
+        state = made.state(bench().read(exact, np.zeros_like(exact), rows))
+    assert state.stop is not None and state.stop.names == (name,)
+    assert len(rows) == readings
+    assert 3 * readings - len(state.belief.leader.columns) >= 3
