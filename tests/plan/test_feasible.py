@@ -150,7 +150,7 @@ def test_the_next_poses_of_an_explanation_are_feasible_too() -> None:
     up = Rig("a cable", anchors=np.array([[0.8, 0.0, 3.0]]))
     cell = Cell(low=np.array([0.2, -2.0, 0.0]), rig=up)
     assert not feasible(robot, cell, a, wrench, point=POINT).ok.all()
-    a, wrench, _ = next_poses(answer, seed=0, cell=cell)  # type: ignore
+    a, wrench, _ = next_poses(answer, seed=0, cell=cell)  # type: ignore[arg-type, misc]
     assert feasible(robot, cell, a, wrench, point=POINT).ok.all()
 
 
