@@ -15,7 +15,6 @@ from sk120stiff.stiffness.kernel.layout import (
     FACTOR,
     INVERSE,
     LOAD,
-    PAIR,
     SAFE,
     TENSOR,
     TURNED,
@@ -48,25 +47,26 @@ def complementary(
             _turn(x, 0, 1.0, at(axes + 3 * first))
             if moment:
                 _turn(x, 3, 0.5, at(axes + 3 * first))
-        for k in range(BLOCK):
-            x[PAIR * BLOCK + k] = (
-                x[TURNED * BLOCK + k] * x[v2 + k]
-                + x[(TURNED + 1) * BLOCK + k] * x[v2 + BLOCK + k]
-                + x[(TURNED + 2) * BLOCK + k] * x[v2 + 2 * BLOCK + k]
-            )
-        for k in range(BLOCK if moment and first != second else 0):
-            half = (
-                x[(TURNED + 3) * BLOCK + k] * x[w2 + k]
-                + x[(TURNED + 4) * BLOCK + k] * x[w2 + BLOCK + k]
-                + x[(TURNED + 5) * BLOCK + k] * x[w2 + 2 * BLOCK + k]
-            )
-            x[PAIR * BLOCK + k] += half
-            x[(PAIR + 1) * BLOCK + k] = half
         while add < fold.pair_end[pair]:
-            _add(fold, rows, add, at(K_C + fold.row[add, 0]), PAIR * BLOCK, fold.factor[add, 0])
-            if moment and fold.row[add, 1] >= 0:
-                anti = at(skew + fold.row[add, 1])
-                _add(fold, rows, add, anti, (PAIR + 1) * BLOCK, fold.factor[add, 1])
+            to, factor = at(K_C + fold.row[add, 0]), fold.factor[add, 0]
+            anti, sign = at(skew + max(fold.row[add, 1], 0)), fold.factor[add, 1]
+            if fold.given:
+                g1, g2 = at(rows.factors + fold.row[add, 2]), at(rows.factors + fold.row[add, 3])
+                for k in range(BLOCK):
+                    by = x[g1 + k] * x[g2 + k]
+                    x[to + k] += factor * by * _dot(x, TURNED * BLOCK, v2, k)
+                    if moment and first != second:
+                        half = by * _dot(x, (TURNED + 3) * BLOCK, w2, k)
+                        x[to + k] += factor * half
+                        x[anti + k] += sign * half
+                add += 1
+                continue
+            for k in range(BLOCK):
+                x[to + k] += factor * _dot(x, TURNED * BLOCK, v2, k)
+            for k in range(BLOCK if moment and first != second else 0):
+                half = _dot(x, (TURNED + 3) * BLOCK, w2, k)
+                x[to + k] += factor * half
+                x[anti + k] += sign * half
             add += 1
     for bend in range(fold.bend.shape[0] if force or moment else 0):
         joint, to = fold.bend[bend, 0], at(K_C + fold.bend[bend, 1])
@@ -81,16 +81,10 @@ def complementary(
 
 
 @part
-def _add(fold: Fold, rows: Scratch, add: int, to: int, source: int, factor: float) -> None:
-    """What a pair of joints adds to one element."""
-    x = rows.x
-    if not fold.given:
-        for k in range(BLOCK):
-            x[to + k] += factor * x[source + k]
-        return
-    first, second = at(rows.factors + fold.row[add, 2]), at(rows.factors + fold.row[add, 3])
-    for k in range(BLOCK):
-        x[to + k] += factor * x[first + k] * x[second + k] * x[source + k]
+def _dot(x: Array, a: int, b: int, k: int) -> float:
+    """Scalar product of two vectors of 3 rows at one pose."""
+    product = x[a + k] * x[b + k] + x[a + BLOCK + k] * x[b + BLOCK + k]
+    return float(product + x[a + 2 * BLOCK + k] * x[b + 2 * BLOCK + k])
 
 
 @part
@@ -114,19 +108,21 @@ def factorise(fold: Fold, rows: Scratch, K_C: int) -> None:
     """
     s, x, L = fold.soft.shape[0], rows.x, rows.L
     for element in range(s * (s + 1) // 2):
-        source, target, spring = at(K_C + element), at(L + element), at(rows.springs + element)
+        source, target, row = at(K_C + element), at(L + element), at(rows.springs + element)
+        spring = fold.springs[element]
         for k in range(BLOCK):
-            x[target + k] = x[spring + k] - x[source + k]
+            x[target + k] = (x[row + k] if fold.given else spring) - x[source + k]
     for k in range(BLOCK):
         x[SAFE * BLOCK + k] = 1.0
     for c in range(s):
         element = c * (c + 1) // 2 + c
-        pivot, own, spring = at(L + element), at(K_C + element), at(rows.springs + element)
+        pivot, own, row = at(L + element), at(K_C + element), at(rows.springs + element)
+        spring = fold.springs[element]
         for k in range(BLOCK):
             safe, d = x[SAFE * BLOCK + k], x[pivot + k]
-            by = 1.0 / d
+            by, size = 1.0 / d, x[row + k] if fold.given else spring
             good = (safe > 0.0) & (d > 0.0)
-            x[SAFE * BLOCK + k] = safe * d / (x[spring + k] - x[own + k]) if good else -1.0
+            x[SAFE * BLOCK + k] = safe * d / (size - x[own + k]) if good else -1.0
             x[INVERSE * BLOCK + k] = by
         for i in range(s - 1, c, -1):  # downwards: element (j, c) is still unscaled for j <= i
             row = L + i * (i + 1) // 2

@@ -27,8 +27,7 @@ INVERSE = 49  # 1 / pivot
 FACTOR = 50
 CHANGE = 51  # of a coordinate in the last step
 DEFLECTION = 52  # 3 rows
-PAIR = 55  # F·(w_1 × v_2) of the pair of joints at hand, and ½ M·(w_1 × w_2)
-FREE = 57  # rows whose number depends on the robot begin here
+FREE = 55  # rows whose number depends on the robot begin here
 
 
 @part
