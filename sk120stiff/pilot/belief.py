@@ -177,4 +177,4 @@ class Belief:
         off = means - mean
         covariance = np.einsum("s,sij->ij", share, covariances + off[:, :, None] * off[:, None])
         total = evidence - float(np.log(len(sizes))) + prior
-        return Hypothesis(members, total, columns, mean, covariance, misfit)
+        return Hypothesis(members, total, columns, mean, covariance, max(misfit, 0.0))

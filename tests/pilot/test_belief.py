@@ -155,3 +155,13 @@ def test_a_name_waits_until_a_misfit_could_speak_against_it(cause: str, readings
     assert state.stop is not None and state.stop.names == (name,)
     assert len(rows) == readings
     assert 3 * readings - len(state.belief.leader.columns) >= 3
+
+
+def test_no_rounding_leaves_less_than_nothing() -> None:
+    """Few readings that are fitted exactly, large beside the noise."""
+    made = bench().campaign
+    for row in range(10):
+        X = made.X[row]
+        y = X[:, made.linear.base] @ np.array([300.0, -20.0, 1.0])
+        belief = Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
+        assert min(h.misfit for h in belief.hypotheses) >= 0.0
