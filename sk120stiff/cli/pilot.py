@@ -84,22 +84,27 @@ def command(
         "force": force, "noise": noise, "point": point, "zero": zero, "target": target,
         "most": most,
     }  # fmt: skip
+    settings = None
     if model is not None:
-        open_model(model)  # before anything is written
-        at.begin(_settings({key: value for key, value in stated.items() if value is not None}))
+        settings = _settings({key: value for key, value in stated.items() if value is not None})
+        at.refuse_another(settings)
     elif any(value is not None for value in stated.values()):
         raise InputError(
             "the settings of a campaign are written when it begins",
             where=str(folder),
             remedy="Give --model too to begin one, or edit pilot.yaml.",
         )
-    settings = at.settings()
+    settings = settings or at.settings()
     opened = open_model(str(at.beside(settings.model)) if _is_file(settings) else settings.model)
     around = opened_cell(
-        opened.robot, None if settings.cell is None else at.beside(settings.cell), folder
+        opened.robot,
+        None if settings.cell is None else at.beside(settings.cell),
+        at.readings_file,
     )
     with progress_bar("what can be measured"):
         campaign = settings.campaign(opened, around)
+    if model is not None:
+        at.begin(settings)  # now that nothing stands against it
     first = _looked(at, settings, campaign)
 
     def go_on() -> None:

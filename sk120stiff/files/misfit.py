@@ -57,5 +57,5 @@ def misfit(
         found = repr(slip["input"])
         found = found if len(found) <= LONGEST else f"{found[:LONGEST]}…"
         said = WANTED.get(slip["type"], slip["msg"][0].lower() + slip["msg"][1:])
-        what = f"key {key!r} is {found}: {said}"
+        what = f"key {key!r} is {found}: {said}" if key else f"the file holds {found}: {said}"
     return InputError(what, where=where, remedy=remedy)

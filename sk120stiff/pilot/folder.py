@@ -136,8 +136,8 @@ class Folder:
             place = f"{file}, key {error.where!r}"
             raise InputError(error.what, where=place, remedy=error.remedy) from error
 
-    def begin(self, settings: Settings) -> None:
-        """Write the settings of a new campaign.
+    def refuse_another(self, settings: Settings) -> None:
+        """Say no to a new campaign where there is one already.
 
         Raises:
             InputError: Another one is under way here.
@@ -153,8 +153,12 @@ class Folder:
             raise InputError(
                 "this is a file, not a folder", where=str(self.path), remedy="Name a folder."
             )
+
+    def begin(self, settings: Settings) -> None:
+        """Write the settings of a new campaign."""
         self.path.mkdir(parents=True, exist_ok=True)
         said = settings.model_dump(exclude_none=True)
+        file = self.path / SETTINGS
         write_atomically(file, str(yaml.safe_dump(said, sort_keys=False, allow_unicode=True)))
 
     def beside(self, named: str) -> Path:

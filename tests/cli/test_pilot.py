@@ -80,6 +80,11 @@ def test_what_cannot_be_begun_or_read(run, tmp_path: Path, monkeypatch) -> None:
     assert outcome.code == 2 and "unit" in outcome.stderr and not folder.exists()
     outcome = run("pilot", str(folder), "--model", MODEL, "--zero", "often")
     assert outcome.code == 2 and "zero" in outcome.stderr
+    cell = tmp_path / "cell.yaml"
+    cell.write_text("region: {low: [0, 0, 0], high: [0.1, 0.1, 0.1]}\n", encoding="utf-8")
+    for named, code in ((tmp_path / "nowhere.yaml", 2), (cell, 1)):
+        outcome = run("pilot", str(folder), "--model", MODEL, "--cell", str(named))
+        assert outcome.code == code and named.name in outcome.stderr and not folder.exists()
     assert begin(run, folder).code == 0
     other = run("pilot", str(folder), "--model", MODEL, "--force", "100 N")
     assert other.code == 2 and "other settings" in other.stderr

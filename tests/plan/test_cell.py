@@ -140,6 +140,7 @@ def test_a_file_and_the_line_of_sight(arm: Robot, tmp_path: Path) -> None:
     [
         ("flor: 1 m", "flor"),
         ("floor: -900", "'-0.8 m'"),
+        ("a, b, c", "the file holds 'a, b, c'"),
         ("obstacles: [{name: x, box: [1, 1]}]", "only 2 numbers"),
         ("obstacles: [{name: x, box: 300 mm}]", "box: [100, 3000, 2000], unit: mm"),
         ("obstacles: [{name: x, box: [1, 1, 1], unit: cm}]", "'cm'"),
