@@ -32,8 +32,9 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
+from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_length, arm_links
+from sk120stiff.robot.anatomy import arm_length
 
 
 @dataclass(frozen=True)
@@ -184,18 +185,19 @@ class Effect(ABC):
             >>> sk.CATALOGUE["link_torsion"].places(robot)
             ('link_1_s', 'link_2_l', 'link_3_u')
         """
-        if cls.place == "a link":
-            return tuple(joint.link for joint in arm_links(robot))
-        named = {
-            "a joint": robot.actuated,
-            "the base frame": (robot.base_frame,),
-            "the tool frame": (robot.tool_frame,),
-            "sensor": ("sensor",),
-            "tracker": ("tracker",),
-        }
-        if cls.place not in named:
-            raise TypeError(f"the effect {cls.name} says no places at which it can act")
-        return named[cls.place]
+        return USUAL_PLACES[cls.place](robot)
+
+    @classmethod
+    def lacking(cls) -> list[str]:
+        """What of the contract a class does not say."""
+        found = sorted(cls.__abstractmethods__)
+        if cls.sentence is Effect.sentence and not isinstance(getattr(cls, "says", None), str):
+            found.append("says")
+        own = cls.places.__func__  # type: ignore[attr-defined]
+        usual = own is Effect.places.__func__  # type: ignore[attr-defined]
+        if usual and cls.place not in USUAL_PLACES:
+            found.append("places")
+        return found + ["name"] * (not isinstance(getattr(cls, "name", None), str))
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:

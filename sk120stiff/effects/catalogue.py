@@ -221,9 +221,7 @@ def _checked(kinds: Sequence[type[Effect]]) -> None:
                 remedy="Give a class derived from Elastic, Geometric, Imposed, LoadError, "
                 "ReadingError or Viewpoint of sk120stiff.effects.",
             )
-        missing = sorted(kind.__abstractmethods__) + [
-            name for name in ("name",) if not isinstance(getattr(kind, name, None), str)
-        ]
+        missing = kind.lacking()
         if missing:
             raise InputError(
                 f"the effect {kind.__name__} lacks {', '.join(missing)}",

@@ -61,7 +61,7 @@ def test_what_is_no_effect_is_refused() -> None:
     class Unfinished(Imposed):
         """Neither law nor name."""
 
-    with pytest.raises(InputError, match=r"Unfinished lacks .*shifts.*name"):
+    with pytest.raises(InputError, match=r"Unfinished lacks .*shifts, says, places, name"):
         CATALOGUE + Unfinished
 
 

@@ -1,0 +1,17 @@
+"""Where an effect can act on a robot, by what its `place` names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from sk120stiff.robot import Robot
+from sk120stiff.robot.anatomy import arm_links
+
+USUAL_PLACES: dict[str, Callable[[Robot], tuple[str, ...]]] = {
+    "a joint": lambda robot: robot.actuated,
+    "a link": lambda robot: tuple(joint.link for joint in arm_links(robot)),
+    "the base frame": lambda robot: (robot.base_frame,),
+    "the tool frame": lambda robot: (robot.tool_frame,),
+    "sensor": lambda _: ("sensor",),
+    "tracker": lambda _: ("tracker",),
+}
