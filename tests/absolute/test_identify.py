@@ -10,6 +10,7 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
+from sk120stiff.identify.absolute.words import findings
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
@@ -69,6 +70,17 @@ def test_an_arm_without_masses_has_geometry_and_no_springs(tmp_path: Path) -> No
     assert not any("springs" in p.name for p in found.fit.parameters)
     assert "states no masses" in " ".join(found.notes)
     assert found.fit.misfit[2] > 1e-4
+
+
+def test_geometry_that_no_arm_has_is_told(tmp_path: Path) -> None:
+    """A zero that is 100 mrad off; three is what may be left after mastering."""
+    arm, a = errors(5), poses(60, 1)
+    for off, told in ((0.003, False), (0.1, True)):
+        arm.turn[4, 1] = off
+        path = write(tmp_path, a, noisy(tracked(arm.stands(a)[0]), 2), FIT + NOISE)
+        found = calibrated(path)
+        (said,) = [s for s in findings(found, sk.read(path)) if "plausible" in s] or [""]
+        assert ("joint_frame:j5.ry = 0.09" in said or "joint_frame:j5.ry = 0.1" in said) == told
 
 
 def test_wild_rows_are_told_row_by_row(tmp_path: Path) -> None:

@@ -86,7 +86,7 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     if found.placed is not None:
         said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
     said.append(gap_sentence(found))
-    said += _payload(found, readings)
+    said += _payload(found, readings) + _implausible(found)
     if found.waves:
         said.append(
             f"Waves over the joints' angles show beyond doubt ({', '.join(found.waves)}) and are "
@@ -103,6 +103,21 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         said.append(f"{len(rows)} rows lie far off all others and were set aside:")
         said += _some([_wild(found, readings, int(row)) for row in rows])
     return said
+
+
+def _implausible(found: Calibration) -> list[str]:
+    """That values came out larger than any arm has them."""
+    reach, hidden = found.problem.reach, unseen(found)
+    far = [
+        p for p in found.fit.model.parameters if p.name not in hidden and abs(p.internal) > reach(p)
+    ]
+    if not far:
+        return []
+    told = [f"{p.name} = {p.value:.3g} {p.spec.unit}" for p in far[:SHOWN]]
+    return [
+        f"More than is plausible: {listed(told)}. The zero of a joint is elsewhere, another cause "
+        "hides behind it, or the fit found no better way: make sure before you use this model."
+    ]
 
 
 def _payload(found: Calibration, readings: Measurements) -> list[str]:
