@@ -13,6 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
 
 import numpy as np
 
@@ -22,39 +24,14 @@ from sk120stiff.paper.setting import Setting, random_poses
 
 #: Every length that Appendix I names.
 LENGTHS = ("L1", "L2", "L3", "L4", "L5", "L6", "D1", "D3", "D4", "D5", "D6")
-#: Eq. (17) term by term as printed, misprints included; s1 is sin θ1', c23 is cos(θ2' − θ3').
-PRINTED = {
-    "J11": (
-        "L4 c1 s4 - D3 c1 - L1 s1 + L6 c1 s4 c5 c6 + D5 c1 c4 + L6 c1 c4 s6 + L5 c1 s4 c5 "
-        "+ D6 c1 s4 s5 - D6 s1 c3 c5 + L5 s1 c3 s5 - L5 s1 s3 c4 c5 + L6 s1 c3 s5 c6 "
-        "- L3 s1 s3 - L6 s1 s3 c4 c5 c6 + L6 s1 s3 s4 s6 - D6 s1 s3 c4 s5 + D5 s1 s3 s4 "
-        "- L4 s1 s3 c4 - D4 s1 c3 - L2 s1 s3 s23 + L2 s1 c3 c23"
-    ),
-    "J12": "L2 c1 s2",
-    "J13": (
-        "L6 c1 s3 s5 c6 - L6 c1 c3 s4 s6 - D4 c1 s3 + L3 c1 c3 + D6 c1 c3 c4 s5 "
-        "+ L5 c1 c3 c4 c5 + L6 c1 c3 c4 c5 c6 + L4 c1 c3 c4 - D6 c1 s3 c5 - D5 c1 c3 s4 "
-        "+ L5 c1 s3 s5"
-    ),
-    "J21": (
-        "-D4 c1 c3 + L3 c1 s3 - L6 c1 c3 s5 c6 + D6 c1 s3 c4 s5 + D6 c1 c3 c5 - D5 c1 s3 s4 "
-        "+ L6 s1 s4 c5 c6 + D6 s1 s4 s5 + L6 s1 c4 s6 + L5 s1 s4 c5 + L4 s1 s4 + D5 s1 c4 "
-        "- D1 s1 + L6 c1 s3 c4 c5 c6 - L6 c1 s3 s4 s6 + L4 c1 s3 c4 - L5 c1 c3 s5 "
-        "+ L5 c1 s3 c4 c5 + L1 c1 - L2 c1 c3 c23 + L2 c1 s3 s23"
-    ),
-    "J22": "L2 s1 s2",
-    "J23": (
-        "-D5 s1 c3 s4 + L5 s1 c3 c4 c5 + L3 s1 c3 - L6 s1 c3 s4 s6 + L6 s1 s3 s5 c6 "
-        "+ L4 s1 c3 c4 - D4 s1 s3 + L5 s1 s3 s5 + D6 s1 c3 c4 s5 - D6 s1 s3 c5 "
-        "+ L6 s1 c3 c4 c5 c6"
-    ),
-    "J31": "",
-    "J32": "L2 c2",
-    "J33": (
-        "D5 s3 s4 - L4 s3 c4 - L5 s3 c4 c5 - D4 c3 + L6 s3 s4 s6 - D6 s3 c4 s5 "
-        "- L6 s3 c4 c5 c6 - D6 c3 c5 + L5 c3 s5 - L3 s3 + L6 c3 s5 c6"
-    ),
-}
+
+
+@cache
+def printed_terms() -> dict[str, str]:
+    """Element of eq. (17) → its terms as printed."""
+    text = (files("sk120stiff.paper") / "appendix_1.txt").read_text(encoding="utf-8")
+    elements = text.replace("\n    ", " ").splitlines()[1:]
+    return {line[:3]: line[4:] for line in elements}
 
 
 def printed_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
@@ -69,7 +46,7 @@ def printed_jacobian(angles: Array, lengths: Mapping[str, float]) -> Array:
     factors = {f"s{k}": np.sin(angle) for k, angle in named.items()}
     factors |= {f"c{k}": np.cos(angle) for k, angle in named.items()}
     J = np.zeros((*given.shape[:-1], 3, 3))
-    for element, text in PRINTED.items():
+    for element, text in printed_terms().items():
         for term in text.replace("- ", "+ -").split("+ "):
             length, *angular = term.removeprefix("-").split() or [""]
             if length in lengths:
