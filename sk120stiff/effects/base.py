@@ -187,18 +187,6 @@ class Effect(ABC):
         """
         return USUAL_PLACES[cls.place](robot)
 
-    @classmethod
-    def lacking(cls) -> list[str]:
-        """What of the contract a class does not say."""
-        found = sorted(cls.__abstractmethods__)
-        if cls.sentence is Effect.sentence and not isinstance(getattr(cls, "says", None), str):
-            found.append("says")
-        own = cls.places.__func__  # type: ignore[attr-defined]
-        usual = own is Effect.places.__func__  # type: ignore[attr-defined]
-        if usual and cls.place not in USUAL_PLACES:
-            found.append("places")
-        return found + ["name"] * (not isinstance(getattr(cls, "name", None), str))
-
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
         """Groups of parameters that are equal where the part is as stiff one way as the other."""

@@ -18,6 +18,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
+from types import MethodType
 
 from sk120stiff.effects.approach_side import ApproachSide
 from sk120stiff.effects.base import Effect, Options
@@ -34,6 +35,7 @@ from sk120stiff.effects.joint_tilt import JointTilt
 from sk120stiff.effects.link_beam import LinkBending, LinkTorsion
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.effects.payload import Payload
+from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.effects.thermal_growth import ThermalGrowth
 from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingDrift, ReadingRotation, ReadingScale, ZeroOffset
@@ -211,6 +213,16 @@ def with_installed(
     return found
 
 
+def _missing(kind: type[Effect]) -> list[str]:
+    """What of the contract a class does not say."""
+    found = sorted(kind.__abstractmethods__)
+    if kind.sentence is Effect.sentence and not isinstance(getattr(kind, "says", None), str):
+        found.append("says")
+    if kind.places == MethodType(Effect.places.__func__, kind):  # type: ignore[attr-defined]
+        found += ["places"] * (kind.place not in USUAL_PLACES)
+    return found + ["name"] * (not isinstance(getattr(kind, "name", None), str))
+
+
 def _checked(kinds: Sequence[type[Effect]]) -> None:
     """Refuse what is no effect, and names that stand twice."""
     seen: dict[str, type[Effect]] = {}
@@ -221,7 +233,7 @@ def _checked(kinds: Sequence[type[Effect]]) -> None:
                 remedy="Give a class derived from Elastic, Geometric, Imposed, LoadError, "
                 "ReadingError or Viewpoint of sk120stiff.effects.",
             )
-        missing = kind.lacking()
+        missing = _missing(kind)
         if missing:
             raise InputError(
                 f"the effect {kind.__name__} lacks {', '.join(missing)}",
