@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
 
 import sk120stiff as sk
 from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.model import Model
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 NOISE = "noise: {sigma: 20, unit: um}\n"
+RNG = np.random.default_rng(12)
 
 
 def explained(tmp_path: Path, arm: Arm, a: Array, seed: int) -> Explained:
@@ -72,3 +77,27 @@ def test_waves_are_named_with_their_joint(tmp_path: Path) -> None:
     assert [item.effect.id for item in found.named] == ["transmission_error:j2"]
     wave = found.final.fit.model.parameter("transmission_error:j2.sin_1")
     assert abs(wave.internal - 2e-4) < 4.0 * wave.internal_std < 2e-4
+
+
+def test_a_fit_that_went_another_way_begins_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where more is left than to first order, the values found so are another start."""
+    module = sys.modules[explain_positions.__module__]
+    x = tracked(errors(4).stands(poses(60, 41))[0]) + 2e-5 * RNG.normal(size=(60, 3))
+    data = sk.read(write(tmp_path, poses(60, 41), x, FIT + NOISE))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    first, fits = module.refined, []
+
+    def lost(*given: Any) -> Calibration:
+        """Every odd fit ends where it began."""
+        fits.append(given[3])
+        base, effects, *rest = given
+        return first(base, effects if len(fits) % 2 == 0 else effects[:1], *rest)
+
+    monkeypatch.setattr(module, "refined", lost)
+    found = explain_positions(Model(robot), data.with_joints(robot.actuated))
+    assert len(fits) > 1 and len(fits) % 2 == 0
+    assert found.chance > 1e-3
+    spring = found.final.fit.model.parameter("joint_springs:j2.stiffness")
+    assert abs(spring.internal - 1 / 8e5) < 4.0 * spring.internal_std

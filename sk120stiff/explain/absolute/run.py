@@ -31,13 +31,19 @@ from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, la
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Detectable
 from sk120stiff.explain.options import Options
-from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, refined
+from sk120stiff.identify.absolute.calibrate import (
+    Calibration,
+    calibrate,
+    refined,
+    with_values_of,
+)
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
 LEVEL = 0.01
 LARGEST = 5  # places told
+MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
 
 
@@ -159,14 +165,14 @@ def explain_positions(
     seen = base
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
     tell("fitting exactly", 0.5)
-    final = refined(base, _picked(linear, found), readings, catalogue=catalogue)
+    final = _exactly(base, seen, linear, found, readings, catalogue)
     for _ in range(ROUNDS):
         before, seen = _picked(linear, found), final
         linear, found, laws, hidden = _selected(base, seen, options, catalogue)
         again = _picked(linear, found)
         if set(again) == set(before):
             break
-        final = refined(base, again, readings, final, catalogue)
+        final = _exactly(base, seen, linear, found, readings, catalogue)
     final = beside_laws(final, linear, found.order, laws)
     tell("what is left", 0.85)
     noise = linear.noise(found.order)
@@ -210,6 +216,38 @@ def _selected(
     found = choose(linear)
     laws = laws_at(linear, found.order, seen)
     return by_best_laws(linear, found.order, laws), found, laws, hidden
+
+
+def _exactly(
+    base: Calibration,
+    seen: Calibration,
+    linear: Linear,
+    found: Chosen,
+    readings: Measurements,
+    catalogue: Catalogue,
+) -> Calibration:
+    """The chosen fitted at equilibrium, from where they were seen.
+
+    A load on springs is a product of two unknowns, and the way to it is curved: where more is left
+    than to first order, the values found so are another start.
+    """
+    picked = _picked(linear, found)
+    final = refined(base, picked, readings, seen.fit.model, catalogue)
+    noise = linear.noise(found.order)
+    foretold = linear.gap(found.order, noise, held_out=False) * seen.problem.of_channels.sigma
+    if _left(final) <= MORE * _rms(foretold):
+        return final
+    known = linear.values(found.order, noise)
+    wide = final.fit.model
+    values = [
+        known.get(p.name, p.internal) for p in with_values_of(wide, seen.fit.model).parameters
+    ]
+    again = refined(base, picked, readings, wide.with_values(np.array(values)), catalogue)
+    return min(final, again, key=_left)
+
+
+def _left(found: Calibration) -> float:
+    return _rms(found.fit.residual * found.problem.of_channels.sigma)
 
 
 def _picked(linear: Linear, found: Chosen) -> list[Effect]:

@@ -215,9 +215,10 @@ def _fitted(
 
 def fitted(problem: PoseProblem) -> Fit:
     """Least squares from the problem's start."""
-    return as_fit(
-        problem, gauss_newton(problem.evaluate, problem.start, problem.bounds, problem.prior)
+    found = gauss_newton(
+        problem.evaluate, problem.start, problem.bounds, problem.prior, problem.centre
     )
+    return as_fit(problem, found)
 
 
 def extended(found: Fit, effects: Sequence[Effect]) -> Fit:
@@ -314,17 +315,17 @@ def refined(
     base: Calibration,
     effects: Sequence[Effect],
     readings: Measurements,
-    near: Calibration | None = None,
+    near: Model | None = None,
     catalogue: Catalogue = CATALOGUE,
 ) -> Calibration:
     """A calibration with further effects, fitted exactly; what cannot be told of them is frozen.
 
-    `near`: one with much the same effects, from whose values to start.
+    `near`: a model with much the same effects, from whose values to start.
     """
     model = base.fit.model
     for effect in effects:
         model = model + effect
     if near is not None:
-        model = with_values_of(model, near.fit.model)
+        model = with_values_of(model, near)
     found, frozen, wild = _fitted(model, readings, base.wild)
     return replace(base, fit=doubted(found, catalogue), frozen=frozen, wild=wild)

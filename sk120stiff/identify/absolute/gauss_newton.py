@@ -20,15 +20,20 @@ ENOUGH = 1e-3  # a step that changes the predictions by less than this share of 
 
 
 def gauss_newton(
-    evaluate: Evaluate, start: Array, bounds: tuple[Array, Array], span: Array
+    evaluate: Evaluate,
+    start: Array,
+    bounds: tuple[Array, Array],
+    span: Array,
+    centre: Array,
 ) -> Minimum:
     """Least squares within bounds from a start that is near.
 
     Args:
         evaluate: Gives residual (M,) in units of the noise, and its derivative (M, P).
-        start: (P,) where the prior is centred.
+        start: (P,) where the search begins.
         bounds: Lower and upper (P,).
         span: (P,) sizes of the parameters beyond which they are implausible: widths of the prior.
+        centre: (P,) where the prior is centred.
 
     Raises:
         Refusal: The steps do not become small.
@@ -37,12 +42,12 @@ def gauss_newton(
     residual, jacobian = evaluate(x)
     count = 1
     for _ in range(STEPS):
-        step = linear_step(jacobian, residual, x, start, bounds, span)
+        step = linear_step(jacobian, residual, x, centre, bounds, span)
         noise = float(np.sqrt(residual @ residual / len(residual)))
         if np.linalg.norm(jacobian @ step) <= ENOUGH * max(noise, 1e-9) * np.sqrt(len(x) + 1.0):
             held = ((x <= bounds[0]) | (x >= bounds[1])) & np.isfinite(x)
             return Minimum(x, residual, jacobian, held, count)
-        cost = _cost(residual, x, start, span)
+        cost = _cost(residual, x, centre, span)
         for _ in range(HALVINGS):
             new = np.clip(x + step, *bounds)
             try:
@@ -51,7 +56,7 @@ def gauss_newton(
                 step = 0.5 * step
                 continue
             count += 1
-            if _cost(found[0], new, start, span) < cost * (1.0 + 1e-12):
+            if _cost(found[0], new, centre, span) < cost * (1.0 + 1e-12):
                 break
             step = 0.5 * step
         else:
@@ -69,14 +74,14 @@ def linear_step(
     jacobian: Array,
     residual: Array,
     x: Array,
-    start: Array,
+    centre: Array,
     bounds: tuple[Array, Array],
     span: Array,
 ) -> Array:
     """(P,) step to the minimum of the linearised problem within the bounds."""
     R = np.asarray(np.linalg.qr(np.column_stack([jacobian, residual]), mode="r"))
     A = np.concatenate([R[:, :-1], np.diag(1.0 / span)])
-    b = np.concatenate([-R[:, -1], (start - x) / span])
+    b = np.concatenate([-R[:, -1], (centre - x) / span])
     size = np.linalg.norm(A, axis=0)
     lower, upper = (bounds[0] - x) * size, (bounds[1] - x) * size
     A = A / size
@@ -87,5 +92,5 @@ def linear_step(
     return np.asarray(free / size)
 
 
-def _cost(residual: Array, x: Array, start: Array, span: Array) -> float:
-    return float(residual @ residual + (((x - start) / span) ** 2).sum())
+def _cost(residual: Array, x: Array, centre: Array, span: Array) -> float:
+    return float(residual @ residual + (((x - centre) / span) ** 2).sum())

@@ -10,6 +10,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.geometry import ToolOffset
+from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError
@@ -144,6 +145,16 @@ class PoseProblem(Problem):
                 usual[j] = np.sqrt(parameter.spec.typical * parameter.spec.plausible)
                 usual[j] /= self.scale[j]
         return usual
+
+    @cached_property
+    def centre(self) -> Array:
+        """(P_free,) values in scaled units about which they are sought.
+
+        Of joint frames that is the drawing, wherever an earlier fit left them: what the readings
+        hardly tell of them would otherwise wander off, fit by fit.
+        """
+        kept = [not isinstance(self.model.parameters[k].effect, JointFrame) for k in self.free]
+        return np.asarray(self.start * kept)
 
     def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction."""
