@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from sk120stiff.effects import Effect
 
 NAMED = 0.95  # probability from which on a name stands alone
@@ -24,6 +26,7 @@ class Confirmation:
         rival_frequency: Share in which the most frequent of the other names wins.
         foretells: The effect says something of poses that were not measured. Draws, one for every
             pose, do not; no fold can gain by them, and their name rests on the resampling alone.
+        others: Share in which each of the other names (``name:where``) wins.
     """
 
     folds_improved: int
@@ -33,6 +36,7 @@ class Confirmation:
     frequency: float
     rival_frequency: float
     foretells: bool = True
+    others: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def holds(self) -> bool:
@@ -99,6 +103,17 @@ class Finding:
         return sum(
             self.evidence.odds.get(name, 0.0) for name in {self.effect.id, *self.alternatives}
         )
+
+    @property
+    def gain(self) -> float:
+        """By how much the extended BIC gets worse without the effect and its alternatives.
+
+        They share one piece of evidence: readings that do not tell which of them it is say no less
+        that it is one of them.
+        """
+        own = self.evidence.odds.get(self.effect.id, 0.0)
+        shared = 2.0 * float(np.log(self.probability / own)) if own else 0.0
+        return self.evidence.score_gain + shared
 
     @property
     def others(self) -> frozenset[str]:

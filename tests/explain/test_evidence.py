@@ -1,12 +1,17 @@
 """Folds, resampling, posterior and the state of a finding, on small arrays."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from sk120stiff.effects import effect
 from sk120stiff.explain.findings import NAMED, Confirmation, Evidence, Finding
+from sk120stiff.explain.judge import attribution, beside_form
 from sk120stiff.explain.judge import confirm as confirming
 from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.posterior import NONE, doubted, posterior
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
@@ -121,3 +126,83 @@ def test_names_that_fell_and_those_beside_something_else_are_less_probable():
     assert less["a"] == pytest.approx(FALLEN * 0.5)
     assert less["b"] == pytest.approx((1.0 - 0.8 * FURTHER_IMPOSTOR) * 0.4)
     assert less[NONE] == 0.1
+
+
+@pytest.mark.parametrize(("imitates", "winner"), [(False, 0), (True, 1)])
+def test_what_explains_something_else_does_not_take_an_effects_place(imitates, winner):
+    """A stronger cause beside the effect, and the cause of which the effect is an imitation."""
+    reg = regression()
+    X = reg.X.copy()
+    if imitates:
+        X[:, 2] = X[:, 3] + 0.5 * X[:, 2]
+    size = 0.0 if imitates else 0.6
+    rng = np.random.default_rng(3)
+    y = X[:, :5] @ np.array([4.0, -3.0, size, 1.5, 0.0]) + rng.normal(size=len(X))
+    reg = replace(reg, X=X, y=y)
+    model = score_set(reg, reg.sums(), (0,))
+    assert score_set(reg, reg.sums(), (1,)).score < model.score
+    assert confirming._winner(reg, model, 0, {0}, reg.sums()) == winner
+
+
+@pytest.mark.parametrize(
+    ("others", "alternatives"),
+    [
+        ({"lost_motion:joint_2_l": 0.4, "force_scale:sensor": 0.1}, ("lost_motion:joint_2_l",)),
+        ({"lost_motion:joint_3_u": 0.4, "force_scale:sensor": 0.1}, None),  # another gear
+        ({"lost_motion:joint_2_l": 0.04, "force_scale:sensor": 0.5}, None),
+    ],
+)
+def test_drawings_that_agree_on_the_gear_confirm_it_with_the_laws_that_won(
+    monkeypatch, others, alternatives
+):
+    robot = load_robot("motoman_sk120")
+    names = [("gear_hardening", "joint_2_l"), ("lost_motion", "joint_2_l")]
+    names += [("lost_motion", "joint_3_u"), ("force_scale", None)]
+    candidates = [effect(robot, *name) for name in names]
+    own = 1.0 - sum(others.values()) - 0.1
+
+    def asked(regression, scored, chosen, same, *, seed):
+        with_it = {candidates[e].id for e in same}
+        left = {name: share for name, share in others.items() if name not in with_it}
+        share = own + sum(others.values()) - sum(left.values())
+        return Confirmation(5, 5, 1.0, 0.1, share, max(left.values(), default=0.0), others=left)
+
+    monkeypatch.setattr(attribution, "confirm", asked)
+    found = SimpleNamespace(regression=SimpleNamespace(candidates=candidates), scored=None)
+    finding = Finding(candidates[0], (), (), Evidence(9.0, 9.0, None, np.inf, SEEN, {}))
+    told = attribution._confirmed(found, 0, finding, 0)
+    assert told.evidence.confirmation.holds == (alternatives is not None)
+    assert told.alternatives == (alternatives or ())
+
+
+def test_names_that_nothing_tells_apart_share_one_piece_of_evidence():
+    tilt = effect(load_robot("motoman_sk120"), "joint_tilt", "joint_2_l")
+    odds = {tilt.id: 0.5, "link_bending:link_2_l": 0.25}
+    one = Finding(tilt, (), (), Evidence(2.0, 9.0, None, np.inf, SEEN, odds))
+    both = replace(one, alternatives=("link_bending:link_2_l",))
+    assert one.gain == pytest.approx(2.0)
+    none = 0.5 * np.exp(-1.0)  # what a gain of two says of the model without it
+    assert both.gain == pytest.approx(2.0 * np.log(0.75 / none))
+
+
+@pytest.mark.parametrize("better", [True, False])
+def test_where_nothing_is_named_the_search_begins_again_beside_the_nearest(monkeypatch, better):
+    """The likelier end counts: an error that holds the cause, or the cause and a smaller error."""
+    tilt = effect(load_robot("motoman_sk120"), "joint_tilt", "joint_2_l")
+    finding = Finding(tilt, (), (), Evidence(9.0, 9.0, None, np.inf, SEEN, {}))
+    scores = {"springs": -10.0, "springs and tilt": -11.0 if better else -9.0}
+
+    def under(noise):
+        return SimpleNamespace(final=noise, total=scores[noise])
+
+    def judged(tried, *, seed, least):
+        return tried, Named((finding,) if tried.final != "springs" else ())
+
+    monkeypatch.setattr(beside_form, "with_model_form", lambda fit: fit)
+    monkeypatch.setattr(beside_form, "judged", judged)
+    monkeypatch.setattr(beside_form, "_nearest", lambda found: tilt)
+    monkeypatch.setattr(beside_form, "refit", lambda fit, effects: f"{fit} and tilt")
+    monkeypatch.setattr(beside_form, "unless_imitating", lambda found, named, seed: (found, named))
+    found, named = beside_form.beside_model_form("springs", under, seed=0)
+    assert named.findings == ((finding,) if better else ())
+    assert found.final == ("springs and tilt" if better else "springs")

@@ -69,6 +69,34 @@ def test_the_spread_of_a_size_over_poses_comes_out(springs, spread):
         assert imitated(found, [named(found)]) is None
 
 
+def test_poses_that_differ_in_all_that_yields_are_nothing_against_one_name(springs):
+    """Loads that were off by a fifth or two at every pose: springs and tilt differ alike."""
+    with_it = hidden(TILT, poses=25, loads=4)
+    ways = np.random.default_rng(6).normal(size=25)
+    share = dict(zip(with_it.poses, 1.0 + 0.4 * ways, strict=True))
+    factor = np.array([share[pose] for pose in with_it.pose])[:, None]
+    readings = replace(with_it, displacement=factor * with_it.displacement)
+    found = fitted(springs, readings, "joint_tilt", "joint_2_l")
+    assert imitated(found, [named(found)]) is None
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_the_spread_is_the_same_whether_or_not_the_noise_was_stated(springs, known):
+    """The likeliest noise of a model that lets poses differ is smaller; their spread is not."""
+    with_it, without = hidden(TILT, poses=25, loads=4), hidden(poses=25, loads=4)
+    ways = np.where(np.arange(25) % 2, 1.0, -1.0)
+    share = dict(zip(with_it.poses, 0.7 * ways, strict=True))
+    factor = np.array([share[pose] for pose in with_it.pose])[:, None]
+    signature = with_it.displacement - without.displacement
+    readings = replace(with_it, displacement=with_it.displacement + factor * signature)
+    noise = ROUGH if known else replace(ROUGH, freedom=0, sigma=20.0 * ROUGH.sigma)
+    tilt = effect(springs.robot, "joint_tilt", "joint_2_l")
+    found = refit(fit(springs, readings, noise=noise), [tilt])
+    size = max(p.internal for p in found.parameters if p.effect == tilt)
+    told = spread_over_poses(found, tilt)[0] * size
+    assert told == pytest.approx(0.7 * TILT.sizes["first"], rel=0.25)
+
+
 def test_a_rotation_that_stands_for_crosstalk_has_a_better_place(springs):
     """The force sensor's crosstalk is twice an antisymmetric part, a rotation, and as much more."""
     misread = hidden(ForceCrosstalk("sensor", {"xy": 0.06, "zx": -0.04}))

@@ -14,11 +14,10 @@ from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.confirm import UNTRIED, confirm
 from sk120stiff.explain.judge.posterior import posterior
-from sk120stiff.explain.localise.localisation import OwnAtPoses
-from sk120stiff.explain.localise.places import localise
+from sk120stiff.explain.judge.random_effects import is_constant, joint_that_turns
 from sk120stiff.explain.select.beam import gains
-from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set
-from sk120stiff.explain.select.stepwise import Selection, refit, with_effects
+from sk120stiff.explain.select.score import Scored, score_set
+from sk120stiff.explain.select.stepwise import Selection, with_effects
 from sk120stiff.robot.anatomy import arm_joints
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
@@ -29,7 +28,7 @@ NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in 
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
 MOST_PLACES = 3  # the same beside model-form error, part of which fits at many places
-ALONG = 0.75  # share of draws' square along one direction, of which chance gives a third
+SOME = 0.05  # share of the drawings of the poses from which on a law of the same gear counts
 CONTENDERS = 24  # rivals looked at for every effect
 NEAR = 40.0  # difference of scores within which a rival's neighbours may take other laws
 
@@ -148,7 +147,7 @@ def _objection(
             f"{stronger.effect.id} leaves over; it is not named.",
             misspecification=True,
         )
-    turns = _joint_that_turns(found, finding.effect)
+    turns = joint_that_turns(found, finding.effect)
     if turns is not None:
         return Fallen(
             name,
@@ -156,7 +155,7 @@ def _objection(
             "likely its drive does not begin every pose alike. It is not named.",
             misspecification=any(other.effect.where == turns for other in before),
         )
-    if finding.effect.random_effects and not _constant(found, finding.effect):
+    if finding.effect.random_effects and not is_constant(found, finding.effect):
         return Fallen(
             name,
             f"{name} fits, but something in proportion to the load at every pose would fit as "
@@ -169,22 +168,39 @@ def _objection(
             f"{name} fits, but so do {len(finding.others)} other names; the readings do not tell "
             "what it is, and it is not named.",
         )
-    if finding.evidence.score_gain < least:
+    if finding.gain < least:
         return Fallen(
             name,
             f"{name} fits a little better, but beside what the laws of real arms leave over its "
-            f"evidence is weak ({finding.evidence.score_gain:.1f} where {least:.0f} is strong); it "
+            f"evidence is weak ({finding.gain:.1f} where {least:.0f} is strong); it "
             "is not named.",
         )
     return None
 
 
 def _confirmed(found: Selection, effect: int, finding: Finding, seed: int) -> Finding:
-    """The finding with what other poses say of it."""
+    """The finding with what other poses say of it.
+
+    A gear has one curve, and its laws are one family: where the drawings agree on the gear, and not
+    on the law, the other laws that won some of them are alternatives.
+    """
     regression = found.regression
-    same = [e for e, other in enumerate(regression.candidates) if other.id in finding.alternatives]
-    seen = confirm(regression, found.scored, effect, same, seed=seed)
-    return replace(finding, evidence=replace(finding.evidence, confirmation=seen))
+
+    def asked(each: Finding) -> Finding:
+        same = [e for e, other in enumerate(regression.candidates) if other.id in each.alternatives]
+        seen = confirm(regression, found.scored, effect, same, seed=seed)
+        return replace(each, evidence=replace(each.evidence, confirmation=seen))
+
+    alone = asked(finding)
+    of_the_gear = {
+        law.id for law in regression.candidates if law.of_gear and law.where == finding.effect.where
+    }
+    said = alone.evidence.confirmation
+    laws = [name for name, share in said.others.items() if name in of_the_gear and share >= SOME]
+    if said.holds or not finding.effect.of_gear or not laws:
+        return alone
+    wider = asked(replace(finding, alternatives=(*finding.alternatives, *laws)))
+    return wider if wider.evidence.confirmation.holds else alone
 
 
 def unit(regression: Regression, model: Scored) -> float:
@@ -192,51 +208,6 @@ def unit(regression: Regression, model: Scored) -> float:
     if regression.sigma_known:
         return 1.0
     return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
-
-
-def _joint_that_turns(found: Selection, effect: Effect) -> str | None:
-    """The joint along whose turn the draws of an effect lie; None: of no joint.
-
-    A gear that rubs begins a pose with what the pose before left in it, and one whose stiffness
-    goes with its angle yields more at some poses. Draws of the tracker know no joint: a third of
-    their square lies along its turn.
-    """
-    if not effect.random_effects:
-        return None
-    fit = found.final
-    load_cases = fit.problem.load_cases
-    own = np.array([parameter.effect == effect for parameter in fit.model.parameters])
-    _, full = fit.model.predict_with_sensitivities(load_cases)
-    drawn = np.einsum(
-        "nij,nj->ni", load_cases.reading_axes, full[:, :, own] @ fit.model.values[own]
-    )
-    ways = load_cases.nominal.linear_jacobian
-    length = np.maximum(np.linalg.norm(ways, axis=1), 1e-300)
-    along = (np.einsum("ni,nij->nj", drawn, ways) / length) ** 2
-    joint = int(np.argmax(along.sum(axis=0)))
-    if along[:, joint].sum() > ALONG * (drawn**2).sum():
-        return load_cases.robot.actuated[joint]
-    return None
-
-
-def _constant(found: Selection, effect: Effect) -> bool:
-    """Is what single poses have of their own a constant, and not in proportion to the load?
-
-    Draws, one for every pose, can imitate part of any cause that the catalogue lacks.
-    """
-    rest = [other for other in found.effects if other != effect]
-    try:
-        without = refit(found.base, rest)
-    except Refusal:
-        return True  # the other effects need it beside them, so there is nothing to compare
-    own = {each.name: each for each in localise(without).own}
-    if not {"constant", "proportional"} <= own.keys():
-        return True
-
-    def evidence(each: OwnAtPoses) -> float:
-        return each.statistic - price_of_sizes(each.statistic, each.freedom, np.inf)
-
-    return evidence(own["constant"]) > evidence(own["proportional"])
 
 
 def _unconfirmed(finding: Finding) -> str:

@@ -12,9 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
+from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
 from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged
 from sk120stiff.explain.judge.imitation import imitated
-from sk120stiff.explain.select.stepwise import Selection, with_effects
+from sk120stiff.explain.judge.posterior import NONE, one_more
+from sk120stiff.explain.select.stepwise import Selection, refit, with_effects
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
@@ -31,6 +34,9 @@ def beside_model_form(
     """The selection beside model-form error, with the effects alone that may be named.
 
     What confirmed names explain is no model-form error: the search begins beside what they leave.
+    Beside what springs alone leave a cause may drown in an error that holds the cause itself. So
+    where nothing is named it begins once more beside what the nearest candidate leaves, and the
+    likelier of both ends counts, its noise included.
 
     Args:
         at: Fit under the noise of the readings, of the base model with the effects that stand
@@ -39,14 +45,39 @@ def beside_model_form(
         names: Ids of these effects.
         seed: Of folds and resampling.
     """
+    found, named, total = _settled(at, under, names, seed)
+    nearest = None if named.findings else _nearest(found)
+    if nearest is not None:
+        try:
+            beside = _settled(refit(at, [nearest]), under, {nearest.id}, seed)
+        except Refusal:
+            beside = found, named, total
+        if beside[2] < total:
+            found, named, _ = beside
+    return unless_imitating(found, named, seed)
+
+
+def _settled(
+    at: Fit, under: Try, names: Collection[str], seed: int
+) -> tuple[Selection, Named, float]:
+    """Selection, names and score, once what they leave is what they were sought beside."""
     before = set(names)
     for _ in range(ROUNDS):
-        found, named = judged(under(with_model_form(at)), seed=seed, least=MARGIN)
+        tried = under(with_model_form(at))
+        found, named = judged(tried, seed=seed, least=MARGIN)
         now = {finding.effect.id for finding in named.findings}
         if now == before:
             break
         at, before = found.final, now
-    return unless_imitating(found, named, seed)
+    return found, named, tried.total
+
+
+def _nearest(found: Selection) -> Effect | None:
+    """The candidate that would explain most beside what is chosen."""
+    likely = one_more(found.regression, found.chosen)
+    likely.pop(NONE)
+    best = max(likely, key=lambda name: likely[name], default=None)
+    return next((each for each in found.regression.candidates if each.id == best), None)
 
 
 def unless_imitating(found: Selection, named: Named, seed: int) -> tuple[Selection, Named]:

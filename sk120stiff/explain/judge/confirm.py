@@ -20,6 +20,7 @@ RESAMPLES = 100  # at most
 RIVALS = 8  # for a place in the model, on every drawing
 ENOUGH = 20  # after which the drawings may be decided
 MOSTLY, SELDOM = 0.5, 0.33  # share of the drawings that a name wins, or that is too few
+WANTED = 6.0  # evidence from which on an effect is wanted beside what beats it
 SURE = 1e-3  # probability that more drawings would decide otherwise
 
 #: Of an effect that other poses were not asked about; it does not hold.
@@ -55,15 +56,20 @@ def confirm(
         own = sum(times for winner, times in wins.items() if winner in same)
         if count % ENOUGH == 0 and _decided(own, count):
             break
-    rivals = [times for winner, times in wins.items() if winner not in same and winner is not None]
+    others = {
+        regression.candidates[winner].id: times / count
+        for winner, times in wins.items()
+        if winner not in same and winner is not None
+    }
     return Confirmation(
         folds_improved=int((fold_gain > 0.0).sum()),
         folds=folds,
         gain=float(pose_gain.sum() / axes),
         gain_error=error / axes,
         frequency=own / count,
-        rival_frequency=max(rivals, default=0) / count,
+        rival_frequency=max(others.values(), default=0.0),
         foretells=not regression.candidates[effect].random_effects,
+        others=others,
     )
 
 
@@ -105,7 +111,11 @@ def _resampled(regression: Regression, rng: np.random.Generator) -> Sums:
 def _winner(
     regression: Regression, model: Scored, effect: int, same: Collection[int], sums: Sums
 ) -> int | None:
-    """The best in the place of one effect on these poses; None if none is plausible."""
+    """The best in the place of one effect on these poses; None if none is plausible.
+
+    What beats the effect and leaves it strong evidence beside itself explains something else: the
+    place is the effect's then.
+    """
     rest = tuple(e for e in model.effects if e != effect)
     start = model.by_variant
     beside = score_set(regression, sums, rest, start=start, only=())
@@ -117,4 +127,9 @@ def _winner(
         likely = {e: likeliest(regression, sums, e, promised[e])}
         scored[e] = score_set(regression, sums, (*rest, e), start=start | likely, only=())
     fair = {e: model.score for e, model in scored.items() if model.plausible}
-    return min(fair, key=lambda e: fair[e], default=None)
+    best = min(fair, key=lambda e: fair[e], default=None)
+    if best is None or best in same or effect not in fair:
+        return best
+    laws = start | scored[best].by_variant | {effect: scored[effect].by_variant[effect]}
+    both = score_set(regression, sums, (*rest, best, effect), start=laws, only=())
+    return effect if both.plausible and fair[best] - both.score > WANTED else best

@@ -75,28 +75,42 @@ def spread_over_poses(fit: Fit, effect: Effect) -> tuple[float, float]:
 
     Returns:
         spread, gain: Standard deviation κ over the poses, relative to the size; and the fall of
-            -2 ln L against a size that is the same everywhere.
+            -2 ln L against a size that is the same everywhere, or against poses that differ in the
+            size of everything else, where that is likelier: then it is nothing of the effect's.
     """
     full = fit.model.predict_with_sensitivities(fit.problem.load_cases)[1]
     own = np.array([parameter.effect.id == effect.id for parameter in fit.model.parameters])
-    sums = Deviance.of(fit, signature=full[:, :, own] @ fit.model.values[own])
+    values = fit.model.values
+    spread, gain = _spread(fit, full[:, :, own] @ values[own])
+    if spread > DIFFER and gain > BEYOND_CHANCE:
+        gain -= max(_spread(fit, full[:, :, ~own] @ values[~own])[1], 0.0)
+    return spread, gain
+
+
+def _spread(fit: Fit, signature: Array) -> tuple[float, float]:
+    """Likeliest κ of what every pose has a share of its own of, (N, 3) [m], and its gain."""
+    sums = Deviance.of(fit, signature=signature)
     form = fit.problem.noise.form
     free = np.array([form.proportional, form.constant]) > 0.0
 
     def least(spread: float) -> tuple[float, float]:
         """-2 ln L and spread where it is least, near a spread; zero stays zero."""
 
-        def at(logarithms: Array) -> float:
+        def moved(logarithms: Array) -> tuple[ModelForm, float]:
             factor = np.ones(2)
             factor[free] = np.exp(np.clip(logarithms[1:], -FAR, FAR))
-            moved = ModelForm(form.proportional * factor[0], form.constant * factor[1])
-            return sums(moved, spread * float(np.exp(np.clip(logarithms[0], -FAR, FAR))))
+            other = ModelForm(form.proportional * factor[0], form.constant * factor[1])
+            return other, spread * float(np.exp(np.clip(logarithms[0], -FAR, FAR)))
+
+        def at(logarithms: Array) -> float:
+            return sums(*moved(logarithms))
 
         start = np.zeros(1 + free.sum())
         steps = np.vstack([start, 0.5 * np.eye(len(start))])
         rough = {"initial_simplex": steps, "xatol": 0.03, "fatol": 0.02, "maxiter": 200}
         found = minimize(at, start, method="Nelder-Mead", options=rough)
-        return float(found.fun), spread * float(np.exp(np.clip(found.x[0], -FAR, FAR)))
+        likeliest = moved(found.x)
+        return float(found.fun), likeliest[1] * sums.noise_factor(*likeliest)
 
     value, spread = min(least(begin) for begin in STARTS)
     return spread, least(0.0)[0] - value

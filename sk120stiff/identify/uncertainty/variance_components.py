@@ -147,9 +147,9 @@ class Deviance:
             return logdet + information + square
         return logdet + information + self.freedom * float(np.log(square / self.freedom))
 
-    def noise_factor(self, form: ModelForm) -> float:
+    def noise_factor(self, form: ModelForm, spread: float = 0.0) -> float:
         """The likeliest noise beside a form, over the one assumed; 1 where σ is known."""
-        return 1.0 if self.known else float(np.sqrt(self._terms(form)[2] / self.freedom))
+        return 1.0 if self.known else float(np.sqrt(self._terms(form, spread)[2] / self.freedom))
 
     def _terms(self, form: ModelForm, spread: float = 0.0) -> tuple[float, float, float]:
         """ln|V| beyond the noise, ln|XᵀV⁻¹X| and rᵀPr."""
