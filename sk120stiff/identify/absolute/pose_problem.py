@@ -150,10 +150,11 @@ class PoseProblem(Problem):
     def centre(self) -> Array:
         """(P_free,) values in scaled units about which they are sought.
 
-        Of joint frames that is the drawing, wherever an earlier fit left them: what the readings
+        Of joint frames and waves that is none, wherever an earlier fit left them: what the readings
         hardly tell of them would otherwise wander off, fit by fit.
         """
-        kept = [not isinstance(self.model.parameters[k].effect, JointFrame) for k in self.free]
+        effects = [self.model.parameters[k].effect for k in self.free]
+        kept = [not isinstance(effect, JointFrame | TransmissionError) for effect in effects]
         return np.asarray(self.start * kept)
 
     def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:
