@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.robot import load_robot
+from sk120stiff.robot.rotations import rotation_from_rpy
 from tests.cli.conftest import Run
 
 MODEL = str(Path(__file__).resolve().parents[2] / "robots/motoman_sk120/model.yaml")
@@ -98,10 +99,20 @@ def test_no_posture_is_an_explained_refusal(run: Run, path: str, tmp_path: Path)
 
 def test_its_path_is_taken_by_compensate(run: Run, path: str, tmp_path: Path) -> None:
     """Joints are driven, and what stands beside them is held against them."""
-    best = tmp_path / "best.csv"
-    first = run("posture", MODEL, path, "--tool-axis", "0,0,-1", "--out", str(best))
+    best, turned = tmp_path / "best.csv", tmp_path / "turned.csv"
+    first, *rest = Path(path).read_text().splitlines()
+    lines = [first + ",roll[deg],pitch[deg],yaw[deg]", *(f"{row},180,0,0" for row in rest)]
+    turned.write_text("\n".join(lines) + "\n")
+    first = run("posture", MODEL, str(turned), "--tool-axis", "0,0,-1", "--out", str(best))
     for said in ("joint limits with 0 deg", "100 % of their effort", "no cell.yaml", "No floor"):
         assert said in " ".join(first.stdout.split())
+    robot = load_robot("motoman_sk120")
+    with best.open(newline="") as stream:
+        row = list(csv.DictReader(stream))[1]
+    a = np.radians([float(row[f"{joint}[deg]"]) for joint in robot.actuated])
+    angles = np.radians([float(row[f"{name}[deg]"]) for name in ("roll", "pitch", "yaw")])
+    stands = robot.placement(a[None])[0][:3, :3]
+    np.testing.assert_allclose(stands, rotation_from_rpy(angles), atol=1e-8)
     words = ("compensate", MODEL, str(best), "--out", str(tmp_path / "c.csv"))
     found = run(*words, "--floor=-2 m", "--json")
     assert found.code == 0, found.stderr
