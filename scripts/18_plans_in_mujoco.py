@@ -17,7 +17,7 @@ options = argparse.ArgumentParser()
 options.add_argument("--poses", type=int, default=100, help="poses planned for each arm")
 options.add_argument("--driven", type=int, default=12, help="poses that are driven through")
 options = options.parse_args()
-print("arm                    rows  wrong  on the way  wrong  random poses that touch something")
+print("arm                    rows  wrong  on the way  wrong  no way  random poses that touch")
 bad = 0
 for name in ARMS:
     found = rows_of(name, options.poses, driven=options.driven)
@@ -25,7 +25,7 @@ for name in ARMS:
     bad += len(wrong)
     print(
         f"{name:22s} {found.rows:4d}  {len(found.wrong):5d}  {found.on_the_way:10d}  "
-        f"{len(found.run_into):5d}  {100 * found.touching:4.0f} %",
+        f"{len(found.run_into):5d}  {found.no_way:6d}  {100 * found.touching:4.0f} %",
         flush=True,
     )
     for fault in dict.fromkeys(wrong):

@@ -2,7 +2,8 @@
 
 Pinocchio places the solids, coal holds convex ones against each other. Neighbours along the chain
 touch at their joint and are not asked; nor are pairs that touch where all joints stand at zero, or
-wherever the arm stands: so they were drawn (as MoveIt's assistant has it), and that is said.
+as near to it as their limits allow, or wherever the arm stands: so they were drawn (as MoveIt's
+assistant has it), and that is said.
 """
 
 from __future__ import annotations
@@ -198,7 +199,10 @@ class Scene:
 
         for q in self._values(poses):
             times += touching(q)
-        (drawn,) = self._values(self.robot.rest[None])
+        robot = (
+            self.robot
+        )  # zero, or what of it the limits allow: only what can be is drawn rightly
+        (drawn,) = self._values(np.clip(robot.rest, robot.lower, robot.upper)[None])
         own = np.array([j < self._own for _, j in held], dtype=bool)  # a wall is never drawn so
         always = own & ((times >= WHEREVER * len(poses)) | touching(drawn))
         names = [

@@ -1,8 +1,8 @@
 """MuJoCo on the user's own URDF: what touches, and what the motors must give; nothing of ours.
 
 Meshes are handed over as STL, since MuJoCo reads no COLLADA; the tree, the shapes, the masses and
-the limits are the file's. Pairs that touch with all joints at zero, or wherever the arm stands, are
-found by MuJoCo itself.
+the limits are the file's. Pairs that touch with all joints at zero, or as near to it as the limits
+allow, or wherever the arm stands, are found by MuJoCo itself.
 """
 
 import xml.etree.ElementTree as ET
@@ -37,11 +37,14 @@ class MujocoCell:
         pinned: Sequence[tuple[str, str]] = (),
     ) -> None:
         root = ET.parse(urdf).getroot()
-        self.efforts, self.mimics = {}, {}
+        self.efforts, self.mimics, self.zero = {}, {}, {}
         for joint in root.iter("joint"):
             limit, mimic = joint.find("limit"), joint.find("mimic")
             if limit is not None:
                 self.efforts[joint.get("name")] = float(limit.get("effort", 0.0)) or np.inf
+                ends = float(limit.get("lower", 0.0)), float(limit.get("upper", 0.0))
+                if joint.get("type") != "continuous" and ends[0] < ends[1]:
+                    self.zero[joint.get("name")] = float(np.clip(0.0, *ends))
             if mimic is not None:
                 rule = (float(mimic.get("multiplier", 1)), float(mimic.get("offset", 0)))
                 self.mimics[joint.get("name")] = (mimic.get("joint"), *rule)
@@ -117,7 +120,7 @@ class MujocoCell:
 
     def _always(self, samples: Sequence[dict[str, float]]) -> set[tuple[str, str]]:
         counts = Counter(pair for values in samples for pair in self._touching(values))
-        at_zero = set(self._touching(dict.fromkeys(samples[0], 0.0)))
+        at_zero = set(self._touching({name: self.zero.get(name, 0.0) for name in samples[0]}))
         return at_zero | {pair for pair, n in counts.items() if n >= ALWAYS * len(samples)}
 
     def contacts(self, values: dict[str, float]) -> set[tuple[str, str]]:

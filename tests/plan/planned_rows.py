@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sk120stiff.errors import ToolkitWarning
+from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.plan import Cell, feasible_pool, lowest_points, random_poses, route
 from sk120stiff.robot import Robot, load_robot
 from tests.corpus.robots import example
@@ -39,6 +39,7 @@ class Checked(NamedTuple):
         touching: Share of random poses that touch something.
         on_the_way, run_into: Poses sampled on the way between the first planned ones, and what
             touches there.
+        no_way: How often no way was found, and the poses were divided.
     """
 
     rows: int
@@ -46,6 +47,7 @@ class Checked(NamedTuple):
     touching: float
     on_the_way: int
     run_into: list[str]
+    no_way: int
 
 
 def rows_of(name: str, poses: int, *, driven: int = 0, seed: int = 7) -> Checked:
@@ -72,23 +74,32 @@ def rows_of(name: str, poses: int, *, driven: int = 0, seed: int = 7) -> Checked
             for fault in _faults(judge, robot, row, a, wrench)
         ]
         spoilt = np.mean([bool(judge.contacts(values)) for values in standing])
-        way = _way(robot, cell, np.unique(pool.a, axis=0)[:driven]) if driven else []
+        way, no_way = _way(robot, cell, np.unique(pool.a, axis=0)[:driven])
         run_into = [
             f"between stops {leg} and {leg + 1}: {pair[0]} touches {pair[1]}"
             for leg, a in way
             for pair in judge.contacts(_values(robot, a))
         ]
-    return Checked(pool.count, wrong, float(spoilt), len(way), run_into)
+    return Checked(pool.count, wrong, float(spoilt), len(way), run_into, no_way)
 
 
-def _way(robot: Robot, cell: Cell, a: np.ndarray) -> list[tuple[int, np.ndarray]]:
-    """Poses half a degree apart on the way through some, with the leg that each lies on."""
-    stops = route(robot, cell, a, point=POINT).a
-    out = []
+def _way(robot: Robot, cell: Cell, a: np.ndarray) -> tuple[list[tuple[int, np.ndarray]], int]:
+    """Poses half a degree apart on the way through some, with the leg that each lies on.
+
+    Where no way is found one half of the poses is driven through, and then the other.
+    """
+    if len(a) < 2:
+        return [], 0
+    try:
+        stops = route(robot, cell, a, point=POINT).a
+    except Refusal:
+        halves = [_way(robot, cell, half) for half in (a[: len(a) // 2], a[len(a) // 2 :])]
+        return [*halves[0][0], *halves[1][0]], 1 + halves[0][1] + halves[1][1]
+    out: list[tuple[int, np.ndarray]] = []
     for leg, (p, q) in enumerate(itertools.pairwise(stops)):
         count = int(np.ceil(np.abs(q - p).max() / SAMPLED))
         out += [(leg, p + share * (q - p)) for share in np.linspace(0.0, 1.0, count + 1)]
-    return out
+    return out, 0
 
 
 def _faults(judge: MujocoCell, robot: Robot, row: int, a: np.ndarray, wrench: np.ndarray):

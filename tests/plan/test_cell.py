@@ -112,6 +112,27 @@ def test_data_tell_floor_and_directions(arm: Robot) -> None:
     assert "any direction" in free.rig.words
 
 
+@pytest.mark.parametrize(("least", "drawn"), [(-3.0, True), (0.5, False)])
+def test_what_touches_where_no_joint_can_stand_was_not_drawn_so(least: float, drawn: bool) -> None:
+    """Folded back at zero the end meets the base: evidence only where the limits allow zero."""
+    ball = (
+        '<collision><origin xyz="{} 0 0"/><geometry><sphere radius="0.1"/></geometry></collision>'
+    )
+    limit = '<limit lower="{}" upper="3" effort="9" velocity="1"/></joint>'
+    robot = load_robot(
+        f"""<robot name="folded"><link name="base">{ball.format(0)}</link>
+        <link name="upper">{ball.format(0.5)}</link><link name="hand">{ball.format(-1)}</link>
+        <joint name="a" type="revolute"><parent link="base"/><child link="upper"/>
+        <axis xyz="0 1 0"/>{limit.format(-3)}
+        <joint name="b" type="revolute"><parent link="upper"/><child link="hand"/>
+        <origin xyz="1 0 0"/><axis xyz="0 1 0"/>{limit.format(least)}</robot>""",
+        base="base",
+        tool="hand",
+    )
+    said = " ".join(Scene(robot).remarks)
+    assert ("as they were drawn and are not asked: base and hand" in said) is drawn
+
+
 FILE = """
 floor: -900 mm
 tracker: {xyz: [3, 0, 0], axis: [1, 0, 0], cone: 40 deg, range: '0.5, 20 m'}
