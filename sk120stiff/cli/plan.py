@@ -28,7 +28,9 @@ from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
 from sk120stiff.plan import (
     Cell,
+    NoWay,
     Pool,
+    Route,
     feasible_pool,
     lowest_points,
     to_be_taken,
@@ -36,6 +38,7 @@ from sk120stiff.plan import (
 from sk120stiff.units import parse_size, parse_values
 
 MOST_CANDIDATES = 1_000_000
+MOST_LEFT_OUT = 5  # poses to which no way is found, before that is the answer
 
 
 def command(
@@ -206,39 +209,56 @@ def command(
         seed=seed,
         cell=within,
     )
-    if given is not None and count is None:
-        pool = given.one_each(start, pool)
-        wanted_poses = len(np.unique(pool.pose))
     sigma = _sigma(known, noise)
     before = None if known is None else Pool(load_cases_of(start.robot, known.masked()))
-    with progress_bar("plan"):
-        if between is None:
-            chosen = precise(start, pool, known, wanted, (wanted_poses, loads), sigma, seed)
-        else:
-            chosen = telling(start, pool, before, between, (wanted_poses, loads), sigma, seed)
-    rows, document, said = chosen
     zero = "unknown" if known is None else known.zero
-    plan = to_be_taken(start.robot, pool, rows, zero=zero)
-    remarks = pool.remarks
-    if given is not None:
-        plan, remarks = given.named(plan), (*given.remarks, *remarks)
-    way: dict[str, object] | None = None
-    if language is not None and program is not None:
+    route: Route | None = None
+    left_out = 0
+    while True:
+        choice = pool
+        if given is not None and count is None:
+            choice = given.one_each(start, pool)
+            wanted_poses = len(np.unique(choice.pose))
+        size = wanted_poses, loads
+        with progress_bar("plan"):
+            if between is None:
+                chosen = precise(start, choice, known, wanted, size, sigma, seed)
+            else:
+                chosen = telling(start, choice, before, between, size, sigma, seed)
+        rows, document, said = chosen
+        plan = to_be_taken(start.robot, choice, rows, zero=zero)
+        if given is not None:
+            plan = given.named(plan)
+        if language is None:
+            break
         labels = plan.poses
-        with progress_bar("the way between the poses"):
-            plan, route = in_order(plan, start.robot, within, seed)
+        try:
+            with progress_bar("the way between the poses"):
+                plan, route = in_order(plan, start.robot, within, seed)
+            break
+        except NoWay as error:
+            if left_out == MOST_LEFT_OUT:
+                raise
+            left_out += 1
+            pool = pool.without(plan.joints[plan.pose.index(labels[error.pose])])
+    remarks = (*(given.remarks if given else ()), *pool.remarks)
+    way: dict[str, object] | None = None
+    if language is not None and program is not None and route is not None:
         write_route(language, program, start.robot, route, labels)
         way = {
             "order": [labels[k] for k in route.order],
             "via_points": int((route.pose < 0).sum()),
             "driving_s": route.seconds,
             "minutes": route.minutes(plan.n_readings),
+            "left_out": left_out,
         }
         said.append(
             f"Driven in this order: {route.seconds:.0f} s of way with {way['via_points']} via "
             f"points; about {route.minutes(plan.n_readings):.0f} min with the readings. Written "
             f"to {program}."
         )
+        if left_out:
+            said.append(f"Poses to which no free way was found, others taken instead: {left_out}.")
     heights = lowest_points(start.robot, plan.joints, at, within)
     document = {
         "poses": as_keys(plan),

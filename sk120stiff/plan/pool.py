@@ -43,6 +43,10 @@ class Pool:
         """Number of candidates M."""
         return self.load_cases.count
 
+    def without(self, a: Array) -> Pool:
+        """The candidates that do not stand at a pose (n,)."""
+        return Pool(self.load_cases.rows((self.load_cases.a != a).any(axis=1)), self.remarks)
+
     @cached_property
     def pose(self) -> Index:
         """(M,) index of each candidate's pose."""

@@ -33,6 +33,18 @@ ATTEMPTS = 400  # ways through the roadmap that are asked before it is given up
 SETTLING = 20.0  # s at a reading: to come to rest, to load, to read
 
 
+class NoWay(Refusal):
+    """No free way to a pose was found; `pose` is its index."""
+
+    def __init__(self, robot: str, here: int, there: int) -> None:
+        super().__init__(
+            f"no free way was found from pose {here + 1} of the plan to pose {there + 1}",
+            where=robot,
+            remedy="Take another --seed, or leave one of them out.",
+        )
+        self.pose = there
+
+
 @dataclass(frozen=True, eq=False)
 class Route:
     """A way through poses.
@@ -60,7 +72,7 @@ def route(
     """The way through poses (N, n) that takes least time and runs into nothing.
 
     Raises:
-        Refusal: No free way to a pose was found.
+        NoWay: No free way to a pose was found.
     """
     poses = np.atleast_2d(robot.coordinates(a))
     scene = scene_of(robot, cell, point)
@@ -82,12 +94,7 @@ def route(
                 if found is not None:
                     break
             if found is None:
-                raise Refusal(
-                    f"no free way was found from pose {ends[0] + 1} of the plan to pose "
-                    f"{ends[1] + 1}",
-                    where=robot.name,
-                    remedy="Take another --seed, or leave one of them out.",
-                )
+                raise NoWay(robot.name, *ends)
             way = found
         for k, stop in enumerate(way[1:], 1):
             stops.append(stop)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.measurements import read_measurements
+from sk120stiff.plan import NoWay
 from sk120stiff.robot import load_robot
 
 MODEL = "robots/motoman_sk120/model.yaml"
@@ -195,3 +196,23 @@ def test_poses_are_given_as_places_of_the_point(run, tmp_path: Path) -> None:
     places.write_text("point,x[mm],y[mm],z[mm]\nfar,5000,0,0\n")
     assert run("plan", *words).code == 1
     assert run("plan", "--model", MODEL, "--count", "3", "--tool-axis", "0,0,1").code == 2
+
+
+def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, monkeypatch):
+    from sk120stiff.cli import plan as command
+
+    asked: list[np.ndarray] = []
+    drive = command.in_order
+
+    def blocked(plan, robot, cell, seed):
+        asked.append(plan.joints)
+        if len(asked) == 1:
+            raise NoWay(robot.name, 0, 1)
+        return drive(plan, robot, cell, seed)
+
+    monkeypatch.setattr(command, "in_order", blocked)
+    way = tmp_path / "way.script"
+    outcome = run("plan", "--model", MODEL, "--count", "3", *FEW, "--program", str(way), "--json")
+    assert outcome.code == 0, outcome.stderr
+    assert outcome.document["route"]["left_out"] == 1 and len(asked[1]) == 3
+    assert not (asked[1] == asked[0][1]).all(axis=1).any()

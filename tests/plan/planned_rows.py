@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sk120stiff.errors import Refusal, ToolkitWarning
-from sk120stiff.plan import Cell, feasible_pool, lowest_points, random_poses, route
+from sk120stiff.errors import ToolkitWarning
+from sk120stiff.plan import Cell, NoWay, feasible_pool, lowest_points, random_poses, route
 from sk120stiff.robot import Robot, load_robot
 from tests.corpus.robots import example
 from tests.oracles.mujoco_cell import MujocoCell
@@ -39,7 +39,7 @@ class Checked(NamedTuple):
         touching: Share of random poses that touch something.
         on_the_way, run_into: Poses sampled on the way between the first planned ones, and what
             touches there.
-        no_way: How often no way was found, and the poses were divided.
+        no_way: Poses to which no way was found.
     """
 
     rows: int
@@ -86,20 +86,22 @@ def rows_of(name: str, poses: int, *, driven: int = 0, seed: int = 7) -> Checked
 def _way(robot: Robot, cell: Cell, a: np.ndarray) -> tuple[list[tuple[int, np.ndarray]], int]:
     """Poses half a degree apart on the way through some, with the leg that each lies on.
 
-    Where no way is found one half of the poses is driven through, and then the other.
+    A pose to which no way is found is left out, and counted.
     """
-    if len(a) < 2:
-        return [], 0
-    try:
-        stops = route(robot, cell, a, point=POINT).a
-    except Refusal:
-        halves = [_way(robot, cell, half) for half in (a[: len(a) // 2], a[len(a) // 2 :])]
-        return [*halves[0][0], *halves[1][0]], 1 + halves[0][1] + halves[1][1]
+    given = len(a)
+    while True:
+        if len(a) < 2:
+            return [], given - len(a)
+        try:
+            stops = route(robot, cell, a, point=POINT).a
+            break
+        except NoWay as error:
+            a = np.delete(a, error.pose, axis=0)
     out: list[tuple[int, np.ndarray]] = []
     for leg, (p, q) in enumerate(itertools.pairwise(stops)):
         count = int(np.ceil(np.abs(q - p).max() / SAMPLED))
         out += [(leg, p + share * (q - p)) for share in np.linspace(0.0, 1.0, count + 1)]
-    return out, 0
+    return out, given - len(a)
 
 
 def _faults(judge: MujocoCell, robot: Robot, row: int, a: np.ndarray, wrench: np.ndarray):
