@@ -199,10 +199,9 @@ class Scene:
 
         for q in self._values(poses):
             times += touching(q)
-        robot = (
-            self.robot
-        )  # zero, or what of it the limits allow: only what can be is drawn rightly
-        (drawn,) = self._values(np.clip(robot.rest, robot.lower, robot.upper)[None])
+        # Zero, or what of it the limits allow: no evidence where the joints cannot stand.
+        rest = np.clip(self.robot.rest, self.robot.lower, self.robot.upper)
+        (drawn,) = self._values(rest[None])
         own = np.array([j < self._own for _, j in held], dtype=bool)  # a wall is never drawn so
         always = own & ((times >= WHEREVER * len(poses)) | touching(drawn))
         names = [

@@ -12,7 +12,8 @@ from sk120stiff.explain import Options
 from sk120stiff.explain.absolute.candidates import linear_at
 from sk120stiff.explain.absolute.choose import choose
 from sk120stiff.identify.absolute.calibrate import calibrate
-from sk120stiff.model import Model
+from sk120stiff.identify.absolute.left_out import _with_left_out
+from sk120stiff.model import Model, Parameter
 from tests.absolute.arm import Arm, errors, poses, tracked, write
 
 SIGMA = 2e-6
@@ -55,6 +56,19 @@ def test_a_spring_that_is_left_out_is_in_the_errors_of_the_others(tmp_path: Path
         spring = found.parameter("joint_springs:j2.stiffness")
         assert abs(spring.internal - 1 / 8e5) < 2.0 * spring.internal_std
         assert low < spring.internal_std * 8e5 < high
+
+
+def test_frames_that_are_turned_alone_are_left_out_at_the_other_joints(tmp_path: Path) -> None:
+    """Where a model knows of no shift, frames that it lacks may be turned all the same."""
+    data = sk.read(write(tmp_path, A, tracked(Arm().stands(A)[0]), FIT))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    frame = sk.effect(robot, "joint_frame", "j2")
+    model = Model(robot) + [
+        Parameter(frame, spec, 3e-4, free=spec.unit == "rad") for spec in frame.parameters
+    ]
+    wide, sizes = _with_left_out(model, sk.CATALOGUE)
+    others = {wide.parameters[k].name for k in sizes}
+    assert others == {f"joint_frame:j{k}.r{axis}" for k in (1, 3, 4, 5, 6) for axis in "xyz"}
 
 
 def test_small_errors_of_all_frames_get_no_other_name(tmp_path: Path) -> None:

@@ -72,8 +72,8 @@ def _with_left_out(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int,
     for name in ("joint_frame", "joint_springs"):
         for where in catalogue[name].places(model.robot):
             effect: Effect = catalogue.effect(model.robot, name, where)
-            if effect.id not in present and effect.parameters[0].unit in size:
-                specs = effect.parameters
+            specs = effect.parameters
+            if effect.id not in present and any(spec.unit in size for spec in specs):
                 model = model + [Parameter(effect, spec, 0.0, free=False) for spec in specs]
                 present.add(effect.id)
     return model, {
