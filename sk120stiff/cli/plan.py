@@ -209,6 +209,7 @@ def command(
         seed=seed,
         cell=within,
     )
+    unheld = () if given is None else given.lost(pool)
     sigma = _sigma(known, noise)
     before = None if known is None else Pool(load_cases_of(start.robot, known.masked()))
     zero = "unknown" if known is None else known.zero
@@ -241,7 +242,15 @@ def command(
                 raise
             left_out += 1
             pool = pool.without(plan.joints[plan.pose.index(labels[error.pose])])
-    remarks = (*(given.remarks if given else ()), *pool.remarks)
+    remarks = pool.remarks
+    if given is not None:
+        unreached = [name for name in given.lost(pool) if name not in unheld]
+        remarks = (
+            *given.remarks,
+            *(f"{name}: the motors hold no load there." for name in unheld),
+            *(f"{name}: no free way to it was found." for name in unreached),
+            *remarks,
+        )
     way: dict[str, object] | None = None
     if language is not None and program is not None and route is not None:
         write_route(language, program, start.robot, route, labels)
@@ -258,7 +267,10 @@ def command(
             f"to {program}."
         )
         if left_out:
-            said.append(f"Poses to which no free way was found, others taken instead: {left_out}.")
+            said.append(
+                "Poses to which no free way was found, others taken instead where there are any: "
+                f"{left_out}."
+            )
     heights = lowest_points(start.robot, plan.joints, at, within)
     document = {
         "poses": as_keys(plan),

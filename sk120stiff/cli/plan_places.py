@@ -58,6 +58,11 @@ class Places:
             kept += rows[best]
         return Pool(pool.load_cases.rows(np.array(sorted(kept), dtype=np.intp)), pool.remarks)
 
+    def lost(self, pool: Pool) -> tuple[str, ...]:
+        """Places of which a pool has no pose any more."""
+        left = {self._place(a) for a in pool.load_cases.a}
+        return tuple(name for name in dict.fromkeys(self.names) if name not in left)
+
     def _place(self, a: Array) -> str:
         return self.names[int(np.argmin(np.abs(self.a - a).max(axis=1)))]
 
@@ -85,7 +90,7 @@ def places_of(file: Path, model: Model, cell: Cell, point: Array, axis: Array | 
             that of the file.
 
     Raises:
-        InputError: The file cannot be read, or has no positions.
+        InputError: The file cannot be read, has no positions, or calls two places the same.
         Refusal: No place can be reached.
     """
     robot = model.robot
@@ -96,7 +101,15 @@ def places_of(file: Path, model: Model, cell: Cell, point: Array, axis: Array | 
             "places are positions, and the file has joints alone", where=str(file),
             remedy="Give x[mm], y[mm], z[mm] of the point; --data and --check take joints.",
         )  # fmt: skip
-    labels = path.table.cells.get("point") or [f"p{k + 1}" for k in range(path.count)]
+    called = path.table.cells.get("point") or [""] * path.count
+    labels = [label or f"p{k + 1}" for k, label in enumerate(called)]
+    for k, label in enumerate(labels):
+        if label in labels[:k]:
+            raise InputError(
+                f"two places are called {label!r}",
+                where=f"{file}, line {path.table.lines[k]}",
+                remedy="Give each place a name of its own, or leave the column point out.",
+            )
     arm = elastic_arm(joint_spring_model(robot), point=point)
     starts = starting_poses(arm, STARTS, np.clip(np.zeros(robot.n), arm.lower, arm.upper))
     found: list[Array] = []

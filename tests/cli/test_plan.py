@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.measurements import read_measurements
-from sk120stiff.plan import NoWay
+from sk120stiff.plan import NoWay, Pool
 from sk120stiff.robot import load_robot
 
 MODEL = "robots/motoman_sk120/model.yaml"
@@ -196,6 +196,9 @@ def test_poses_are_given_as_places_of_the_point(run, tmp_path: Path) -> None:
     places.write_text("point,x[mm],y[mm],z[mm]\nfar,5000,0,0\n")
     assert run("plan", *words).code == 1
     assert run("plan", "--model", MODEL, "--count", "3", "--tool-axis", "0,0,1").code == 2
+    places.write_text("point,x[mm],y[mm],z[mm]\nA,1200,0,300\nB,1300,400,500\nA,1300,0,500\n")
+    twice = run("plan", *words)
+    assert twice.code == 2 and "'A'" in twice.stderr and "line 4" in twice.stderr
 
 
 def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, monkeypatch):
@@ -216,3 +219,34 @@ def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, 
     assert outcome.code == 0, outcome.stderr
     assert outcome.document["route"]["left_out"] == 1 and len(asked[1]) == 3
     assert not (asked[1] == asked[0][1]).all(axis=1).any()
+
+
+@pytest.mark.parametrize("said", ["no free way to it was found", "the motors hold no load there"])
+def test_a_place_that_falls_out_is_named(run, tmp_path: Path, monkeypatch, said: str) -> None:
+    from sk120stiff.cli import plan as command
+
+    drive, drawn = command.in_order, command.feasible_pool
+
+    def blocked(plan, robot, cell, seed):
+        if "B" in plan.poses:
+            raise NoWay(robot.name, 0, plan.poses.index("B"))
+        return drive(plan, robot, cell, seed)
+
+    def unheld(robot, **options):
+        pool = drawn(robot, **options)
+        beside = robot.screws(pool.load_cases.a, point=options["point"]).position[:, 1] > 0.3
+        return Pool(pool.load_cases.rows(~beside), pool.remarks)
+
+    if "way" in said:
+        monkeypatch.setattr(command, "in_order", blocked)
+    else:
+        monkeypatch.setattr(command, "feasible_pool", unheld)
+    places, way = tmp_path / "places.csv", tmp_path / "way.script"
+    rows = [f"{name},1300,{y},500,180,0,0" for name, y in (("A", 0), ("B", 400), ("C", -300))]
+    header = "point,x[mm],y[mm],z[mm],roll[deg],pitch[deg],yaw[deg]"
+    places.write_text("\n".join([header, *rows]) + "\n")
+    words = ("--model", MODEL, "--places", str(places), "--directions")
+    outcome = run("plan", *words, "2", "--point=-60,40,150 mm", "--program", str(way), "--json")
+    assert outcome.code == 0, outcome.stderr
+    assert {row["pose"] for row in outcome.document["poses"]} == {"A", "C"}
+    assert f"B: {said}." in outcome.document["remarks"]
