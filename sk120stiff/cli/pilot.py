@@ -19,7 +19,7 @@ from sk120stiff.cli.frame import Answer, emit, note
 from sk120stiff.cli.opening import open_model
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
-from sk120stiff.files import misfit
+from sk120stiff.files import schema_error
 from sk120stiff.measurements import Measurements
 from sk120stiff.pilot.campaign import Campaign, State
 from sk120stiff.pilot.confirming import Confirmation, confirmed
@@ -135,7 +135,7 @@ def _settings(said: dict[str, object]) -> Settings:
         return Settings.model_validate(said).checked()
     except ValidationError as error:
         key = error.errors()[0]["loc"][0]
-        raise misfit(error, f"--{key}", Settings.model_fields, LIKE) from error
+        raise schema_error(error, f"--{key}", Settings.model_fields, LIKE) from error
     except InputError as error:
         raise InputError(error.what, where=f"--{error.where}", remedy=error.remedy) from error
 

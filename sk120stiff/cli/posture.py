@@ -185,7 +185,7 @@ def command(
             f"{value * 1e6:.6g}" for value in found.per_point
         ]
     }
-    # the path as it was placed and turned, not as it came
+    # The path as it was placed and turned, not as it came.
     stands = robot.placement(found.a, at)
     columns: list[tuple[str, str, Array]] = []
     if found.placement.any():

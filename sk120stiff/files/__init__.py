@@ -7,15 +7,14 @@ Every reader of the package notes what it reads, and every writer looks there fi
 from sk120stiff.files.cells import csv_text, guarded_cell, plain_cell
 from sk120stiff.files.file_set import together
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
-from sk120stiff.files.misfit import misfit
 from sk120stiff.files.reading import read_bytes, read_text
+from sk120stiff.files.schema_error import schema_error
 from sk120stiff.files.writing import write_atomically
 from sk120stiff.files.yaml_text import parse_yaml, read_yaml
 
 __all__ = [
     "csv_text",
     "guarded_cell",
-    "misfit",
     "note_read",
     "parse_yaml",
     "plain_cell",
@@ -23,6 +22,7 @@ __all__ = [
     "read_text",
     "read_yaml",
     "running",
+    "schema_error",
     "together",
     "will_fill",
     "will_write",

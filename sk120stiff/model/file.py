@@ -28,7 +28,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sk120stiff.effects import CATALOGUE, Catalogue, comment_lines
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.files import misfit, parse_yaml, read_text, write_atomically
+from sk120stiff.files import parse_yaml, read_text, schema_error, write_atomically
 from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model
 from sk120stiff.model.parameter import Parameter
@@ -290,7 +290,7 @@ def _parsed(text: str, where: str) -> _File:
     try:
         return _File.model_validate(parse_yaml(text, where).content or {})
     except ValidationError as error:
-        raise misfit(error, where, _File.model_fields, LIKE) from error
+        raise schema_error(error, where, _File.model_fields, LIKE) from error
 
 
 def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:

@@ -21,7 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.files import misfit, read_text, read_yaml, running, write_atomically
+from sk120stiff.files import read_text, read_yaml, running, schema_error, write_atomically
 from sk120stiff.measurements import Measurements, read_measurements, write_measurements
 from sk120stiff.measurements.data import NoiseStatement
 from sk120stiff.model import Model
@@ -131,7 +131,7 @@ class Folder:
         try:
             return Settings.model_validate(read_yaml(file).content or {}).checked()
         except ValidationError as error:
-            raise misfit(error, str(file), Settings.model_fields, LIKE) from error
+            raise schema_error(error, str(file), Settings.model_fields, LIKE) from error
         except InputError as error:
             place = f"{file}, key {error.where!r}"
             raise InputError(error.what, where=place, remedy=error.remedy) from error

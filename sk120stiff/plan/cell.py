@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.files import misfit, read_yaml
+from sk120stiff.files import read_yaml, schema_error
 from sk120stiff.plan.rig import Rig, unit
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy
@@ -185,7 +185,7 @@ def read_cell(path: Path, robot: Robot) -> Cell:
     try:
         said = CellFile.model_validate(read_yaml(path).content or {})
     except ValidationError as error:
-        raise misfit(error, str(path), CellFile.model_fields, LIKE) from error
+        raise schema_error(error, str(path), CellFile.model_fields, LIKE) from error
 
     def number(key: str, text: str, kind: str) -> float:
         (value,) = _numbers(path, key, text, kind, LIKE[key].partition(": ")[2].partition("   ")[0])

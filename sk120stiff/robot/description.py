@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sk120stiff.files import misfit, read_yaml
+from sk120stiff.files import read_yaml, schema_error
 
 
 class _Strict(BaseModel):
@@ -106,4 +106,4 @@ def read_description(path: Path) -> RobotDescription:
     try:
         return RobotDescription.model_validate(content or {})
     except ValidationError as error:
-        raise misfit(error, str(path), RobotDescription.model_fields) from error
+        raise schema_error(error, str(path), RobotDescription.model_fields) from error

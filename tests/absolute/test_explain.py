@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,11 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.explain import Options
+from sk120stiff.explain.absolute.candidates import linear_at
+from sk120stiff.explain.absolute.laws import by_best_laws, laws_at
 from sk120stiff.explain.absolute.run import Explained, explain_positions
-from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.model import Model
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
 
@@ -68,6 +72,25 @@ def test_what_hides_what_at_poses_left_out_is_confirmed_together(tmp_path: Path)
     found = explain_positions(Model(robot), data.with_joints(robot.actuated))
     assert {"joint_springs:j2", "joint_springs:j3"} <= {item.effect.id for item in found.named}
     assert found.chance > 1e-3
+
+
+def test_a_law_that_rows_now_set_aside_made_usual_is_held_against_the_others(
+    tmp_path: Path,
+) -> None:
+    """Flanks are shares of the largest torque, and that row may have become a wild one since."""
+    a = poses(40, 5)
+    data = sk.read(write(tmp_path, a, tracked(errors(4).stands(a)[0]), FIT + NOISE))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    base = calibrate(Model(robot), data.with_joints(robot.actuated), geometry=False, waves=False)
+    linear, _ = linear_at(base, Options(), sk.CATALOGUE)
+    ids = [effect.id for effect in linear.candidates]
+    e = ids.index("lost_motion:j3")
+    law = replace(linear.candidates[e], flanks=(12.3,), sided=False)
+    own = linear.slices[e]
+    linear = linear.by_law(e, law, linear.sizes[own], 0.0 * linear.columns[:, own])
+    laws = laws_at(linear, (e,), base)
+    assert law in [block[0] for block in laws[e]]
+    assert by_best_laws(linear, (e,), laws).candidates[e] in [block[0] for block in laws[e]]
 
 
 def test_waves_are_named_with_their_joint(tmp_path: Path) -> None:

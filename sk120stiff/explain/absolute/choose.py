@@ -56,17 +56,13 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
     chosen, dropped = _searched(linear, most, at_once=True)
     if dropped:
         others, fallen = _searched(linear, most, at_once=False)
-        noise = min(linear.noise(chosen), linear.noise(others))
+        before, after = linear.noise(chosen), linear.noise(others)
+        noise = min(before, after)
         gained = linear.score(others, noise) - linear.score(chosen, noise)
-        if gained > _threshold(linear) and _left(linear, others) < _left(linear, chosen):
+        left = linear.left_out(chosen, before)
+        if gained > _threshold(linear) and linear.left_out(others, after) < left:
             chosen, dropped = others, fallen
     return Chosen(_beside_frames(linear, chosen, dropped), dropped)
-
-
-def _left(linear: Linear, chosen: tuple[int, ...]) -> float:
-    """Sum of squares at poses left out."""
-    gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
-    return float(gap @ gap)
 
 
 def _searched(

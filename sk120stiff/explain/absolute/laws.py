@@ -49,7 +49,8 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
         usual = type(own).at(model.robot, own.where, told)
         others = usual.other_laws(problem.load_cases)
         if others:
-            laws[e] = (usual, *others)
+            # a law may stand that other rows made usual: a wild one was the heaviest
+            laws[e] = tuple(dict.fromkeys((usual, *others, own)))
     found = slopes(
         problem,
         model,
@@ -75,7 +76,7 @@ def by_best_laws(linear: Linear, chosen: tuple[int, ...], laws: Laws) -> Linear:
             k, now = chosen.index(e), linear.only(chosen)
             whole = tuple(range(len(chosen)))
             noise = now.noise(whole)
-            left = _left(now, whole, noise)
+            left = now.left_out(whole, noise)
             tried: list[tuple[float, Block]] = []
             for place, law in enumerate(own):
                 count = len(own) - 1 if place else 1
@@ -85,16 +86,11 @@ def by_best_laws(linear: Linear, chosen: tuple[int, ...], laws: Laws) -> Linear:
                 if law[0] == linear.candidates[e]:
                     standing = tried[-1][0]
             score, best = max(tried, key=lambda each: each[0])
-            if score > standing and _left(now.by_law(k, *best), whole, noise) < left:
+            if score > standing and now.by_law(k, *best).left_out(whole, noise) < left:
                 linear = linear.by_law(e, *best)
         if linear is before:
             break
     return linear
-
-
-def _left(linear: Linear, chosen: tuple[int, ...], noise: float) -> float:
-    """Sum of squares at poses left out."""
-    return float((linear.gap(chosen, noise, held_out=True) ** 2).sum())
 
 
 def beside_laws(

@@ -189,6 +189,11 @@ class Linear:
             gap[rows] = self.residual[rows] - A[np.ix_(rows, found.pick)] @ found.x
         return gap
 
+    def left_out(self, chosen: tuple[int, ...], noise: float) -> float:
+        """Sum of squares of the gap at parts left out one by one."""
+        gap = self.gap(chosen, noise, held_out=True)
+        return float(gap @ gap)
+
 
 @dataclass(frozen=True, eq=False)
 class Solved:

@@ -22,7 +22,7 @@ WANTED = {
 LONGEST = 60  # letters of a value that are repeated
 
 
-def misfit(
+def schema_error(
     error: ValidationError, where: str, keys: Iterable[str], like: Mapping[str, str] | None = None
 ) -> InputError:
     """The first slip: which key, what stands there, and what to write.
