@@ -153,3 +153,7 @@ def test_loads_that_the_found_curve_does_not_hold_are_taken_smaller(springs, mon
     found = consequences.next_poses(replace(answer, findings=(open_question,)), seed=0)
     assert np.array(asked) == pytest.approx(asked[0] * np.array([1.0, 0.5, 0.25]))
     assert np.abs(found[1]).max() <= asked[2]
+    asked.clear()
+    monkeypatch.setattr(consequences, "SHARES_OF_LOAD", (1.0, 0.5))
+    with pytest.raises(Refusal, match=r"tells base_rocking:base_link from joint_tilt:joint_1_s"):
+        consequences.next_poses(replace(answer, findings=(open_question,)), seed=0)

@@ -52,6 +52,7 @@ def next_poses(
     Raises:
         Refusal: Nothing else can be driven or held there.
     """
+    unheld = ""
     for finding in answer.findings:
         rivals = [name for name in finding.alternatives if name not in finding.exact]
         if not rivals:
@@ -88,4 +89,11 @@ def next_poses(
                 continue
             rows = list(choice.rows)
             return weaker.a[rows], weaker.wrench[rows], pool.remarks
+        unheld = unheld or f"{finding.effect.id} from {rivals[0]}"
+    if unheld:
+        raise Refusal(
+            f"no load down to {100 * SHARES_OF_LOAD[-1]:.0f} % of {force:.4g} N that the rig has "
+            f"and the model holds tells {unheld}",
+            remedy="Give the rig smaller steps, or plan by 'sk120stiff plan --between'.",
+        )
     return None
