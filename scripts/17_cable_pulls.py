@@ -85,6 +85,8 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="holds joint_angles.csv and the other two")
     parser.add_argument("--out", type=Path, default=Path("explained"))
     given = parser.parse_args()
+    if not (given.folder / "joint_angles.csv").is_file():
+        parser.error(f"no joint_angles.csv in {given.folder}: give the folder of that arm")
     data = converted(given.folder, given.out / "data")
     subprocess.run(
         [sys.executable, "-m", "sk120stiff", "explain", str(data), "--out", str(given.out)],

@@ -86,6 +86,8 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="holds joint_angles.csv and the other two")
     parser.add_argument("--sigma", type=float, help="stated uncertainty per axis [µm]")
     given = parser.parse_args()
+    if not (given.folder / "joint_angles.csv").is_file():
+        parser.error(f"no joint_angles.csv in {given.folder}: give the folder of that arm")
     sigma = None if given.sigma is None else given.sigma * 1e-6
     with tempfile.TemporaryDirectory() as place:
         model, data = readings(given.folder, Path(place), sigma)

@@ -200,7 +200,8 @@ FAULTS: tuple[Fault, ...] = (
             "for k in range(int(fold.max(initial=0))):\n        train"),
         resampling_without_replacement=("rng.integers(0, regression.poses, regression.poses)",
                                         "rng.permutation(regression.poses)"),
-        rivals_never_counted=("rival_frequency=max(rivals, default=0) / count", "rival_frequency=0.0"),
+        rivals_never_counted=("rival_frequency=max(others.values(), default=0.0)", "rival_frequency=0.0"),
+        what_beats_it_takes_its_place=("if both.plausible and fair[best] - both.score > WANTED", "if False"),
     ),
     *_of(
         "explain/candidates/regression.py", *EXPLAIN,
@@ -213,7 +214,10 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/judge/imitation.py", *_tests("explain", "imitation"),
-        impostors_never_compared=("better - (0.0 if certain else BETTER)", "better - 1e9"),
+        impostors_never_compared=("needed = 0.0 if certain and 0 in kept else BETTER", "needed = 1e9"),
+        what_does_nothing_anyway_falls=("if alone[e] > line.price(e)]", "if True]"),
+        draws_for_nothing=("np.linalg.slogdet(np.eye(len(own)) + told)[1]", "0.0"),
+        spread_in_units_assumed=("likeliest[1] * sums.noise_factor(*likeliest)", "likeliest[1]"),
         spread_for_nothing=("return spread, least(0.0)[0] - value", "return spread, least(0.0)[0]"),
     ),
     *_of(
