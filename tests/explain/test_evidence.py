@@ -206,3 +206,6 @@ def test_where_nothing_is_named_the_search_begins_again_beside_the_nearest(monke
     found, named = beside_form.beside_model_form("springs", under, seed=0)
     assert named.findings == ((finding,) if better else ())
     assert found.final == ("springs and tilt" if better else "springs")
+    # what stood against the noise alone is in the model that the search began beside
+    found, named = beside_form.beside_model_form("springs", under, names={tilt.id}, seed=0)
+    assert not named.findings and found.final == "springs"

@@ -35,8 +35,8 @@ def beside_model_form(
 
     What confirmed names explain is no model-form error: the search begins beside what they leave.
     Beside what springs alone leave a cause may drown in an error that holds the cause itself. So
-    where nothing is named it begins once more beside what the nearest candidate leaves, and the
-    likelier of both ends counts, its noise included.
+    where nothing is named it begins once more beside what the nearest candidate leaves, unless it
+    began beside that, and the likelier of both ends counts, its noise included.
 
     Args:
         at: Fit under the noise of the readings, of the base model with the effects that stand
@@ -47,7 +47,7 @@ def beside_model_form(
     """
     found, named, total = _settled(at, under, names, seed)
     nearest = None if named.findings else _nearest(found)
-    if nearest is not None:
+    if nearest is not None and nearest.id not in names:
         try:
             beside = _settled(refit(at, [nearest]), under, {nearest.id}, seed)
         except Refusal:
