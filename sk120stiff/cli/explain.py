@@ -98,7 +98,7 @@ def command(
     if readings.absolute is not None:
         refuse_unused(data, {
             "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,
-            "--alpha": alpha != Options.alpha, "--prior": prior, "--cell": cell,
+            "--alpha": alpha != Options.alpha, "--prior": prior,
         })  # fmt: skip
         base = Model(robot) if model is None else start_model(robot, model)
         return positions_answer(base, readings, others, options, data, out, report=not no_report)

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.explain.absolute.advice import next_poses, open_pair
 from sk120stiff.explain.absolute.choose import choose
 from sk120stiff.explain.absolute.run import Explained, explain_positions
 from sk120stiff.model import Model
+from sk120stiff.plan import Cell, feasible
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
 from tests.absolute.test_forms import _with
 
@@ -71,6 +73,12 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     assert set(following.between) <= names and "joint_springs:j2" in names
     shares = [first.probabilities[name] for name in names if name in first.probabilities]
     assert sum(shares) <= 1.0 + 1e-6
+    pair = open_pair([(item.effect, item.alternatives) for item in first.named], first.linear)
+    assert pair is not None
+    robot, cell = first.final.fit.model.robot, Cell(low=np.array([0.5, -1.0, 0.5]))
+    apart = next_poses(first.final, *pair, seed=0, cell=cell)
+    assert apart is not None and not feasible(robot, cell, following.readings.joints).ok.all()
+    assert feasible(robot, cell, apart.readings.joints).ok.all()
     a = np.concatenate([a, following.readings.joints])
     second = explained(tmp_path, a, arm.stands(a)[0])
     told = [(item.effect.id, item.alternatives) for item in second.named]

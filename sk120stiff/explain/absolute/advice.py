@@ -17,7 +17,7 @@ from sk120stiff.explain.findings import Detectable
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
-from sk120stiff.plan import Cell, Rivalry, cell_from_data, random_pool
+from sk120stiff.plan import Cell, Rig, Rivalry, cell_from_data, random_pool
 
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
 CONFIRMED = 2.0 * (SURE + 0.84)
@@ -90,21 +90,29 @@ def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
 
 
 def next_poses(
-    final: Calibration, effect: Effect, rival: Effect, *, seed: int, count: int = COUNT
+    final: Calibration,
+    effect: Effect,
+    rival: Effect,
+    *,
+    seed: int,
+    count: int = COUNT,
+    cell: Cell | None = None,
 ) -> NextPoses | None:
     """Poses at which positions tell a named cause from another that explains as much.
 
-    They go no lower than the poses that were measured and keep clear of the base column; payload
-    and temperature are as there. None where no such pose is found.
+    They keep to the cell, where it names no floor go no lower than the poses that were measured,
+    and keep clear of the base column; payload and temperature are as there. None where no such pose
+    is found.
     """
     problem = final.problem
     robot, readings = problem.model.robot, problem.measurements
     load_cases = problem.load_cases
     at = load_cases.point[0]
-    cell = cell_from_data(robot, Cell(), load_cases.a, np.zeros((1, 6)), at)
+    bare = replace(cell or Cell(), rig=Rig())  # nothing pulls
+    within = cell_from_data(robot, bare, load_cases.a, np.zeros((1, 6)), at)
     try:
         pool = random_pool(
-            robot, poses=POOL, directions=1, force=1.0, point=at, seed=seed, cell=cell
+            robot, poses=POOL, directions=1, force=1.0, point=at, seed=seed, cell=within
         )  # fmt: skip
     except Refusal:
         return None  # no other pose can be driven as far as is known

@@ -204,7 +204,9 @@ def explain_positions(
         where=_where(linear, gap, seen, readings),
         smallest=detectable(linear, found),
         probabilities=probabilities(linear, found),
-        following=None if pair is None else next_poses(final, *pair, seed=options.seed),
+        following=None
+        if pair is None
+        else next_poses(final, *pair, seed=options.seed, cell=options.cell),
     )
 
 
