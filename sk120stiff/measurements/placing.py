@@ -88,6 +88,13 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     if found.rms > SUSPECT * spread:
         _refuse_slips(cloud, found, readings)
     if found.rms > FITS * spread:
+        if free and not found.marker_fitted:
+            raise InputError(
+                f"{len(whole)} whole positions cannot tell the tracker's frame and the marker's "
+                "place",
+                where=str(readings.path or "measurements"),
+                remedy="Measure more poses, or state where the marker sits, without 'fit: true'.",
+            )
         raise _no_such_arm(cloud, found, readings, whole)
     notes: list[str] = []
     if not free:
@@ -219,7 +226,8 @@ def _refuse_slips(cloud: _Cloud, found: Registration, readings: Measurements) ->
             f"{told}. With other zeros or signs of joints {1e3 * rest:.3g} mm are left",
             where=where,
             remedy=f"Check the controller's convention. If it is so, write into the YAML file: "
-            f"joints: {{{mapping}}}",
+            f"joints: {{{mapping}}}; where a joint has an expression there already, change that "
+            "one so.",
         )
 
 

@@ -136,3 +136,31 @@ def test_what_is_stated_of_one_kind_stays_the_yardstick(stated: str, tmp_path: P
         assert sigma[kinds[other]][0] == pytest.approx(size, rel=0.3)
         assert found.fit.sigma_known and found.fit.exceeds == (factor < 1.0)
         assert found.fit.noise_factor == pytest.approx(1.0 / factor, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("noise", "weighs", "said"),
+    [
+        ("noise: {sigma: 1, unit: mm}\n", "", "times the stated uncertainty, on which"),
+        (NOISE, "", "That agrees with the stated uncertainty"),
+        (NOISE, "massless", "The URDF states no masses: what the arm's own weight does"),
+    ],
+)
+def test_a_sigma_far_too_large_and_missing_masses_are_told(
+    noise: str, weighs: str, said: str, tmp_path: Path
+) -> None:
+    path = write(tmp_path, A, READ, FIT + noise + weighs, more=",payload[kg]", cells=["5"] * 60)
+    told = " ".join(findings(calibrated(path), sk.read(path)))
+    assert said in told
+
+
+@pytest.mark.parametrize(
+    ("count", "said"),
+    [
+        (4, "4 whole positions cannot tell .* Measure more poses, or state where"),
+        (5, "15 numbers at 5 poses, and as many values to estimate: nothing is left"),
+    ],
+)
+def test_poses_that_leave_nothing_over_are_too_few(count: int, said: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=said):
+        calibrated(write(tmp_path, A[:count], READ[:count], FIT))

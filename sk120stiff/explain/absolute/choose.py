@@ -212,9 +212,11 @@ def gain(linear: Linear, chosen: tuple[int, ...], e: int) -> Gain:
     Squares fall by 2 a d + d², where a is left and d was taken off; the error is that of the first
     term. That d differs from pose to pose, with some that show the cause best, is no doubt of it.
     """
-    noise = linear.noise(chosen)
-    after = linear.gap(chosen, noise, held_out=True)
-    taken = linear.gap(linear.less(chosen, e), noise, held_out=True) - after
+    after, before = (
+        linear.gap(each, linear.noise(each), held_out=True)
+        for each in (chosen, linear.less(chosen, e))
+    )
+    taken = before - after
     saved = (2.0 * after + taken) * taken
     error = 2.0 * float(np.linalg.norm(np.bincount(linear.row, after * taken)))
     per_fold = [float(saved[linear.fold == f].sum()) for f in range(linear.folds)]

@@ -202,7 +202,9 @@ def _fitted(
         wide = _problem(model, used, sigma)
         _refuse_too_few(wide)
         small, frozen = least_set(model, _rigid_columns(wide, start), wide.span)
-        found = fitted(_problem(small, used, sigma))
+        problem = _problem(small, used, sigma)
+        _refuse_no_rest(problem)
+        found = fitted(problem)
         before, sigma = sigma, learned(found)
         again = _wild(found, readings, wild)
         if (again == wild).all() and all(
@@ -268,6 +270,27 @@ def _refuse_too_few(problem: PoseProblem) -> None:
             where=str(problem.measurements.path or "measurements"),
             remedy="Measure more poses.",
         )
+
+
+def _refuse_no_rest(problem: PoseProblem) -> None:
+    """As many values as numbers, and no noise stated: what is left says nothing of errors.
+
+    Raises:
+        InputError: Nothing is left over.
+    """
+    if problem.noise.stated:
+        return
+    slope = problem.channel_gap(problem.values(problem.start), derivative=True)[1][:, problem.free]
+    told = int(np.linalg.matrix_rank(slope * problem.scale / problem.of_channels.sigma[:, None]))
+    if told < len(problem.rows):
+        return
+    measured = problem.measurements
+    raise InputError(
+        f"{len(problem.rows)} numbers at {len(measured.poses)} poses, and as many values to "
+        "estimate: nothing is left that could tell how sure they are",
+        where=str(measured.path or "measurements"),
+        remedy="Measure more poses, or state the noise: noise: {sigma: 30, unit: um}.",
+    )
 
 
 def learned(found: Fit) -> dict[str, float]:

@@ -92,7 +92,11 @@ def loaded(model: Model, readings: Measurements) -> tuple[Model, list[str]]:
     weighs = model.robot.mechanism().chain.weighs and model.robot.gravity.any()
     hung = said is not None and bool(said.payload.any()) and bool(model.robot.gravity.any())
     if weighs or hung or readings.wrench.any():
-        return model, []
+        light = hung and not model.robot.mechanism().chain.weighs
+        return model, [
+            "The URDF states no masses: what the arm's own weight does is not in the model, and "
+            "springs and waves may stand for it. State the masses."
+        ] if light else []
     springs = [effect.id for effect in model.effects if isinstance(effect, Elastic)]
     for name in springs:
         model = model.without(name)
@@ -101,5 +105,6 @@ def loaded(model: Model, readings: Measurements) -> tuple[Model, list[str]]:
     )
     return model, [
         f"Nothing bends this arm as far as is known: {why}, and no payload and no load is stated. "
-        "Springs cannot be told from these positions; geometry can."
+        "Springs cannot be told from these positions; geometry can. Waves and frames stand for "
+        "what sag there is."
     ]

@@ -17,6 +17,7 @@ from sk120stiff.measurements.stated_sizes import heavier_than_the_arm
 from sk120stiff.model import Model
 
 SURE = 3.0  # standard errors by which a mass is less than nothing
+MUCH_LESS, SURELY = 0.5, 0.999  # of the stated noise, and the probability that it leaves more
 SHOWN = 12  # frozen parameters and rows that are told one by one
 
 NO_TORQUE = "neither weight nor payload nor load puts a torque on it that shows"
@@ -60,6 +61,11 @@ def gap_sentence(found: Calibration) -> str:
             f"{said} That is {fit.noise_factor:.3g} times the stated uncertainty: more is at work "
             "than is in the model, and the standard errors are larger by as much."
         )
+    if fit.misfit is not None and fit.misfit[2] > SURELY and fit.noise_factor < MUCH_LESS:
+        return (
+            f"{said} That is only {fit.noise_factor:.2g} times the stated uncertainty, on which "
+            "the standard errors rest: check its number and its unit."
+        )
     return f"{said} That agrees with the stated uncertainty."
 
 
@@ -72,9 +78,10 @@ def angle_gap(found: Calibration) -> Array:
 def unseen(found: Calibration) -> dict[str, str]:
     """Full name → reason, for every estimated parameter that the positions do not determine."""
     fit = found.fit
+    about = ABOUT if "position" not in found.problem.channels.present else SHARED
     alone = np.linalg.norm(fit.jacobian, axis=0) * fit.problem.span > FAINTEST
     return {
-        p.name: (ABOUT if isinstance(p.effect, Viewpoint) else SHARED) if shows else NO_TORQUE
+        p.name: (about if isinstance(p.effect, Viewpoint) else SHARED) if shows else NO_TORQUE
         for p, known, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
         if not known
     }
