@@ -34,6 +34,7 @@ from sk120stiff.cli.compensate_words import (
     movable_joints,
     notes,
     parts,
+    point_words,
     rms,
     standing_keys,
     standing_notes,
@@ -270,6 +271,7 @@ def command(
     given = with_load_in_base(given, robot, nominal, load_axes, at)
     if given.joints is not None and given.position is not None:
         facts = (*facts, "Its joints are driven; the positions beside them agree.")
+    facts = (*facts, *(point_words(believed) if at in (None, robot.tool_frame) else ()))
     around = at_work(opened_cell(robot, cell, path))
     if floor is not None and not np.isfinite(around.floor):
         around = replace(around, floor=ground)

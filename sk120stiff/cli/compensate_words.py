@@ -26,6 +26,7 @@ from sk120stiff.workspace import (
 )
 
 ASKED = 2000  # points of a path that are asked whether the arm can take them up
+FAR_OFF = 1e-3  # m from the stated place of the measured point: worth a word
 LISTED = 10  # points that people are shown
 
 
@@ -102,6 +103,18 @@ def root_mean_square(std: Array) -> float:
     """Over the points that have an equilibrium; infinite if one of them is unknown."""
     there = std[~np.isnan(std)]
     return float(np.sqrt(np.mean(there**2))) if len(there) else float("nan")
+
+
+def point_words(model: Model) -> tuple[str, ...]:
+    """Which point is brought onto the path, where a fit found it elsewhere than it was stated."""
+    off = [p.internal for p in model.parameters if p.effect.name == "tool_offset"]
+    if not off or np.linalg.norm(off) < FAR_OFF:
+        return ()
+    return (
+        f"The model has the measured point {1e3 * np.linalg.norm(off):.4g} mm off its stated place "
+        "(tool_offset): it is that point, where the marker sat, that is brought onto the path, and "
+        "what it is off before counts this way too. For another point take tool_offset out.",
+    )
 
 
 def floor_of(robot: Robot, text: str | None, path: LoadedPath) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import permutations
+from itertools import combinations, permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,8 +90,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     if found.rms > FITS * spread:
         if free and not found.marker_fitted:
             raise InputError(
-                f"{len(whole)} whole positions cannot tell the tracker's frame and the marker's "
-                "place",
+                f"{len(whole)} positions cannot tell the tracker's frame and the marker's place",
                 where=str(readings.path or "measurements"),
                 remedy="Measure more poses, or state where the marker sits, without 'fit: true'.",
             )
@@ -101,11 +100,15 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         stated, at = cloud.placed(fit_marker=False)
         if stated.rms > MOVED * found.rms and found.marker_fitted:
             off = ", ".join(f"{1e3 * value:.1f}" for value in found.marker)
-            notes.append(
-                f"The marker seems to sit ({off}) mm off its stated place, tool axes: "
+            told = (
+                f"he marker seems to sit ({off}) mm off its stated place, tool axes: "
                 f"{1e3 * stated.rms:.2f} mm are left with it where it is stated, "
-                f"{1e3 * found.rms:.2f} mm with it there. Write 'point: {{..., fit: true}}'."
+                f"{1e3 * found.rms:.2f} mm with it there"
             )
+            remedy = "Write 'point: {..., fit: true}'."
+            if stated.rms > FITS * spread:
+                raise InputError("t" + told, where=str(readings.path or ""), remedy=remedy)
+            notes.append(f"T{told}. {remedy}")
         found, kept = stated, at
     if said.frame == "base":
         _refuse_other_axes(found, cloud, spread, readings)
@@ -261,7 +264,7 @@ def _no_such_arm(
         f"{1e3 * float(np.ptp(cloud.x, axis=0).max()):.4g} mm",
         where=f"{readings.path or 'measurements'}, worst in lines {lines}",
         remedy="Check that they are of this robot, that rows of joints and positions belong "
-        "together, and units, signs and order of the joint columns.",
+        "together, units, signs and order of the joint columns, and the names of markers.",
     )
 
 
@@ -302,17 +305,12 @@ def _slips(cloud: _Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float
         "The positions look mirrored: one axis has the other sign, or two axes are swapped",
         "Check signs and order of x, y, z: the tracker's axes are right-handed.",
     )
-    for i in range(len(names)):
-        for j in range(i + 1, len(names)):
-            a = cloud.a.copy()
-            a[:, [i, j]] = a[:, [j, i]]
-            rms = left(a=a)
-            yield (
-                rms,
-                rms,
-                f"The columns of {names[i]} and {names[j]} look exchanged",
-                "Put the right names over the columns.",
-            )
+    for i, j in combinations(range(len(names)), 2):
+        a = cloud.a.copy()
+        a[:, [i, j]] = a[:, [j, i]]
+        rms = left(a=a)
+        said = f"The columns of {names[i]} and {names[j]} look exchanged"
+        yield rms, rms, said, "Put the right names over the columns."
     yield from _markers(cloud)
 
 
@@ -339,11 +337,10 @@ def _markers(cloud: _Cloud) -> Iterator[tuple[float, float, str, str]]:
 
 
 def _pairs(count: int) -> Iterator[tuple[int, ...]]:
-    for i in range(count):
-        for j in range(i + 1, count):
-            way = list(range(count))
-            way[i], way[j] = j, i
-            yield tuple(way)
+    for i, j in combinations(range(count), 2):
+        way = list(range(count))
+        way[i], way[j] = j, i
+        yield tuple(way)
 
 
 def _zeros_and_signs(cloud: _Cloud, names: tuple[str, ...]) -> tuple[float, str]:

@@ -157,10 +157,18 @@ def test_a_sigma_far_too_large_and_missing_masses_are_told(
 @pytest.mark.parametrize(
     ("count", "said"),
     [
-        (4, "4 whole positions cannot tell .* Measure more poses, or state where"),
+        (4, "4 positions cannot tell .* Measure more poses, or state where"),
         (5, "15 numbers at 5 poses, and as many values to estimate: nothing is left"),
     ],
 )
 def test_poses_that_leave_nothing_over_are_too_few(count: int, said: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=said):
         calibrated(write(tmp_path, A[:count], READ[:count], FIT))
+
+
+def test_a_marker_stated_far_from_where_it_sits_is_refused_with_its_place(tmp_path: Path) -> None:
+    here = FIT.replace(", fit: true", "")
+    with pytest.raises(
+        InputError, match=r"the marker seems to sit \(50.*Write 'point: {\.\.\., fit"
+    ):
+        calibrated(write(tmp_path, A, READ, here + NOISE))

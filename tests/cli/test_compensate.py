@@ -54,6 +54,23 @@ def test_the_written_commands_put_the_loaded_tool_in_place(run: Run, tmp_path: P
         assert np.linalg.norm(where[0] + moved - where[1]) < 1e-8
 
 
+def test_a_point_that_a_fit_found_elsewhere_is_told(run: Run, tmp_path: Path) -> None:
+    """The marker sat 50 mm off the flange: whoever drives the flange along a path has to know."""
+    text = Path(MODEL).read_text()
+    off = zip("xyz", (0.03, 0.0, 0.04), strict=True)
+    offset = ", ".join(f"offset_{axis}: {{value: {size}, unit: m}}" for axis, size in off)
+    model = tmp_path / "model.yaml"
+    model.write_text(
+        f"{text}  - name: tool_offset\n    where: tool0\n    parameters: {{{offset}}}\n"
+    )
+    for used, told in ((str(model), True), (MODEL, False)):
+        path = joint_path(tmp_path)
+        found = run("compensate", used, str(path), "--out", str(tmp_path / "out.csv"), "--json")
+        assert found.code == 0, found.stderr
+        said = " ".join(found.document["assumed"])
+        assert ("has the measured point 50 mm off its stated place" in said) == told
+
+
 def test_positions_and_orientation(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "path.csv"
     path.write_text(
