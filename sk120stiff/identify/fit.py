@@ -48,6 +48,7 @@ class Fit:
         inflation: Variance of the estimates over that of least squares with the same weights
             (robust fits).
         doubt: (P_free,) by how much other possible models move the estimates; None: by nothing.
+        left_out: (P_free,) standard errors by what the model is known to leave out; None: nothing.
 
     Examples:
         >>> import sk120stiff as sk
@@ -69,6 +70,7 @@ class Fit:
     spread: float | None = None
     inflation: float = 1.0
     doubt: Array | None = None
+    left_out: Array | None = None
 
     def __repr__(self) -> str:
         values = ", ".join(
@@ -251,9 +253,14 @@ class Fit:
         """
         covariance = covariance_of(self.small[0], self.held, self.problem.span)
         if np.isfinite(self.unit):
-            beside = np.zeros(len(self.x)) if self.doubt is None else self.doubt
-            return np.asarray(covariance * self.unit**2 + np.diag(beside**2))
+            return np.asarray(covariance * self.unit**2 + np.diag(self.beside_noise**2))
         return np.where(covariance != 0.0, np.inf, 0.0)
+
+    @property
+    def beside_noise(self) -> Array:
+        """(P_free,) standard errors that are not of the readings' noise."""
+        none = np.zeros(len(self.x))
+        return np.hypot(*(none if x is None else x for x in (self.doubt, self.left_out)))
 
     @property
     def unit(self) -> float:
@@ -333,10 +340,14 @@ class Fit:
             self.reach(level),
             self.unit,
         )
-        if self.doubt is not None:
-            low, high = self.problem.bounds
-            ends = ends + np.outer(self.doubt, [-1.0, 1.0])
-            ends = np.clip(ends, low[:, None], high[:, None])
+        low, high = (bound[:, None] for bound in self.problem.bounds)
+        if self.left_out is not None:  # an error like the noise's: squares add
+            away = np.abs(ends - self.x[:, None])
+            error = self.reach(level) * self.left_out[:, None]
+            wider = error**2 / np.maximum(away + np.hypot(away, error), 1e-300)
+            ends = np.clip(ends + wider * [-1.0, 1.0], low, high)
+        if self.doubt is not None:  # the estimate may lie there instead
+            ends = np.clip(ends + np.outer(self.doubt, [-1.0, 1.0]), low, high)
         scaled = ends * self.problem.scale[:, None]
         return tuple(
             public_interval(parameter.spec, float(low), float(high))

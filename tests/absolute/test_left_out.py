@@ -41,6 +41,11 @@ def test_a_marker_mounted_anew_on_a_turned_last_frame(tmp_path: Path) -> None:
     std = np.array([p.std for p in shift], dtype=float)
     assert np.abs(off).max() > 10.0 * SIGMA
     assert (np.abs(off) < 3.0 * std).all() and std.max() < 2e-4, (off, std)
+    intervals = dict(
+        zip((p.name for p in found.fit.parameters), found.fit.intervals(), strict=True)
+    )
+    half = [0.5 * float(np.ptp(intervals[p.name])) for p in shift]
+    np.testing.assert_allclose(half, 1.96 * std, rtol=0.01)
 
 
 def test_a_spring_that_is_left_out_is_in_the_errors_of_the_others(tmp_path: Path) -> None:

@@ -108,9 +108,8 @@ def beside_laws(
     more = [
         0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.name, 0.0) for p in fit.parameters
     ]
-    known = np.zeros(len(fit.x)) if fit.doubt is None else fit.doubt
-    whole = np.hypot(known, np.array(more) / fit.problem.scale)
-    return replace(final, fit=with_values(replace(fit, doubt=whole)))
+    moved = np.array(more) / fit.problem.scale
+    return replace(final, fit=with_values(replace(fit, doubt=moved)))
 
 
 def _at_rest(

@@ -47,9 +47,9 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
     every = np.column_stack([kept[:, moving], more])
     there, beside = _posterior(every, np.concatenate([drawn, np.ones(len(sizes))]), left)
     moved = there[: len(here)] - here
-    doubt = np.zeros(len(found.x))
-    doubt[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0) + moved**2)
-    return with_values(replace(found, doubt=np.where(counted, 0.0, doubt)))
+    error = np.zeros(len(found.x))
+    error[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0) + moved**2)
+    return with_values(replace(found, left_out=np.where(counted, 0.0, error)))
 
 
 def _posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:

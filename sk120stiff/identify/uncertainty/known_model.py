@@ -55,8 +55,7 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     size = span * scale
     per_noise = (V / singular) * size[:, None]
     covariance = fit.unit**2 * per_noise @ per_noise.T
-    if fit.doubt is not None:
-        covariance = covariance + np.diag((fit.doubt * scale) ** 2)
+    covariance = covariance + np.diag((fit.beside_noise * scale) ** 2)
     unseen = np.where(lost[:, None], blind * size[:, None], 0.0).T
     nothing = np.sqrt(np.diag(covariance)) < ROUNDING * np.abs(unseen).max(axis=0, initial=0.0)
     covariance = np.where(nothing | nothing[:, None], 0.0, covariance)
