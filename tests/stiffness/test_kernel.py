@@ -352,15 +352,32 @@ def test_a_long_start_is_announced(
     monkeypatch.setattr(run, "PATIENCE", 0.01)
     with caplog.at_level(logging.INFO, logger="sk120stiff"), announced():
         time.sleep(0.2)
-    assert "Preparing" in caplog.text
+    assert "Loading" in caplog.text
+
+
+def test_compiling_is_announced_once() -> None:
+    import numba
+
+    from sk120stiff.stiffness.kernel.compiled import part, told_of_compiling
+
+    inner = part(lambda x: 2.0 * x)
+    outer = numba.njit(lambda x: inner(x))
+    said: list[str] = []
+    with told_of_compiling(lambda: said.append("compiling")):
+        assert [outer(1.0), outer(2.0)] == [2.0, 4.0]
+    assert said == ["compiling"]
 
 
 def test_a_second_process_compiles_nothing() -> None:
     """Neither for another kind of arm: all share one signature."""
     program = """
+import logging
 import numpy as np
 from sk120stiff.robot import load_robot
 from sk120stiff.stiffness import ConstantCompliance, under_load
+from sk120stiff.stiffness.kernel import run
+logging.basicConfig(level=logging.INFO)
+run.PATIENCE = 0.0
 for springs in (np.full(6, 1e6), [np.inf, 1e6, *4 * [np.inf]]):
     arm = ConstantCompliance.of_springs(load_robot("motoman_sk120"), springs)
     under_load(arm, np.zeros((3, 6)), np.ones(6))
@@ -372,6 +389,7 @@ print(sum(work.stats.cache_hits.values()), sum(work.stats.cache_misses.values())
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert done.stdout.split() == ["1", "0"]
+    assert "Loading the batch kernel" in done.stderr and "Preparing" not in done.stderr
 
 
 def test_compiled_code_is_kept_where_the_package_is_read_only(tmp_path: Path) -> None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core import event
 
 logger = logging.getLogger(__name__)
 
@@ -44,6 +46,26 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
             "it can be written to. Set NUMBA_CACHE_DIR to one that can."
         )
         return part(function)
+
+
+@contextmanager
+def told_of_compiling(say: Callable[[], None]) -> Iterator[None]:
+    """Call `say` once where something is compiled inside, not where it is loaded from disk."""
+    with event.install_listener("numba:compile", _Told(say)):
+        yield
+
+
+class _Told(event.Listener):  # type: ignore[misc]
+    def __init__(self, say: Callable[[], None]) -> None:
+        self._say: Callable[[], None] | None = say
+
+    def on_start(self, _: object) -> None:
+        say, self._say = self._say, None  # the parts of a function are compiled inside it
+        if say is not None:
+            say()
+
+    def on_end(self, _: object) -> None:
+        pass
 
 
 def _digest() -> str:

@@ -24,7 +24,7 @@ logger = logging.getLogger(__name__)
 
 LARGEST_ANGLE = 1e5  # rad; beyond it sine and cosine lose digits
 PIECE = 16384  # poses that a thread takes at a time
-PATIENCE = 0.5  # seconds after which the preparation is announced
+PATIENCE = 0.5  # seconds after which the loading is announced
 _READY: list[Any] = []  # the compiled function, its outputs and its memory, once they are loaded
 
 
@@ -115,23 +115,28 @@ def _kernel(
         return work, outputs(**arrays), scratch
     with announced():
         from sk120stiff.stiffness.kernel.block import Outputs, work
+        from sk120stiff.stiffness.kernel.compiled import told_of_compiling
         from sk120stiff.stiffness.kernel.layout import scratch
 
         out = Outputs(**arrays)
         # nothing to do but to be compiled or loaded
-        work(folded, poses, more, loads, 0, 0, out, scratch(folded))
+        with told_of_compiling(_compiling):
+            work(folded, poses, more, loads, 0, 0, out, scratch(folded))
         _READY[:] = [work, Outputs, scratch]
     return work, out, scratch
 
 
 @contextmanager
 def announced() -> Iterator[None]:
-    """Say so when what happens inside takes long: it compiles, or the machine is busy."""
-    message = "Preparing the batch kernel (some ten seconds at its first use on a machine) …"
-    clock = threading.Timer(PATIENCE, logger.info, args=(message,))
+    """Say so when what happens inside takes long: numba comes in, or the machine is busy."""
+    clock = threading.Timer(PATIENCE, logger.info, args=("Loading the batch kernel …",))
     clock.daemon = True
     clock.start()
     try:
         yield
     finally:
         clock.cancel()
+
+
+def _compiling() -> None:
+    logger.info("Preparing the batch kernel (some ten seconds at its first use on a machine) …")
