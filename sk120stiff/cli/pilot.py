@@ -27,6 +27,7 @@ from sk120stiff.pilot.folder import LIKE, READINGS, Folder, Settings
 from sk120stiff.pilot.surprise import surprise
 from sk120stiff.units import parse_values
 
+BIT = "One bit answers one question of yes or no, or halves one uncertainty."
 SHOWN = 6  # names on the screen
 LOOK_AGAIN = 1.0  # s between looks at a file that grows
 WORDS = {
@@ -195,7 +196,7 @@ def _answer(
             f"({asked.verdict if asked else ''}): go on."
         ))  # fmt: skip
     if plan is not None and not final:
-        said += [_next(plan), f"It would tell {state.decides}."]
+        said += [_next(plan), f"It would tell {state.decides}. {BIT}"]
         said.append(f"Written to {at.path / 'next.csv'}; what is read goes into {READINGS}.")
     if not state.count:
         said += campaign.pool.remarks

@@ -9,13 +9,12 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from sk120stiff.arrays import Array
 from sk120stiff.cli.cell import CellOption, as_measured, opened_cell
 from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
-from sk120stiff.cli.plan_check import checked
+from sk120stiff.cli.plan_check import checked, points_of
 from sk120stiff.cli.plan_chosen import precise, telling
 from sk120stiff.cli.plan_places import Places, places_of
 from sk120stiff.cli.plan_program import in_order, language_for, write_route
@@ -33,6 +32,7 @@ from sk120stiff.plan import (
     Route,
     feasible_pool,
     lowest_points,
+    numbered,
     to_be_taken,
 )
 from sk120stiff.units import parse_size, parse_values
@@ -51,7 +51,8 @@ def command(
         Path | None,
         typer.Option(
             metavar="CSV",
-            help="Plan nothing: say row by row what is wrong with this plan, or these readings.",
+            help="Plan nothing: say row by row what is wrong with this plan, these readings, or "
+            "(with --model) this path by joints, as 'posture' writes it.",
         ),
     ] = None,
     between: Annotated[
@@ -174,9 +175,10 @@ def command(
     Example: sk120stiff plan --model model.yaml --count 15 --floor '-0.8 m' --out plan.csv
     Example: sk120stiff plan --model model.yaml --places reach.csv --page plan.html
     Example: sk120stiff plan --check plan.csv --cell cell.yaml
+    Example: sk120stiff plan --check best.csv --model model.yaml
     """
     if check is not None:
-        return checked(check, cell, lambda found: _stated(found, lowest, box))
+        return checked(check, model, point, cell, lambda found: _stated(found, lowest, box))
     if model is None or (count is None and places is None):
         raise InputError(
             "a plan needs --model and --count, or --places",
@@ -190,7 +192,7 @@ def command(
     will_draw(None, page)
     language = None if program is None else language_for(program)
     known, start = _opened(model, data)
-    at, force_at = _points(known, point)
+    at, force_at = points_of(known, point)
     within = _stated(opened_cell(start.robot, cell, data, model), lowest, box)
     within = as_measured(start.robot, within, known)
     given: Places | None = None
@@ -253,9 +255,11 @@ def command(
         )
     way: dict[str, object] | None = None
     if language is not None and program is not None and route is not None:
-        write_route(language, program, start.robot, route, labels)
+        if given is None:
+            plan = replace(plan, pose=numbered(plan.pose))
+        write_route(language, program, start.robot, route, plan.poses)
         way = {
-            "order": [labels[k] for k in route.order],
+            "order": plan.poses,
             "via_points": int((route.pose < 0).sum()),
             "driving_s": route.seconds,
             "minutes": route.minutes(plan.n_readings),
@@ -301,15 +305,6 @@ def _opened(model: Path, data: Path | None) -> tuple[Measurements | None, Model]
         return None, open_model(str(model))
     known, robot = open_data(data)
     return known, model_for(robot, model)
-
-
-def _points(known: Measurements | None, text: str | None) -> tuple[Array, Array]:
-    if text is not None:
-        values = parse_values(text, "length", where="--point", like="0,50,120 mm")
-        return values, values
-    if known is not None:
-        return known.point, known.force_point
-    return np.zeros(3), np.zeros(3)
 
 
 def _sigma(known: Measurements | None, text: str | None) -> float:

@@ -50,9 +50,14 @@ def in_order(plan: Measurements, robot: Robot, cell: Cell, seed: int) -> tuple[M
 
 
 def write_route(
-    language: Language, out: Path, robot: Robot, found: Route, labels: tuple[str, ...]
+    language: Language, out: Path, robot: Robot, found: Route, poses: tuple[str, ...]
 ) -> None:
-    """Write the program; each stop at a planned pose is a target of its own."""
+    """Write the program; each stop at a planned pose is a target of its own.
+
+    Args:
+        poses: What the poses are called, in the order in which they are driven.
+    """
+    labels = dict(zip(found.order, poses, strict=True))
     given = {}
     if "pulses" in language.settings and robot.controller.pulses_per_degree:
         given = {"pulses": ",".join(f"{x:.12g}" for x in robot.controller.pulses_per_degree)}

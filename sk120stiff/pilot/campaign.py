@@ -193,13 +193,14 @@ class Campaign:
         rows = [h for w, h in zip(belief.weights, belief.hypotheses, strict=True) if w > 0.02][:2]
         one = self.X[row : row + 1]
         about = expected(belief, one)
+        names, sizes = (float(x[0]) / np.log(2.0) for x in (about.names, about.sizes))
         if len(rows) == 2 and float(about.names[0]) > LITTLE:
             first, second = (_said(belief, h.members) for h in rows)
             return (
-                f"whether it is {first} or {second} ({about.names[0]:.2f} nat about names, "
-                f"{about.sizes[0]:.2f} about sizes)"
+                f"whether it is {first} or {second} ({names:.2f} bit about names, {sizes:.2f} bit "
+                "about sizes)"
             )
-        return f"sizes ({about.sizes[0]:.2f} nat), names hardly ({about.names[0]:.3f})"
+        return f"sizes ({sizes:.2f} bit), names hardly ({names:.3f} bit)"
 
     def _stop(
         self, belief: Belief, count: int, springs: tuple[tuple[str, float, float, str], ...],

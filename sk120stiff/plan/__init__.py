@@ -10,7 +10,7 @@ from sk120stiff.plan.discriminate import (
     signature_columns,
 )
 from sk120stiff.plan.feasible import Verdict, feasible
-from sk120stiff.plan.planned import plan, promised, to_be_taken
+from sk120stiff.plan.planned import numbered, plan, promised, to_be_taken
 from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.rig import Rig
 from sk120stiff.plan.route import NoWay, Route, route
@@ -46,6 +46,7 @@ __all__ = [
     "feasible",
     "feasible_pool",
     "lowest_points",
+    "numbered",
     "plan",
     "promised",
     "random_choice",

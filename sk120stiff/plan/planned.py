@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Literal
 
 import numpy as np
@@ -121,9 +121,8 @@ def to_be_taken(
     """Rows of a pool as measurements without displacements, those of one pose together."""
     load_cases = pool.load_cases.rows(np.array(sorted(rows), dtype=np.intp))
     _, index = np.unique(load_cases.a, axis=0, return_inverse=True)
-    order = {pose: k for k, pose in enumerate(dict.fromkeys(index.tolist()))}
     return Measurements(
-        pose=tuple(f"p{order[pose] + 1}" for pose in index.tolist()),
+        pose=numbered(index.tolist()),
         joint_names=robot.actuated,
         joint_kinds=robot.kinds,
         joints=load_cases.a,
@@ -137,3 +136,10 @@ def to_be_taken(
         zero=zero,
         source="poses and loads chosen by 'sk120stiff plan'",
     )
+
+
+def numbered(poses: Iterable[object]) -> tuple[str, ...]:
+    """Labels p1, p2, … of the rows' poses, in the order in which these come."""
+    rows = list(poses)
+    labels = {pose: f"p{k}" for k, pose in enumerate(dict.fromkeys(rows), 1)}
+    return tuple(labels[pose] for pose in rows)

@@ -21,6 +21,7 @@ from sk120stiff.workspace.finished import (
 )
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
+from sk120stiff.workspace.judge import PathTask, Placement, path_points
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
 from sk120stiff.workspace.mapping import MapReport, write_map
 from sk120stiff.workspace.path import (
@@ -30,13 +31,7 @@ from sk120stiff.workspace.path import (
     read_path,
     write_joints,
 )
-from sk120stiff.workspace.posture import (
-    BestPosture,
-    PathTask,
-    Placement,
-    best_posture,
-    path_points,
-)
+from sk120stiff.workspace.posture import BestPosture, best_posture
 from sk120stiff.workspace.returned import Returned, read_returned
 from sk120stiff.workspace.standing_uncertainty import (
     StandingUncertainty,

@@ -15,7 +15,8 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
-from sk120stiff.workspace.posture import BestPosture, Judge, PathTask, Placement
+from sk120stiff.workspace.judge import Judge, PathTask, Placement
+from sk120stiff.workspace.posture import BestPosture
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,76 +11,21 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from itertools import islice
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.plan.feasible import Verdict
-from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.workspace.arm import ElasticArm
-from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import starting_poses
+from sk120stiff.workspace.judge import Judge, PathTask, Placement, Pool
+from sk120stiff.workspace.jump import refuse_jump
 
 FIRST_STEP, LAST_STEP = 0.5, 1e-6  # rad: radius of the random steps
 GROW, SHRINK = 1.6, 0.6
 ASKED = 20  # of the stiffest postures, what stands against them when none can be
-
-
-@dataclass(frozen=True, eq=False)
-class PathTask:
-    """N points that the tool passes, with what acts on it there, in base axes.
-
-    Attributes:
-        position: (N, 3) of the arm's point [m].
-        axis: (N, 3) or (3,) direction of the tool's z axis, rotation about it free; or None.
-        rotation: (N, 3, 3) or (3, 3) orientation of the tool; or None.
-        wrench: (N, 6) or (6,) load at the point [N, N·m].
-        direction: (N, 3) or (3,) unit direction that matters; None for all.
-    """
-
-    position: Array
-    axis: Array | None = None
-    rotation: Array | None = None
-    wrench: Array = field(default_factory=lambda: np.zeros(6))
-    direction: Array | None = None
-
-    @property
-    def count(self) -> int:
-        """Number of points N."""
-        return len(self.position)
-
-    def each(self) -> PathTask:
-        """The same with one axis, rotation, wrench and direction for every point."""
-
-        def spread(x: Array | None, *shape: int) -> Array | None:
-            return None if x is None else np.broadcast_to(x, (self.count, *shape))
-
-        wrench = np.broadcast_to(self.wrench, (self.count, 6))
-        return PathTask(
-            np.asarray(self.position, dtype=float).reshape(-1, 3),
-            spread(self.axis, 3),
-            spread(self.rotation, 3, 3),
-            wrench,
-            spread(self.direction, 3),
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Placement:
-    """How the part, and the path with it, may be moved.
-
-    Attributes:
-        origin: (3,) point of the part about which it turns, base axes [m].
-        lower, upper: (6,) bounds of x, y, z [m] and roll, pitch, yaw [rad] by which it is moved;
-            equal ones are fixed.
-    """
-
-    origin: Array
-    lower: Array
-    upper: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,6 +113,7 @@ def best_posture(
     moved[0] = np.clip(0.0, judge.lower, judge.upper)
     first = judge(a, moved)
     if not np.isfinite(first.objective).any():
+        refuse_jump(judge, a, moved)
         raise Refusal(
             f"none of {starts} postures passes all {path.count} points within limits and margins",
             remedy="Check that the points are reachable (sk120stiff map), lower the margins, or "
@@ -198,173 +144,25 @@ def best_posture(
         radius = np.clip(radius * np.where(better.improved, GROW, SHRINK), LAST_STEP, FIRST_STEP)
         if progress:
             progress(done + 1, rounds)
-    return judge.report(pool, passing.objective, passing.path[len(passing.path) // 2])
+    return _report(judge, pool, passing.objective, passing.path[len(passing.path) // 2])
 
 
-@dataclass(frozen=True, eq=False)
-class Pool:
-    """k postures followed along the path: (k, N, n), (k, 6) and (k,)."""
-
-    path: Array
-    placement: Array
-    objective: Array
-
-    def best(self, count: int, admits: Callable[[Array], Verdict] | None = None) -> Pool:
-        """The first `count` that pass, the best first."""
-        order = np.argsort(self.objective)
-        order = order[np.isfinite(self.objective[order])]
-        if admits is not None:
-            fair = (int(k) for k in order if admits(self.path[k]).ok.all())
-            order = np.fromiter(islice(fair, count), dtype=np.intp)
-        order = order[:count]
-        return Pool(self.path[order], self.placement[order], self.objective[order])
-
-    def improve(
-        self, trial: Pool, children: int, admits: Callable[[Array], Verdict] | None = None
-    ) -> _Improved:
-        """Each posture or the best of its children, which stand one after the other in `trial`."""
-        k = len(self.objective)
-        objectives = trial.objective.reshape(children, k)
-        best = np.argmin(objectives, axis=0)
-        pick = best * k + np.arange(k)
-        improved = trial.objective[pick] < self.objective
-        if admits is not None:  # dear, so asked of those alone that would be kept
-            for row in np.flatnonzero(improved):
-                improved[row] = admits(trial.path[pick[row]]).ok.all()
-        return _Improved(
-            Pool(
-                np.where(improved[:, None, None], trial.path[pick], self.path),
-                np.where(improved[:, None], trial.placement[pick], self.placement),
-                np.where(improved, trial.objective[pick], self.objective),
-            ),
-            improved,
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class _Improved:
-    pool: Pool
-    improved: Mask
-
-
-@dataclass(frozen=True, eq=False)
-class Judge:
-    """Puts postures on the task, follows the path, and says how good they are."""
-
-    arm: ElasticArm
-    path: PathTask
-    minimise: str
-    place: Placement | None
-    singularity_margin: float
-    largest_step: float
-
-    @property
-    def lower(self) -> Array:
-        """(6,) lower bounds of the placement [m, rad]."""
-        return np.zeros(6) if self.place is None else np.asarray(self.place.lower, dtype=float)
-
-    @property
-    def upper(self) -> Array:
-        """(6,) upper bounds [m, rad]."""
-        return np.zeros(6) if self.place is None else np.asarray(self.place.upper, dtype=float)
-
-    @property
-    def span(self) -> Array:
-        """(6,) widths between them [m, rad]."""
-        return self.upper - self.lower
-
-    def inside(self, placement: Array) -> Array:
-        """Placements (..., 6) brought within the bounds."""
-        return np.clip(placement, self.lower, self.upper)
-
-    def __call__(self, starts: Array, placement: Array) -> Pool:
-        """Follow the path from (k, n) starts with the part at (k, 6); infinite: does not pass."""
-        count = len(starts)
-        followed = np.empty((count, self.path.count, self.arm.n))
-        objective = np.zeros(count)
-        alive = np.arange(count)
-        before = starts
-        for point in range(self.path.count):
-            turn, shift = self._moves(placement[alive])
-            reached = solve_inverse(self.arm, self._task(point, turn, shift), before[alive])
-            ok = reached.found & self.arm.within_limits(reached.a)
-            if point:
-                jump = np.abs(reached.a - before[alive]).max(axis=1)
-                ok &= jump <= self.largest_step
-            followed[alive, point] = reached.a
-            before = followed[:, point]
-            objective[alive[~ok]] = np.inf
-            alive = alive[ok]
-            if not len(alive):
-                break
-            cost, condition = self._cost(followed[alive, point], point, turn[ok])
-            lost = (condition < self.singularity_margin) | ~np.isfinite(cost)
-            objective[alive] = np.where(lost, np.inf, np.maximum(objective[alive], cost))
-            alive = alive[~lost]
-            if not len(alive):
-                break
-        return Pool(followed, placement, objective)
-
-    def _moves(self, placement: Array) -> tuple[Array, Array]:
-        """(k, 3, 3) rotations and (k, 3) shifts of the part."""
-        turns = np.stack([rotation_from_rpy(row) for row in placement[:, 3:]])
-        return turns, placement[:, :3]
-
-    def _task(self, point: int, turn: Array, shift: Array) -> Task:
-        path = self.path
-        origin = np.zeros(3) if self.place is None else np.asarray(self.place.origin, dtype=float)
-        position = turn @ (path.position[point] - origin) + origin + shift
-        return Task(
-            position,
-            None if path.axis is None else turn @ path.axis[point],
-            None if path.rotation is None else turn @ path.rotation[point],
-        )
-
-    def _cost(self, a: Array, point: int, turn: Array) -> tuple[Array, Array]:
-        """Compliance or deflection, and conditioning, of postures at one point of the path."""
-        load = self.path.wrench[point]
-        loads = np.concatenate([turn @ load[:3], turn @ load[3:]], axis=1)
-        want = ["condition", "stiffness_class", "compliance", "values", "deflection_enhanced"]
-        found = self.arm.batch(a, loads, want)
-        if self.minimise == "compliance":
-            if self.path.direction is None:
-                cost = 1.0 / found.of("values")[:, 0]
-            else:
-                d = turn @ self.path.direction[point]
-                cost = np.einsum("ki,kij,kj->k", d, found.of("compliance"), d)
-        else:
-            displaced = found.of("deflection_enhanced")
-            if self.path.direction is None:
-                cost = np.linalg.norm(displaced, axis=1)
-            else:
-                d = turn @ self.path.direction[point]
-                cost = np.abs((d * displaced).sum(-1))
-        return np.where(found.stable, cost, np.inf), found.of("condition")
-
-    def report(self, pool: Pool, admissible: Array, usual: Array) -> BestPosture:
-        """The best of a pool, with what it gives at every point."""
-        best = int(np.argmin(pool.objective))
-        a, placement = pool.path[best], pool.placement[best]
-        turn, _ = self._moves(placement[None])
-        costs, conditions = zip(
-            *(self._cost(a[k : k + 1], k, turn) for k in range(self.path.count)), strict=True
-        )
-        distance = np.minimum(a - self.arm.lower, self.arm.upper - a)
-        return BestPosture(
-            a=a,
-            placement=placement,
-            objective=float(pool.objective[best]),
-            per_point=np.concatenate(costs),
-            condition=np.concatenate(conditions),
-            limit_margin=float(distance.min()),
-            admissible=admissible,
-            usual=usual,
-        )
-
-
-def path_points(start: ArrayLike, end: ArrayLike, count: int) -> Array:
-    """(count, 3) points on a straight line [m]."""
-    fraction = np.linspace(0.0, 1.0, count)[:, None]
-    return (
-        np.asarray(start, dtype=float) * (1.0 - fraction) + np.asarray(end, dtype=float) * fraction
+def _report(judge: Judge, pool: Pool, admissible: Array, usual: Array) -> BestPosture:
+    """The best of a pool, with what it gives at every point."""
+    best = int(np.argmin(pool.objective))
+    a, placement = pool.path[best], pool.placement[best]
+    turn, _ = judge.moves(placement[None])
+    costs, conditions = zip(
+        *(judge.cost(a[k : k + 1], k, turn) for k in range(judge.path.count)), strict=True
+    )
+    distance = np.minimum(a - judge.arm.lower, judge.arm.upper - a)
+    return BestPosture(
+        a=a,
+        placement=placement,
+        objective=float(pool.objective[best]),
+        per_point=np.concatenate(costs),
+        condition=np.concatenate(conditions),
+        limit_margin=float(distance.min()),
+        admissible=admissible,
+        usual=usual,
     )

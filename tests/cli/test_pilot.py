@@ -51,6 +51,7 @@ def test_a_campaign_from_begin_to_end(run, tmp_path: Path, monkeypatch) -> None:
     assert first.document["readings"] == 0 and first.document["stop"] is None
     plan = read_measurements(folder / "next.csv")
     assert plan.displacement is None and plan.n_readings == 1
+    assert " bit)" in first.document["next"]["decides"]
     arm = Arm(folder)
     robot = arm.truth.robot
     assert feasible(robot, _cell(), plan.joints, plan.wrench, point=plan.point).ok.all()
@@ -59,6 +60,7 @@ def test_a_campaign_from_begin_to_end(run, tmp_path: Path, monkeypatch) -> None:
     assert ended.code == 0, ended.stderr
     assert "base_rocking" in ended.stdout and "Stop" in ended.stdout
     assert arm.asked < 30
+    assert "). One bit answers one question of yes or no" in " ".join(ended.stdout.split())
     readings = read_measurements(folder / "readings.csv")
     assert readings.n_readings == arm.asked and readings.zero == "separate"
     again = run("pilot", str(folder), "--json")  # the folder is the state

@@ -163,11 +163,13 @@ def test_the_way_is_written_as_a_program(run, tmp_path: Path) -> None:
     outcome = run("plan", "--model", MODEL, *options)
     assert outcome.code == 0, outcome.stderr
     way = outcome.document["route"]
-    assert sorted(way["order"]) == ["p1", "p2", "p3", "p4"]
+    assert way["order"] == ["p1", "p2", "p3", "p4"]  # numbered as they are driven
     assert way["minutes"] == pytest.approx((way["driving_s"] + 4 * 20) / 60)
     assert list(read_measurements(out).poses) == way["order"]
     text = program.read_text(encoding="ascii")
     assert text.count("PTP") >= 4 + way["via_points"]
+    stops = text.replace("\n; ", " ").partition("Poses: ")[2]
+    assert stops.index("p1 ") < stops.index("p2 ") < stops.index("p3 ") < stops.index("p4 ")
     assert text.count("\nHALT\n") == 4  # nobody hangs on loads while the arm goes on
     wrong = run("plan", "--model", MODEL, "--count", "4", *FEW, "--program", "way.nc")
     assert wrong.code == 2 and "joint values" in wrong.stderr

@@ -97,6 +97,52 @@ def test_no_posture_is_an_explained_refusal(run: Run, path: str, tmp_path: Path)
     assert "margins" in found.stderr
 
 
+@pytest.mark.parametrize(
+    ("rows", "says"),
+    [
+        ([(-800,), (-700,), (800,)], ("point 2 and point 3, 1500 mm", "with 31 in every move")),
+        ([(0, 25 * k) for k in range(40)], ("0 mm apart, joint_6_t jumps", "no branch", "divide")),
+    ],
+)
+def test_points_between_which_a_joint_jumps_are_named(
+    run: Run, tmp_path: Path, rows: list[tuple[int, ...]], says: tuple[str, ...]
+) -> None:
+    path = tmp_path / "path.csv"
+    turned = len(rows[0]) == 2
+    header = "x[mm],z[mm],fx[N],fy[N],fz[N],y[mm]" + ",yaw[deg],roll[deg],pitch[deg]" * turned
+    lines = [
+        ",".join(map(str, (1300, 300, 0, 0, 500, *row, *(180, 0)[: 2 * turned]))) for row in rows
+    ]
+    path.write_text("\n".join([header, *lines]) + "\n")
+    options = () if turned else ("--tool-axis", "0,0,-1")
+    found = run("posture", MODEL, str(path), *options, "--out", str(tmp_path / "b.csv"))
+    assert found.code == 1
+    for said in says:
+        assert said in " ".join(found.stderr.split())
+
+
+def test_its_path_is_checked_row_by_row(run: Run, path: str, tmp_path: Path) -> None:
+    """Joints are driven; positions beside them must agree, unless they are those under load."""
+    best, corrected = tmp_path / "best.csv", tmp_path / "corrected.csv"
+    words = ("plan", "--check", str(best))
+    assert run("posture", MODEL, path, "--tool-axis", "0,0,-1", "--out", str(best)).code == 0
+    found = run(*words, "--model", MODEL, "--json")
+    assert found.code == 0, found.stderr
+    rows = found.document["rows"]
+    assert [(row["line"], row["pose"]) for row in rows] == [(k + 2, str(k)) for k in range(5)]
+    low = run(*words, "--model", MODEL, "--floor", "400 mm", "--json").document
+    assert low["feasible"] == 0 and "floor" in low["rows"][0]["faults"][0]
+    assert run("compensate", MODEL, str(best), "--out", str(corrected)).code == 0
+    assert run("plan", "--check", str(corrected), "--model", MODEL).code == 0
+    for wrong, said in (
+        (words, "--model"),
+        ((*words, "--model", MODEL, "--point", "0,0,100 mm"), "100 mm away"),
+        (("plan", "--check", path, "--model", MODEL), "many postures"),
+    ):
+        refused = run(*wrong)
+        assert refused.code == 2 and said in refused.stderr
+
+
 def test_its_path_is_taken_by_compensate(run: Run, path: str, tmp_path: Path) -> None:
     """Joints are driven, and what stands beside them is held against them."""
     best, turned = tmp_path / "best.csv", tmp_path / "turned.csv"

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba import njit
 from numpy.typing import NDArray
 
 import sk120stiff
@@ -32,6 +33,7 @@ from sk120stiff.stiffness import (
     under_load,
 )
 from sk120stiff.stiffness.kernel import run
+from sk120stiff.stiffness.kernel.compiled import part, told_of_compiling
 from sk120stiff.stiffness.kernel.run import announced
 from sk120stiff.stiffness.on_arrays import on_arrays
 from tests.oracles.sample_urdfs import mimic_tree, six_axis_arm
@@ -356,13 +358,9 @@ def test_a_long_start_is_announced(
 
 
 def test_compiling_is_announced_once() -> None:
-    import numba
-
-    from sk120stiff.stiffness.kernel.compiled import part, told_of_compiling
-
-    inner = part(lambda x: 2.0 * x)
-    outer = numba.njit(lambda x: inner(x))
     said: list[str] = []
+    inner = part(lambda x: 2.0 * x)
+    outer = njit(lambda x: inner(x))
     with told_of_compiling(lambda: said.append("compiling")):
         assert [outer(1.0), outer(2.0)] == [2.0, 4.0]
     assert said == ["compiling"]
@@ -371,13 +369,11 @@ def test_compiling_is_announced_once() -> None:
 def test_a_second_process_compiles_nothing() -> None:
     """Neither for another kind of arm: all share one signature."""
     program = """
-import logging
-import numpy as np
+import logging, numpy as np
 from sk120stiff.robot import load_robot
 from sk120stiff.stiffness import ConstantCompliance, under_load
 from sk120stiff.stiffness.kernel import run
-logging.basicConfig(level=logging.INFO)
-run.PATIENCE = 0.0
+logging.basicConfig(level="INFO"); run.PATIENCE = 0.0
 for springs in (np.full(6, 1e6), [np.inf, 1e6, *4 * [np.inf]]):
     arm = ConstantCompliance.of_springs(load_robot("motoman_sk120"), springs)
     under_load(arm, np.zeros((3, 6)), np.ones(6))

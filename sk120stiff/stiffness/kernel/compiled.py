@@ -55,7 +55,7 @@ def told_of_compiling(say: Callable[[], None]) -> Iterator[None]:
         yield
 
 
-class _Told(event.Listener):  # type: ignore[misc]
+class _Told(event.Listener):
     def __init__(self, say: Callable[[], None]) -> None:
         self._say: Callable[[], None] | None = say
 
