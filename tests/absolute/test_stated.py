@@ -172,3 +172,10 @@ def test_a_marker_stated_far_from_where_it_sits_is_refused_with_its_place(tmp_pa
         InputError, match=r"the marker seems to sit \(50.*Write 'point: {\.\.\., fit"
     ):
         calibrated(write(tmp_path, A, READ, here + NOISE))
+
+
+def test_poses_too_few_for_waves_to_show_are_told(tmp_path: Path) -> None:
+    for count, told in ((14, True), (60, False)):
+        path = write(tmp_path, A[:count], READ[:count], FIT + NOISE)
+        said = " ".join(findings(calibrated(path), sk.read(path)))
+        assert ("(24 unknowns) could not show" in said) == told

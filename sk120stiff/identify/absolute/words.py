@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Viewpoint
+from sk120stiff.effects import Elastic, Viewpoint
 from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.solve.polish import FAINTEST
@@ -18,6 +18,7 @@ from sk120stiff.model import Model
 
 SURE = 3.0  # standard errors by which a mass is less than nothing
 MUCH_LESS, SURELY = 0.5, 0.999  # of the stated noise, and the probability that it leaves more
+WAVES = 4  # unknowns of a joint: sine and cosine of one turn and of half of it
 SHOWN = 12  # frozen parameters and rows that are told one by one
 
 NO_TORQUE = "neither weight nor payload nor load puts a torque on it that shows"
@@ -99,6 +100,7 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
             f"Waves over the joints' angles show beyond doubt ({', '.join(found.waves)}) and are "
             "in the model: springs would take them for sag."
         )
+    said += _few(found)
     said += [f"{name} cannot be seen: {why}." for name, why in unseen(found).items()]
     said += [f"{joint} never moves: what is beyond it moves as one." for joint in found.still]
     if found.frozen:
@@ -110,6 +112,20 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         said.append(f"{len(rows)} rows lie far off all others and were set aside:")
         said += _some([_wild(found, readings, int(row)) for row in rows])
     return said
+
+
+def _few(found: Calibration) -> list[str]:
+    """That too little is left over for waves to show, which springs then stand for."""
+    fit = found.fit
+    waves = WAVES * len(fit.model.robot.actuated)
+    springs = any(isinstance(p.effect, Elastic) for p in fit.parameters)
+    if found.waves or not springs or fit.degrees_of_freedom >= waves:
+        return []
+    return [
+        f"Only {fit.degrees_of_freedom} numbers are left over: waves over the joints' angles "
+        f"({waves} unknowns) could not show. If there are any, springs are farther off than their "
+        "intervals say. Measure more poses."
+    ]
 
 
 def _implausible(found: Calibration) -> list[str]:
