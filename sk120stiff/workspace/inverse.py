@@ -207,9 +207,21 @@ def _without_spin(J: Array, z: Array) -> Array:
 def wrapped(arm: ElasticArm, a: Array) -> Array:
     """Turning joints brought within their limits by whole turns where that is possible."""
     turns = ~np.asarray(arm.slides)
-    middle = np.where(
-        np.isfinite(arm.lower) & np.isfinite(arm.upper), 0.5 * (arm.lower + arm.upper), 0.0
-    )
+    middle = middle_of(arm)
     inside = (a >= arm.lower) & (a <= arm.upper) & np.isfinite(arm.lower)
     near = middle + (a - middle + np.pi) % (2.0 * np.pi) - np.pi
     return np.where(turns & ~inside, near, a)
+
+
+def middle_of(arm: ElasticArm) -> Array:
+    """(n,) the middle between each joint's limits [rad or m]; zero where one is infinite."""
+    known = np.isfinite(arm.lower) & np.isfinite(arm.upper)
+    low, high = np.where(known, arm.lower, 0.0), np.where(known, arm.upper, 0.0)
+    return np.asarray(0.5 * (low + high))
+
+
+def near(arm: ElasticArm, a: Array, before: Array) -> Array:
+    """Turning joints within half a turn of where they were before, where limits allow it."""
+    turned = a + 2.0 * np.pi * np.round((before - a) / (2.0 * np.pi))
+    allowed = (turned >= arm.lower) & (turned <= arm.upper) & ~np.asarray(arm.slides)
+    return np.where(allowed, turned, a)

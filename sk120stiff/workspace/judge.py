@@ -13,7 +13,7 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.plan.feasible import Verdict
 from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.workspace.arm import ElasticArm
-from sk120stiff.workspace.inverse import Task, solve_inverse
+from sk120stiff.workspace.inverse import Task, near, solve_inverse
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,11 +156,12 @@ class Judge:
         for point in range(self.path.count):
             turn, shift = self.moves(placement[alive])
             reached = solve_inverse(self.arm, self._task(point, turn, shift), before[alive])
-            ok = reached.found & self.arm.within_limits(reached.a)
+            a = near(self.arm, reached.a, before[alive]) if point else reached.a
+            ok = reached.found & self.arm.within_limits(a)
             if point:
-                jump = np.abs(reached.a - before[alive]).max(axis=1)
+                jump = np.abs(a - before[alive]).max(axis=1)
                 ok &= jump <= self.largest_step
-            followed[alive, point] = reached.a
+            followed[alive, point] = a
             before = followed[:, point]
             objective[alive[~ok]] = np.inf
             alive = alive[ok]

@@ -30,7 +30,7 @@ from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.units import from_si, is_kind, to_si
 from sk120stiff.workspace.arm import ElasticArm
-from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import Task, near, solve_inverse, starting_poses
 
 FORCES, MOMENTS = ("fx", "fy", "fz"), ("mx", "my", "mz")
 POSITIONS, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
@@ -252,11 +252,8 @@ def without_turns(arm: ElasticArm, joints: Array) -> Array:
     them.
     """
     a = joints.copy()
-    turns = ~np.asarray(arm.slides)
     for k in range(1, len(a)):
-        whole = 2.0 * np.pi * np.round((a[k - 1] - a[k]) / (2.0 * np.pi))
-        near = a[k] + whole
-        a[k] = np.where(turns & (near >= arm.lower) & (near <= arm.upper), near, a[k])
+        a[k] = near(arm, a[k], a[k - 1])
     return a
 
 

@@ -19,7 +19,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.plan.feasible import Verdict
 from sk120stiff.workspace.arm import ElasticArm
-from sk120stiff.workspace.inverse import starting_poses
+from sk120stiff.workspace.inverse import middle_of, near, starting_poses
 from sk120stiff.workspace.judge import Judge, PathTask, Placement, Pool
 from sk120stiff.workspace.jump import refuse_jump
 
@@ -151,6 +151,9 @@ def _report(judge: Judge, pool: Pool, admissible: Array, usual: Array) -> BestPo
     """The best of a pool, with what it gives at every point."""
     best = int(np.argmin(pool.objective))
     a, placement = pool.path[best], pool.placement[best]
+    # the very same postures by whole turns farther from the limits
+    off = 0.5 * (a.min(axis=0) + a.max(axis=0))
+    a = a + near(judge.arm, off, middle_of(judge.arm)) - off
     turn, _ = judge.moves(placement[None])
     costs, conditions = zip(
         *(judge.cost(a[k : k + 1], k, turn) for k in range(judge.path.count)), strict=True

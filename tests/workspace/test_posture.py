@@ -162,6 +162,34 @@ def test_a_path_stays_in_one_branch_and_keeps_its_margins() -> None:
     assert best.objective == best.per_point.max()
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_joint_without_limits_turns_on_past_half_a_turn() -> None:
+    """Behind the arm, where joint 1 passes 180°, the path goes on as it does in front."""
+    given = soft_wrist()
+    free = np.array([np.inf, *5 * [0.0]])
+    arm = replace(given, lower=given.lower - free, upper=given.upper + free)
+    line = path_points([1.4, -0.2, 0.3], [1.4, 0.2, 0.3], 5)
+    front, back = (
+        best_posture(arm, PathTask(side * line, axis=DOWN), starts=32, rounds=3)
+        for side in (1.0, np.array([-1.0, 1.0, 1.0]))
+    )
+    assert np.abs(np.diff(back.a, axis=0)).max() < 0.2
+    assert back.objective == pytest.approx(front.objective, rel=0.2)
+
+
+def test_of_whole_turns_the_one_farthest_from_the_limits_is_given() -> None:
+    given = soft_wrist()
+    wide = 2.0 * np.pi
+    arm = replace(given, lower=np.full(6, -wide), upper=np.full(6, wide))
+    path = PathTask(path_points([1.4, -0.2, 0.3], [1.4, 0.2, 0.3], 3), axis=DOWN)
+    for seed in range(3):
+        best = best_posture(arm, path, starts=32, rounds=3, seed=seed)
+        middle = 0.5 * (best.a.min(axis=0) + best.a.max(axis=0))
+        assert np.abs(middle).max() <= np.pi + 1e-9
+        there = arm.kinematics(best.a)
+        np.testing.assert_allclose(there.position, path.position, atol=1e-8)
+
+
 def test_seeds_decide_everything() -> None:
     path = PathTask(np.array([[1.5, 0.1, 0.2]]), axis=DOWN)
     one, two = (best_posture(soft_wrist(), path, rounds=5, seed=4) for _ in range(2))
