@@ -27,10 +27,11 @@ HEAVY = {
     "yaml",
 }
 INFRASTRUCTURE = {
-    "__init__", "calibration", "cell", "compensate_path", "compensate_program", "compensate_sheet",
-    "compensate_words", "drawing", "environment", "explain_output", "frame", "identify_rows",
-    "import_preview", "main", "map_postures", "opening", "options", "plan_check", "plan_program",
-    "plan_shown", "plan_effects", "positions", "tables", "uncertainty", "visible", "xacro_option",
+    "__init__", "calibration", "cell", "compensate_path", "compensate_program",
+    "compensate_sheet", "compensate_words", "drawing", "environment", "explain_output", "frame",
+    "identify_rows", "import_preview", "main", "map_postures", "opening", "options", "plan_check",
+    "plan_chosen", "plan_places", "plan_program", "plan_shown", "plan_effects", "positions",
+    "tables", "uncertainty", "visible", "xacro_option",
 }  # fmt: skip
 
 
