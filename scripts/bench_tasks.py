@@ -95,7 +95,7 @@ def sensitivities(budget: float) -> float:
 
 def slip_search(count: int) -> float:
     """Slips of the pen sought in `count` sound readings [s]."""
-    from sk120stiff.slips import find_slip
+    from sk120stiff.data_checks import find_slip
 
     model = sk120_model()
     data = readings(count, model)

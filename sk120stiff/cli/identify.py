@@ -17,6 +17,7 @@ from sk120stiff.cli.identify_rows import Interval, parameter_rows
 from sk120stiff.cli.opening import model_for, open_data, provenance, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
 from sk120stiff.effects import effect
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.files import will_write
@@ -39,7 +40,6 @@ from sk120stiff.identify import (
 from sk120stiff.identify.report import noise_sentence, place_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, write_model
-from sk120stiff.slips import look, refuse_unbelievable, without_copies
 
 
 class Method(StrEnum):

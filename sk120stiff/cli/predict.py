@@ -14,6 +14,7 @@ from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
 from sk120stiff.cli.positions import predicted_positions
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
+from sk120stiff.data_checks import look
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.files import csv_text, will_write, write_atomically
@@ -28,7 +29,6 @@ from sk120stiff.model.prediction_table import (
     rows_of,
     unknown_reasons,
 )
-from sk120stiff.slips import look
 
 LISTED = 40  # rows that people are shown
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
 from sk120stiff.effects import CATALOGUE, Catalogue
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.advise.best_guess import contenders
@@ -31,7 +32,6 @@ from sk120stiff.identify import Fit, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
-from sk120stiff.slips import look, refuse_unbelievable, without_copies
 
 LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
 

@@ -47,7 +47,8 @@ class Fit:
         spread: Noise seen over noise assumed, where a robust fit found it without its outliers.
         inflation: Variance of the estimates over that of least squares with the same weights
             (robust fits).
-        doubt: (P_free,) by how much other possible models move the estimates; None: by nothing.
+        selection_uncertainty: (P_free,) by how much other possible models move the estimates;
+            None: by nothing.
         left_out: (P_free,) standard errors by what the model is known to leave out; None: nothing.
 
     Examples:
@@ -69,7 +70,7 @@ class Fit:
     reasons: tuple[str, ...] = ()
     spread: float | None = None
     inflation: float = 1.0
-    doubt: Array | None = None
+    selection_uncertainty: Array | None = None
     left_out: Array | None = None
 
     def __repr__(self) -> str:
@@ -260,7 +261,9 @@ class Fit:
     def beside_noise(self) -> Array:
         """(P_free,) standard errors that are not of the readings' noise."""
         none = np.zeros(len(self.x))
-        return np.hypot(*(none if x is None else x for x in (self.doubt, self.left_out)))
+        return np.hypot(
+            *(none if x is None else x for x in (self.selection_uncertainty, self.left_out))
+        )
 
     @property
     def unit(self) -> float:
@@ -346,8 +349,8 @@ class Fit:
             error = self.reach(level) * self.left_out[:, None]
             wider = error**2 / np.maximum(away + np.hypot(away, error), 1e-300)
             ends = np.clip(ends + wider * [-1.0, 1.0], low, high)
-        if self.doubt is not None:  # the estimate may lie there instead
-            ends = np.clip(ends + np.outer(self.doubt, [-1.0, 1.0]), low, high)
+        if self.selection_uncertainty is not None:  # the estimate may lie there instead
+            ends = np.clip(ends + np.outer(self.selection_uncertainty, [-1.0, 1.0]), low, high)
         scaled = ends * self.problem.scale[:, None]
         return tuple(
             public_interval(parameter.spec, float(low), float(high))

@@ -50,7 +50,9 @@ def against_noise_alone(fit: Fit) -> Fit:
         return fit
     exact = replace(problem.noise, form=EXACT)
     found = solve_near(Problem(problem.model, problem.measurements, exact, problem.weights), fit.x)
-    return with_values(replace(found, doubt=fit.doubt, left_out=fit.left_out))
+    return with_values(
+        replace(found, selection_uncertainty=fit.selection_uncertainty, left_out=fit.left_out)
+    )
 
 
 def as_fit(problem: Problem, found: Minimum) -> Fit:

@@ -27,8 +27,8 @@ def as_document(found: Reproduction) -> dict[str, object]:
         "identified": {
             **_fit(fitted.fit),
             "equal_weights": _fit(fitted.equal_weights),
-            "attempts": fitted.attempts,
-            "relative_spread_of_attempts": fitted.spread,
+            "runs": fitted.runs,
+            "relative_spread_of_runs": fitted.spread,
             "by_pose": {
                 pose: {"springs": springs, "std": errors}
                 for pose, (springs, errors) in fitted.by_pose.items()

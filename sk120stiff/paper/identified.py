@@ -45,7 +45,7 @@ class Identified:
         fit: What ``sk120stiff identify`` finds: each pose's rows share one zero reading, and the
             covariance knows it.
         equal_weights: The paper's criterion, eq. (12): plain least squares.
-        attempts: Both algorithms from `STARTS`.
+        runs: Both algorithms from `STARTS`.
         by_pose: Pose → springs (3,) and their standard errors (3,), from that pose alone [N·m/rad].
         F, probability: Test of common springs against springs of each pose's own: F ratio, and how
             probable a larger one is if the springs are the same everywhere.
@@ -53,7 +53,7 @@ class Identified:
 
     fit: Fit
     equal_weights: Fit
-    attempts: tuple[Run, ...]
+    runs: tuple[Run, ...]
     by_pose: dict[str, tuple[Array, Array]]
     F: float
     probability: float
@@ -70,8 +70,8 @@ class Identified:
 
     @cached_property
     def spread(self) -> float:
-        """Largest relative difference between the attempts."""
-        found = np.array([attempt.springs for attempt in self.attempts])
+        """Largest relative difference between the runs."""
+        found = np.array([run.springs for run in self.runs])
         return float(np.max(np.ptp(found, axis=0) / found.mean(axis=0)))
 
 
@@ -87,12 +87,12 @@ def identify_springs(
 
     model = setting.model
     common = one(model, measured, SHARED_ZERO, "trf")
-    attempts = []
+    runs = []
     for method in METHODS:
         for start in STARTS:
             far = model.with_public(**dict.fromkeys(model.names, start))
             found = one(far, measured, SHARED_ZERO, method)
-            attempts.append(Run(method, start, springs_of(found)))
+            runs.append(Run(method, start, springs_of(found)))
     labels = np.array(measured.pose)
     alone = {
         pose: one(model, measured.select(np.flatnonzero(labels == pose)), SHARED_ZERO, "trf")
@@ -106,7 +106,7 @@ def identify_springs(
     return Identified(
         fit=one(model, measured, None, "trf"),
         equal_weights=one(model, measured, EQUAL_WEIGHTS, "trf"),
-        attempts=tuple(attempts),
+        runs=tuple(runs),
         by_pose={pose: (springs_of(f), errors_of(f)) for pose, f in alone.items()},
         F=float(F),
         probability=float(stats.f.sf(F, more, left)),

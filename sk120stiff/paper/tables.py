@@ -185,7 +185,7 @@ def _springs(found: Reproduction) -> SideBySide:
             column("equal weights", springs_of(fitted.equal_weights)),
             *(column(f"pose {p} alone", k, brief=False) for p, (k, _) in fitted.by_pose.items()),
         ),
-        f"Three of the paper's twenty poses. {len(fitted.attempts)} runs of both algorithms from "
+        f"Three of the paper's twenty poses. {len(fitted.runs)} runs of both algorithms from "
         f"far starts agree to {fitted.spread:.0e}. Equal weights is the paper's eq. (12).",
     )
 

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
+from sk120stiff.data_checks import without_copies
 from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.identify import Problem
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -20,7 +21,6 @@ from sk120stiff.pilot.choosing import best, expected, separation
 from sk120stiff.pilot.linear import LinearMap, Sums
 from sk120stiff.plan import Pool
 from sk120stiff.plan.design import DISPLACEMENT
-from sk120stiff.slips import without_copies
 
 SURE = 0.95
 OPEN = 0.05  # probability from which on another name counts, against a sure one or beside it

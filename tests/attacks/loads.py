@@ -12,7 +12,7 @@ import numpy as np
 from sk120stiff import base_model, load_robot, write_measurements
 from sk120stiff.measurements import Measurements
 from tests.attacks.judge import Verdict, apart
-from tests.slips.random_arms import random_arm
+from tests.data_checks.random_arms import random_arm
 
 ROBOT = "motoman_sk120"
 MEMORY = 1.0e9  # bytes at most

@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from sk120stiff import fit, load_robot, write_measurements
+from sk120stiff.data_checks import find_slip, look
 from sk120stiff.measurements import NoiseStatement
-from sk120stiff.slips import find_slip, look
 from tests.attacks.judge import Verdict, heard
-from tests.slips.random_arms import random_arm
-from tests.slips.readings import SCALES, Arm, loads_as_if, sk120, spoilt, ur5
-from tests.slips.table import ARMS, SLIPS, has_a_floor
+from tests.data_checks.random_arms import random_arm
+from tests.data_checks.readings import SCALES, Arm, loads_as_if, sk120, spoilt, ur5
+from tests.data_checks.table import ARMS, SLIPS, has_a_floor
 
 GARBAGE = {  # what is done to the rows → what stands in the answer
     "readings shifted,1": ("1 row too low",),

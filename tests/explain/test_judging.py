@@ -205,6 +205,6 @@ def test_another_law_that_the_readings_refute_leaves_no_doubt(springs):
     steps = GearHardening("joint_1_s", {"first": 0.6, "second": 0.2}, {"T1": 120.0, "T2": 320.0})
     answer = explain(springs, hidden(steps, sigma=1e-6, stated=False))
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
-    assert answer.final.doubt is not None
+    assert answer.final.selection_uncertainty is not None
     spring = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
     assert spring.internal_std < 0.05 * spring.internal

@@ -18,9 +18,9 @@ import numpy as np
 
 from .answers import Answer, identity, read_answer, read_predictions
 from .calibration import calibration, reliability, stated
+from .discrimination import tells_apart
 from .judge import Mark, coverage, heldout_ratio, kin, mark
 from .run import digest
-from .settling import settles
 
 # level -> (content, least share right or None, greatest share of cases with a wrong name or None)
 GOALS: dict[str, tuple[str, float | None, float | None]] = {
@@ -70,7 +70,7 @@ def judge_case(folder: Path, name: str) -> tuple[dict[str, Any], Answer, Mark]:
     ratio = heldout_ratio(truth, read_predictions(folder / "answers" / name / "predicted.csv"))
     result = Mark(share, wrong, note, ratio, effects, springs)
     if truth["level"] == "L4" and answer.next_poses:
-        result = replace(result, settled=settles(truth, folder / "answers" / name))
+        result = replace(result, settled=tells_apart(truth, folder / "answers" / name))
     return truth, answer, result
 
 

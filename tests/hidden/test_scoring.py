@@ -14,11 +14,11 @@ import pytest
 
 from tests.hidden import run, score
 from tests.hidden.answers import identity, read_answer, read_predictions
+from tests.hidden.discrimination import tells_apart
 from tests.hidden.generator.build import build
 from tests.hidden.generator.design import plan
 from tests.hidden.judge import coverage, heldout_ratio, mark
 from tests.hidden.make_cases import counts, names
-from tests.hidden.settling import settles
 
 TILT = {
     "name": "joint_tilt",
@@ -250,9 +250,9 @@ def test_good_poses_settle_a_near_pair(tmp_path: Path) -> None:
     for rows, settled in ((idle, False), (table, True)):
         lines = [",".join(header), *(",".join(map(str, row)) for row in rows)]
         (tmp_path / "next_poses.csv").write_text("\n".join(lines))
-        assert settles(case.truth(), tmp_path) is settled
+        assert tells_apart(case.truth(), tmp_path) is settled
     (tmp_path / "next_poses.csv").write_text("pose\n1\n")
-    assert not settles(case.truth(), tmp_path)
+    assert not tells_apart(case.truth(), tmp_path)
 
 
 def test_levels_may_have_counts_of_their_own():

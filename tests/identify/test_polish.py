@@ -69,9 +69,9 @@ def test_unseen_directions_stay_where_they_were() -> None:
         assert found.x[2] == pytest.approx(0.5, abs=1e-12)
     found = polish(linear(A, b), np.array([3.0, 1.0, 9.0]), bounds, np.full(3, 10.0))
     assert found.x[0] - found.x[1] == pytest.approx(2.0, abs=1e-12)
-    _, singular, _, blind = seen_directions(A, np.full(3, 10.0))
+    _, singular, _, null = seen_directions(A, np.full(3, 10.0))
     assert len(singular) == 2
-    np.testing.assert_allclose(np.abs(blind[:, 0]), [np.sqrt(0.5), np.sqrt(0.5), 0.0], atol=1e-12)
+    np.testing.assert_allclose(np.abs(null[:, 0]), [np.sqrt(0.5), np.sqrt(0.5), 0.0], atol=1e-12)
 
 
 def test_what_no_plausible_value_would_show_is_unseen() -> None:

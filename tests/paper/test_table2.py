@@ -92,8 +92,8 @@ def test_identification(found):
     assert fitted.equal_weights.rms < fitted.fit.rms
     assert np.max(np.abs(fitted.springs / (SPRINGS / 1e3) - 1)) < 0.06
     assert fitted.spread < 1e-6
-    assert {a.method for a in fitted.attempts} == {"trf", "lm"}
-    starts = [1e3 * a.start for a in fitted.attempts]
+    assert {a.method for a in fitted.runs} == {"trf", "lm"}
+    starts = [1e3 * a.start for a in fitted.runs]
     assert (min(starts), max(starts)) == (1e5, 1e10)
     assert set(fitted.by_pose) == {"1", "2", "3"}
     assert 0.0 < fitted.probability < 0.05

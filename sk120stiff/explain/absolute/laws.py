@@ -109,7 +109,7 @@ def beside_laws(
         0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.name, 0.0) for p in fit.parameters
     ]
     moved = np.array(more) / fit.problem.scale
-    return replace(final, fit=with_values(replace(fit, doubt=moved)))
+    return replace(final, fit=with_values(replace(fit, selection_uncertainty=moved)))
 
 
 def _at_rest(

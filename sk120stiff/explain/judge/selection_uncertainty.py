@@ -38,7 +38,7 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
     """
     final = found.final
     place = {parameter.name: k for k, parameter in enumerate(final.parameters)}
-    doubt = np.zeros(len(final.x))
+    moves = np.zeros(len(final.x))
     here = _at_no_load(final)
     for effects, must_fit in _others(found, findings):
         try:
@@ -50,8 +50,8 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
         for parameter, value in zip(other.parameters, _at_no_load(other), strict=True):
             if parameter.name in place:
                 k = place[parameter.name]
-                doubt[k] = max(doubt[k], abs(value - here[k]))
-    return with_values(replace(final, doubt=doubt))
+                moves[k] = max(moves[k], abs(value - here[k]))
+    return with_values(replace(final, selection_uncertainty=moves))
 
 
 def _at_no_load(fit: Fit) -> Array:

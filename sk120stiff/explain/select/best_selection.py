@@ -44,4 +44,6 @@ def held_against(noise: NoiseModel, fit: Fit) -> Fit:
     if problem.noise == noise:
         return fit
     again = solve_near(Problem(problem.model, problem.measurements, noise), fit.x)
-    return with_values(replace(again, doubt=fit.doubt, left_out=fit.left_out))
+    return with_values(
+        replace(again, selection_uncertainty=fit.selection_uncertainty, left_out=fit.left_out)
+    )

@@ -121,9 +121,9 @@ def _note(found: Fit, loss: float | None, std: float | None, *, first: bool, bic
     else:
         said = "not told from the best"
     said += ", least BIC" if bic == 0.0 else ""
-    blind = int((~found.identifiable).sum())
+    lost = int((~found.identifiable).sum())
     bound = int(found.at_bound.sum())
     far = int((np.abs(found.x) > found.problem.span).sum())
-    for count, what in ((blind, "not identifiable"), (bound, "on a bound"), (far, "implausible")):
+    for count, what in ((lost, "not identifiable"), (bound, "on a bound"), (far, "implausible")):
         said += f"; {count} {what}" if count else ""
     return said

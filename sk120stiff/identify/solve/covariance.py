@@ -9,7 +9,7 @@ from sk120stiff.effects import ParameterSpec
 from sk120stiff.identify.solve.polish import seen_directions
 from sk120stiff.identify.solve.profile_likelihood import linear_valley
 
-HIDDEN = 0.1  # variance by which blind directions may move an estimate, over its own
+HIDDEN = 0.1  # variance by which null directions may move an estimate, over its own
 
 
 def covariance_of(jacobian: Array, held: Mask, span: Array) -> Array:
@@ -28,9 +28,9 @@ def covariance_of(jacobian: Array, held: Mask, span: Array) -> Array:
     if not len(moving):
         return covariance
     over = span[moving]
-    _, singular, V, blind = seen_directions(jacobian[:, moving], over)
+    _, singular, V, null = seen_directions(jacobian[:, moving], over)
     block = (V / singular**2) @ V.T
-    hidden = (blind**2).sum(axis=1)
+    hidden = (null**2).sum(axis=1)
     lost = (hidden > HIDDEN * np.diag(block)) | (np.diag(block) == 0.0)
     block = block * np.outer(over, over)
     block[lost, lost] = np.inf

@@ -121,7 +121,7 @@ def seen_directions(jacobian: Array, span: Array) -> tuple[Array, Array, Array, 
     """Directions of the parameters, each over its span, split by what the readings see of them.
 
     Returns:
-        U, singular, V, blind: (R, r), (r,), (P, r): J diag(span) = U diag(singular) Vᵀ over
+        U, singular, V, null: (R, r), (r,), (P, r): J diag(span) = U diag(singular) Vᵀ over
             directions that are seen; (P, b) an orthonormal basis of those that are not.
     """
     scaled = jacobian * span

@@ -68,9 +68,9 @@ def _resting(jacobian: Array, span: Array) -> Mask:
     resting = np.zeros(len(span), dtype=bool)
     while not resting.all():
         moving = np.flatnonzero(~resting)
-        blind = seen_directions(jacobian[:, moving], span[moving])[3]
-        involved = np.round((blind**2).sum(axis=1), 6)
-        if not blind.shape[1]:
+        null = seen_directions(jacobian[:, moving], span[moving])[3]
+        involved = np.round((null**2).sum(axis=1), 6)
+        if not null.shape[1]:
             break
         resting[moving[len(moving) - 1 - int(np.argmax(involved[::-1]))]] = True
     return resting

@@ -50,13 +50,13 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     problem = fit.problem
     scale, span = problem.scale, problem.span
     free = np.zeros(len(fit.x), dtype=bool)
-    _, singular, V, blind = seen_directions(fit.jacobian, span)
+    _, singular, V, null = seen_directions(fit.jacobian, span)
     lost = np.isinf(np.diag(covariance_of(fit.jacobian, free, span)))
     size = span * scale
     per_noise = (V / singular) * size[:, None]
     covariance = fit.unit**2 * per_noise @ per_noise.T
     covariance = covariance + np.diag((fit.beside_noise * scale) ** 2)
-    unseen = np.where(lost[:, None], blind * size[:, None], 0.0).T
+    unseen = np.where(lost[:, None], null * size[:, None], 0.0).T
     nothing = np.sqrt(np.diag(covariance)) < ROUNDING * np.abs(unseen).max(axis=0, initial=0.0)
     covariance = np.where(nothing | nothing[:, None], 0.0, covariance)
     return Uncertainty(

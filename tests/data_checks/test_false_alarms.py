@@ -1,11 +1,11 @@
 """Sound readings are not doubted: other arms, missing effects, foreign causes, messy noise.
 
-The long table is scripts/11_slips.py.
+The long table is scripts/11_data_checks.py.
 """
 
 import pytest
 
-from tests.slips.table import blind_readings, sound_readings
+from tests.data_checks.table import blind_readings, sound_readings
 
 
 def test_drawn_readings_of_other_arms_are_not_doubted() -> None:

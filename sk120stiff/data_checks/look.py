@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.data_checks.limits import limits_doubt
+from sk120stiff.data_checks.passive import Passive
+from sk120stiff.data_checks.scale import Scale, scale_doubt
+from sk120stiff.data_checks.search import SPARE, Slip, as_it_stands, find_slip
+from sk120stiff.data_checks.sheet import sheet_of
 from sk120stiff.errors import Refusal
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
-from sk120stiff.slips.limits import limits_doubt
-from sk120stiff.slips.passive import Passive
-from sk120stiff.slips.scale import Scale, scale_doubt
-from sk120stiff.slips.search import SPARE, Slip, as_it_stands, find_slip
-from sk120stiff.slips.sheet import sheet_of
 
 HALF = 0.5  # of the readings' squares: what a passive arm explains at the very least
 NOISY = 3.0  # stated uncertainties that may be left before noise is no excuse

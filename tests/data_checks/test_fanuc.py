@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from sk120stiff.data_checks import find_slip, look, refuse_unbelievable
 from sk120stiff.model import joint_spring_model
-from sk120stiff.slips import find_slip, look, refuse_unbelievable
 from tests.real_arms import fanuc
 
 if fanuc.FOLDER.is_dir():

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from sk120stiff import load_robot
+from sk120stiff.data_checks import find_slip, look
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import explain
-from sk120stiff.slips import find_slip, look
-from tests.slips.random_arms import random_arm
-from tests.slips.readings import ARMS, UR5, spoilt
+from tests.data_checks.random_arms import random_arm
+from tests.data_checks.readings import ARMS, UR5, spoilt
 
 # slip, words of the finding, words of the remedy; {k} is a joint's name
 SLIPS = [

@@ -21,7 +21,7 @@ from .judge import TOLD_APART
 UNITS = {"deg": np.pi / 180.0, "rad": 1.0, "m": 1.0, "mm": 1e-3, "N": 1.0, "kN": 1e3}
 
 
-def settles(truth: dict[str, Any], answer: Path) -> bool:
+def tells_apart(truth: dict[str, Any], answer: Path) -> bool:
     """Whether the proposed readings tell the pair apart, repeated until they are as many as the
     readings so far."""
     case = rebuild(truth["level"], truth["seed"])

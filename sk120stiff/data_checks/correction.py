@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sk120stiff.slips.sheet import Sheet
+from sk120stiff.data_checks.sheet import Sheet
 
 
 @dataclass(frozen=True)

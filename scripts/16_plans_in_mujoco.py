@@ -4,7 +4,7 @@ Nothing of the toolkit's own physics judges here: MuJoCo reads the file, its sha
 what touches, and what every motor must give. The way through the first poses of each plan is asked
 every half degree.
 
-Run from the repository:  python scripts/18_plans_in_mujoco.py [--poses 100] [--driven 12]
+Run from the repository:  python scripts/16_plans_in_mujoco.py [--poses 100] [--driven 12]
 """
 
 import argparse

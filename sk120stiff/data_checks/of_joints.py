@@ -9,8 +9,8 @@ from itertools import combinations
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.slips.correction import Correction
-from sk120stiff.slips.sheet import Sheet
+from sk120stiff.data_checks.correction import Correction
+from sk120stiff.data_checks.sheet import Sheet
 
 TURN = 2.0 * np.pi
 PARALLEL = 0.999  # cosine between the axes of joints that turn in one plane

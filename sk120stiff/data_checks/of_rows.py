@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from sk120stiff.arrays import Index
-from sk120stiff.slips.correction import Correction
-from sk120stiff.slips.sheet import Sheet
+from sk120stiff.data_checks.correction import Correction
+from sk120stiff.data_checks.sheet import Sheet
 
 SHIFTS = (1, -1, 2, -2)  # rows
 PARTS: tuple[tuple[str, dict[str, bool]], ...] = (

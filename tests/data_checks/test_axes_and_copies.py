@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
+from sk120stiff.data_checks import look, repeated_rows, without_copies
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.explain import explain
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
-from sk120stiff.slips import look, repeated_rows, without_copies
 from tests.explain.readings import hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 

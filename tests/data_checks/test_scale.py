@@ -2,9 +2,9 @@
 
 import pytest
 
-from sk120stiff.slips import find_slip, look
-from sk120stiff.slips.scale import USUAL, usual_stiffness
-from tests.slips.readings import ARMS, SCALES, loads_as_if
+from sk120stiff.data_checks import find_slip, look
+from sk120stiff.data_checks.scale import USUAL, usual_stiffness
+from tests.data_checks.readings import ARMS, SCALES, loads_as_if
 
 
 @pytest.mark.parametrize(("factor", "unit"), SCALES)

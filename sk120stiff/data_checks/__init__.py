@@ -1,8 +1,8 @@
 """Slips of the pen in measurements: looked for before physics is blamed."""
 
-from sk120stiff.slips.copies import repeated_rows, without_copies
-from sk120stiff.slips.look import DataChecks, look, refuse_unbelievable
-from sk120stiff.slips.search import Slip, find_slip
+from sk120stiff.data_checks.copies import repeated_rows, without_copies
+from sk120stiff.data_checks.look import DataChecks, look, refuse_unbelievable
+from sk120stiff.data_checks.search import Slip, find_slip
 
 __all__ = [
     "DataChecks",

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from sk120stiff import load_robot
+from sk120stiff.data_checks import find_slip
 from sk120stiff.measurements import Measurements
-from sk120stiff.slips import find_slip
 from tests.attacks.loads import long_chain
-from tests.slips.random_arms import random_arm
-from tests.slips.readings import ARMS, joints_times, spoilt
+from tests.data_checks.random_arms import random_arm
+from tests.data_checks.readings import ARMS, joints_times, spoilt
 
 pytestmark = pytest.mark.timeout(120)  # seconds at most, where milliseconds are usual
 

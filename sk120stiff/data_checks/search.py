@@ -14,15 +14,15 @@ from itertools import product
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.data_checks.correction import Correction
+from sk120stiff.data_checks.of_axes import of_axes
+from sk120stiff.data_checks.of_joints import floor, floors, of_joints, sign_of
+from sk120stiff.data_checks.of_rows import of_rows
+from sk120stiff.data_checks.passive import Passive, passive
+from sk120stiff.data_checks.sheet import Sheet, sheet_of
 from sk120stiff.errors import ToolkitError
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
-from sk120stiff.slips.correction import Correction
-from sk120stiff.slips.of_axes import of_axes
-from sk120stiff.slips.of_joints import floor, floors, of_joints, sign_of
-from sk120stiff.slips.of_rows import of_rows
-from sk120stiff.slips.passive import Passive, passive
-from sk120stiff.slips.sheet import Sheet, sheet_of
 
 CLEARER = 1.7  # times as much that is left without the correction
 CLEARER_TOGETHER = 2.5  # the same for several joints at once: more is tried, so more is asked

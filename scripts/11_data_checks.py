@@ -1,6 +1,6 @@
 """Slips of the pen: how many are found, and how often sound readings are doubted.
 
-Run from the repository:  python scripts/11_slips.py --seeds 5 --blind 20
+Run from the repository:  python scripts/11_data_checks.py --seeds 5 --blind 20
 """
 
 import argparse
@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from tests.slips.table import ARMS, Outcome, blind_readings, sound_readings, spoilt_readings
+from tests.data_checks.table import ARMS, Outcome, blind_readings, sound_readings, spoilt_readings
 
 
 def main() -> None:

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sk120stiff.data_checks import look, refuse_unbelievable
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import explain
 from sk120stiff.measurements import Measurements, NoiseStatement
-from sk120stiff.slips import look, refuse_unbelievable
-from tests.slips.readings import ARMS, Arm, spoilt
+from tests.data_checks.readings import ARMS, Arm, spoilt
 
 
 def refused(arm: Arm, data: Measurements) -> Refusal:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.data_checks.scale import WRIST, usual_stiffness
 from sk120stiff.effects import all_effects, load_case
 from sk120stiff.effects.base import Elastic
 from sk120stiff.errors import Refusal
@@ -11,8 +12,7 @@ from sk120stiff.measurements import Measurements, NoiseStatement
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length
-from sk120stiff.slips.scale import WRIST, usual_stiffness
-from tests.slips.readings import Arm
+from tests.data_checks.readings import Arm
 
 SHARE = (0.1, 0.6)  # size of the missing effect over that of the springs' displacements
 SIGNAL = (30.0, 300.0)  # displacements over noise

@@ -8,9 +8,9 @@ from itertools import permutations
 
 import numpy as np
 
+from sk120stiff.data_checks.correction import Correction
+from sk120stiff.data_checks.sheet import Sheet
 from sk120stiff.measurements.data import Frame
-from sk120stiff.slips.correction import Correction
-from sk120stiff.slips.sheet import Sheet
 
 AXES = "xyz"
 #: factors by which one axis may have been written in another unit of length

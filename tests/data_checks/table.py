@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sk120stiff import base_model, load_robot
+from sk120stiff.data_checks import find_slip, look, refuse_unbelievable
+from sk120stiff.data_checks.of_joints import floors
+from sk120stiff.data_checks.sheet import sheet_of
 from sk120stiff.errors import Refusal
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import joint_spring_model
-from sk120stiff.slips import find_slip, look, refuse_unbelievable
-from sk120stiff.slips.of_joints import floors
-from sk120stiff.slips.sheet import sheet_of
+from tests.data_checks.random_arms import random_arm
+from tests.data_checks.readings import PUBLIC, UR5, Arm, sk120, spoilt
 from tests.hidden.generator.build import build
 from tests.hidden.generator.writing import write_case
-from tests.slips.random_arms import random_arm
-from tests.slips.readings import PUBLIC, UR5, Arm, sk120, spoilt
 
 ARMS = {
     "ur3": PUBLIC / "ur_description/urdf/ur3_robot.urdf",

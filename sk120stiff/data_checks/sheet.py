@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.data_checks.passive import unit_displacements
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.data import Frame
 from sk120stiff.robot import Robot, Screws
-from sk120stiff.slips.passive import unit_displacements
 
 MOST = 2000  # rows that tell what is wrong with a file as well as all of them
 STRETCH = 100  # rows that are taken together, so that rows that moved still have their neighbours
