@@ -17,24 +17,26 @@ import importlib
 import json
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-PLACES = ("explain/select", "explain/judge", "explain/localise", "explain/advise", "explain",
-          "identify/checks", "identify/uncertainty")  # fmt: skip
+PLACES = ("explain", "identify", "data_checks", "pilot")
 HEAD = """# The numbers that steer `explain`
 
-Module-level numbers of the search and the judgement, each with the reason that stands beside it in
-its file. Made by `python scripts/thresholds.py --table`; `--folder` prints how the blind score
-changes when each is halved and doubled.
+Module-level numbers of the data checks, the fit, the search, the judgement and the pilot, each with
+the reason that stands beside it in its file. Made by `python scripts/thresholds.py --table`;
+`--folder` prints how the blind score changes when each single number is halved and doubled.
 
 | name | value | file | what it is |
 |---|---|---|---|
 """
+
+
+ARITHMETIC = (ast.Constant, ast.UnaryOp, ast.BinOp, ast.operator, ast.unaryop)
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class Number:
     """One number, where it stands, and why."""
 
     name: str
-    value: float
+    value: float | tuple[float, ...]
     file: str
     reason: str
 
@@ -53,6 +55,7 @@ class Number:
 
     def times(self, factor: float) -> float:
         """The number at another size, of the same kind."""
+        assert not isinstance(self.value, tuple)
         if isinstance(self.value, int):
             return max(round(self.value * factor), 1)
         moved = self.value * factor
@@ -61,35 +64,60 @@ class Number:
 
 def numbers() -> list[Number]:
     """All numbers of `PLACES`, in the order of their files."""
-    files = [f for place in PLACES for f in sorted((ROOT / "sk120stiff" / place).glob("*.py"))]
+    files = [f for place in PLACES for f in sorted((ROOT / "sk120stiff" / place).rglob("*.py"))]
     return [number for file in files for number in _of(file)]
 
 
 def _of(file: Path) -> Iterator[Number]:
     lines = file.read_text(encoding="utf-8").splitlines()
-    for node in ast.parse("\n".join(lines)).body:
-        if not (isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)):
-            continue
-        name, value = node.targets[0].id, node.value
-        number = isinstance(value, ast.Constant) and type(value.value) in (int, float)
-        if not (number and name.isupper()):
-            continue
+    for node, name, value in _constants(ast.parse("\n".join(lines))):
         above = []
         for line in reversed(lines[: node.lineno - 1]):
-            if not line.startswith("# "):
+            if not line.startswith(("# ", "#: ")):
                 break
-            above.insert(0, line.removeprefix("# "))
+            above.insert(0, line.partition(" ")[2])
         beside = [
             line.partition("#")[2].strip() for line in lines[node.lineno - 1 : node.end_lineno]
         ]
         inside = file.relative_to(ROOT / "sk120stiff").as_posix()
-        yield Number(name, value.value, inside, " ".join([*above, *beside]).strip())
+        yield Number(name, value, inside, " ".join([*above, *beside]).strip())
+
+
+def _constants(module: ast.Module) -> Iterator[tuple[ast.Assign, str, float | tuple[float, ...]]]:
+    for node in module.body:
+        if not isinstance(node, ast.Assign):
+            continue
+        target, value = node.targets[0], node.value
+        pairs: Iterable[tuple[ast.expr, ast.expr]] = [(target, value)]
+        if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+            pairs = zip(target.elts, value.elts, strict=True)
+        for each, stands in pairs:
+            if isinstance(each, ast.Name) and each.id.isupper():
+                number = _value(stands)
+                if number is not None:
+                    yield node, each.id, number
+
+
+def _value(node: ast.expr) -> float | tuple[float, ...] | None:
+    """The number or numbers that stand there, sums and products worked out; None: no numbers."""
+    if isinstance(node, ast.Tuple):
+        values = [_value(each) for each in node.elts]
+        single = tuple(x for x in values if isinstance(x, (int, float)))
+        return single if values and len(single) == len(values) else None
+    if any(not isinstance(n, ARITHMETIC) for n in ast.walk(node)):
+        return None
+    value = eval(compile(ast.Expression(node), "", "eval"))  # numbers and + - * / ** alone
+    return value if type(value) in (int, float) else None
 
 
 def table() -> str:
     """The table as Markdown."""
-    rows = [f"| {n.name} | {n.value:g} | {n.file} | {n.reason} |\n" for n in numbers()]
+    rows = [f"| {n.name} | {_shown(n.value)} | {n.file} | {n.reason} |\n" for n in numbers()]
     return HEAD + "".join(rows)
+
+
+def _shown(value: float | tuple[float, ...]) -> str:
+    return ", ".join(f"{x:.10g}" for x in (value if isinstance(value, tuple) else (value,)))
 
 
 def serve(module: str, name: str, value: float) -> None:
@@ -186,7 +214,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     plain = points(asked.folder, asked.out, None, 1.0)
     print(f"as it is: {plain:+.3f} points a case", flush=True)
     for number in numbers():
-        if asked.only and number.name not in asked.only:
+        if isinstance(number.value, tuple) or (asked.only and number.name not in asked.only):
             continue
         half, twice = (points(asked.folder, asked.out, number, f) - plain for f in (0.5, 2.0))
         print(

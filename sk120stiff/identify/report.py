@@ -12,8 +12,8 @@ from sk120stiff.identify.checks.yardstick import yardstick
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements
 
-LEAST_CORRELATION = 0.3
-MOST_LINES = 12
+LEAST_CORRELATION = 0.3  # worth a line
+MOST_LINES = 12  # of one list
 
 
 def fit_report(fit: Fit, *, profile: Sequence[tuple[float, float]] | None = None) -> str:

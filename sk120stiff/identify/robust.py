@@ -22,8 +22,8 @@ from sk120stiff.identify.solving import solve, solve_near
 
 LIMIT = float(np.sqrt(stats.chi2.ppf(0.99, 3)))  # one clean reading in a hundred lies beyond
 MIDDLE = float(stats.chi2.ppf(0.5, 3))
-ROUNDS = 60
-SETTLED = 1e-6
+ROUNDS = 60  # of reweighting, at most
+SETTLED = 1e-6  # largest change of a weight after which rounds end
 
 
 def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:

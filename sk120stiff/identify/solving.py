@@ -14,7 +14,7 @@ from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method, minimise
 from sk120stiff.measurements import EXACT
 
-HALVINGS = 12
+HALVINGS = 12  # of estimates under which the arm has no equilibrium
 
 
 def solve(problem: Problem, *, method: Method = "trf") -> Fit:

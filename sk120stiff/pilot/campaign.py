@@ -22,7 +22,7 @@ from sk120stiff.pilot.linear import LinearMap, Sums
 from sk120stiff.plan import Pool
 from sk120stiff.plan.design import DISPLACEMENT
 
-SURE = 0.95
+SURE = 0.95  # probability from which on a name, or that nothing is missing, stands
 OPEN = 0.05  # probability from which on another name counts, against a sure one or beside it
 SPARE = 3  # numbers read beyond the parameters of a name: else no misfit could speak against it
 APART = 3.3  # √λ at which two names are told apart

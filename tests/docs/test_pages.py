@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import re
+import runpy
 from pathlib import Path
 from types import ModuleType
 
@@ -24,6 +25,13 @@ def test_a_page_is_in_the_contents(page: Path) -> None:
     contents = (DOCS / "index.md").read_text(encoding="utf-8")
     name = page.relative_to(DOCS).with_suffix("").as_posix()
     assert name == "index" or f"\n{name}\n" in contents
+
+
+def test_every_tuned_number_stands_in_the_table_with_its_reason() -> None:
+    script = runpy.run_path(str(DOCS.parent / "scripts" / "thresholds.py"))
+    assert [n.name for n in script["numbers"]() if not n.reason] == []
+    now = (DOCS / "THRESHOLDS.md").read_text(encoding="utf-8")
+    assert now == script["table"](), "write it anew: python scripts/thresholds.py --table"
 
 
 @pytest.mark.parametrize("name", ["fit", "explain", "own_effect"])

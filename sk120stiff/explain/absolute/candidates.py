@@ -34,7 +34,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter
 from sk120stiff.robot import Robot
 
-FOLDS = 5
+FOLDS = 5  # parts in which poses are left out, as is usual
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _SHOWN_BY_WEIGHT = (LinearElastic, LostMotion, GearHardening)

@@ -15,7 +15,7 @@ USUAL = 2.0  # logarithm of odds of what every arm has: frames a little off, joi
 RIVAL = 3.0  # loss of evidence at which another cause explains as much
 SHARE = 0.003  # of the held-out gap that a cause must take off to be named on top of others
 SURE = 2.5  # standard errors of the held-out gain over poses
-MOST = 40
+MOST = 40  # causes of one answer, where the poses do not stop it before
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from sk120stiff.model import Model, Parameter, write_model
 from sk120stiff.model.pose_reading import read_poses
 from sk120stiff.model.prediction_table import Columns
 
-SURE = 1.0 - 1e-9
+SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes certain
 
 
 def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str, Any]:

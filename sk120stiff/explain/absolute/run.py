@@ -41,7 +41,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
-LEVEL = 0.01
+LEVEL = 0.01  # probability of noise alone below which something is missing
 LARGEST = 5  # places told
 MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted

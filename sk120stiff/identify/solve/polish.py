@@ -21,10 +21,10 @@ from sk120stiff.errors import Refusal
 Evaluate = Callable[[Array], tuple[Array, Array]]
 
 FAINTEST = 0.1  # a change by all that is plausible that shows by less of the noise is not seen
-STEPS = 100
+STEPS = 100  # of Newton, at most; four more for every parameter
 PATIENCE = 20  # steps after which the misfit must have fallen
 FALLEN = 1e-4  # by more than this share of what one reading adds to it
-FINE = 1e-12
+FINE = 1e-12  # relative step at which nothing is left to gain
 LEARNED = 1e-6  # relative step below which rounding hides the curvature
 SOUND = 0.1  # least curvature over that of Gauss and Newton for which the learned one is trusted
 GRAIN = 1e-9  # relative rounding of a sum of squares of whitened gaps

@@ -14,7 +14,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.solve.polish import Evaluate, Minimum, polish
 
-TRIALS = 20
+TRIALS = 20  # values looked at for one end of an interval
 CLOSE = 1e-3  # of the distance that is sought
 
 
