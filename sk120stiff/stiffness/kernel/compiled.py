@@ -17,7 +17,6 @@ logger = logging.getLogger(__name__)
 # Divisions follow IEEE 754 instead of raising, and a product may be fused with the sum it goes
 # into; sums are never reordered.
 _OPTIONS: dict[str, Any] = {
-    "_nrt": False,  # nothing is allocated: no reference is counted, which halves the compiling
     "nogil": True,
     "error_model": "numpy",
     "fastmath": {"contract", "nsz"},
