@@ -14,11 +14,11 @@ from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
-from sk120stiff.cli.plan_check import checked, points_of
-from sk120stiff.cli.plan_chosen import precise, telling
-from sk120stiff.cli.plan_places import Places, places_of
-from sk120stiff.cli.plan_program import in_order, language_for, write_route
-from sk120stiff.cli.plan_shown import as_keys, height_words, plan_table, write_page
+from sk120stiff.cli.plan.check import checked, points_of
+from sk120stiff.cli.plan.chosen import precise, telling
+from sk120stiff.cli.plan.places import Places, places_of
+from sk120stiff.cli.plan.program import in_order, language_for, write_route
+from sk120stiff.cli.plan.shown import as_keys, height_words, plan_table, write_page
 from sk120stiff.cli.tables import progress_bar
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from sk120stiff.cli.plan_effects import named_parameters, two_effects
+from sk120stiff.cli.plan.effects import named_parameters, two_effects
 from sk120stiff.cli.tables import table
 from sk120stiff.effects import load_cases_of
 from sk120stiff.identify import why_unseen
