@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +10,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.plan import Cell, assumed_around, cell_from_data, read_cell
@@ -90,3 +92,21 @@ def as_measured(robot: Robot, cell: Cell, known: Measurements | None) -> Cell:
             [np.einsum("nij,nj->ni", turn, part) for part in (wrench[:, :3], wrench[:, 3:])], axis=1
         )
     return cell_from_data(robot, cell, known.joints, wrench, known.point)
+
+
+def height_words(
+    heights: Array, labels: Sequence[str], floor: float, *, give: str = "--floor"
+) -> str:
+    """How low the arm comes, and what the floor is.
+
+    Args:
+        heights: (N,) of the lowest part that moves, base frame [m].
+        labels: (N,) what the rows are called.
+        floor: Height of the floor there [m]; none where it is not finite.
+        give: What states a floor.
+    """
+    row = int(np.argmin(heights))
+    text = f"The arm's lowest point is {1e3 * heights[row]:.0f} mm high (base frame, {labels[row]})"
+    if not np.isfinite(floor):
+        return f"{text}: give {give} if that is too low."
+    return f"{text}, the floor {1e3 * floor:.0f} mm."

@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.arrays import Array
-from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
+from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, height_words, opened_cell
 from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
@@ -20,7 +20,7 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.model import Model, seen_from
-from sk120stiff.plan import Verdict, feasible
+from sk120stiff.plan import Verdict, feasible, lowest_points
 from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.units import from_si, parse_values
 from sk120stiff.workspace import (
@@ -216,7 +216,10 @@ def command(
             compliance=minimise == Minimise.compliance,
         )  # fmt: skip
     kept = replace(around, angle_margin=max(around.angle_margin, float(margin)))
-    assumed = assumed_at_work(robot, kept)
+    heights = lowest_points(robot, found.a, np.zeros(3), around)
+    lines = [f"line {line}" for line in given.table.lines]
+    low = height_words(heights, lines, around.floor, give="floor: in cell.yaml")
+    assumed = (low, *assumed_at_work(robot, kept))
     document = {
         "robot": robot.name,
         "rows": given.count,
@@ -237,6 +240,7 @@ def command(
         },
         "out": str(out),
         "cell": around.source or None,
+        "lowest_m": float(heights.min()),
         "assumed": assumed,
         "picture": picture,
         "page": page,

@@ -13,7 +13,7 @@ from sk120stiff.plan.feasible import Verdict, feasible
 from sk120stiff.plan.planned import numbered, plan, promised, to_be_taken
 from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.rig import Rig
-from sk120stiff.plan.route import NoWay, Route, route
+from sk120stiff.plan.route import Jump, NoWay, Route, jumps, route
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
 from sk120stiff.plan.spread import random_choice, well_spread
@@ -28,6 +28,7 @@ __all__ = [
     "Cell",
     "Choice",
     "Design",
+    "Jump",
     "NoWay",
     "Pool",
     "Rig",
@@ -45,6 +46,7 @@ __all__ = [
     "discriminating_readings",
     "feasible",
     "feasible_pool",
+    "jumps",
     "lowest_points",
     "numbered",
     "plan",

@@ -56,7 +56,7 @@ class Pool:
 def random_pool(
     robot: Robot,
     *,
-    poses: int | Array,
+    poses: int | np.integer | Array,
     directions: int,
     force: float,
     point: Array,
@@ -80,12 +80,12 @@ def random_pool(
         Refusal: Next to no pose can be had.
     """
     rng = np.random.default_rng(seed)
-    if not isinstance(poses, int):
-        a = poses
+    if np.ndim(poses):
+        a = np.asarray(poses, dtype=float)
     elif cell is None:
-        a = random_poses(robot, poses, rng)
+        a = random_poses(robot, int(poses), rng)
     else:
-        a = poses_in(robot, poses, rng, cell, point)
+        a = poses_in(robot, int(poses), rng, cell, point)
     pushed = robot.screws(a, point=point if force_point is None else force_point).position
     drawn = (cell or Cell()).rig.draw(pushed, directions, rng)
     loads = np.zeros((drawn.shape[0] * drawn.shape[1], 6))
@@ -97,7 +97,7 @@ def random_pool(
 def feasible_pool(
     robot: Robot,
     *,
-    poses: int | Array,
+    poses: int | np.integer | Array,
     directions: int,
     force: float,
     point: Array,

@@ -22,7 +22,7 @@ from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.pool import poses_in
 from sk120stiff.plan.surroundings import scene_of
 from sk120stiff.robot import Robot
-from sk120stiff.robot.collision import Scene
+from sk120stiff.robot.collision import Pair, Scene
 
 SPEED_SHARE = 0.2  # of the joints' speeds in the URDF, for a campaign
 USUAL_SPEED, USUAL_SLIDE = 0.3, 0.1  # rad/s and m/s where it states none
@@ -30,19 +30,41 @@ STEP, SLIDE_STEP = np.deg2rad(2.0), 0.01  # of a way between two questions
 ROADMAPS = (120, 500, 1500)  # random poses, more where fewer do not do
 NEIGHBOURS = 15  # edges of each
 ATTEMPTS = 400  # ways through the roadmap that are asked before it is given up
+ASKED = 3  # other poses of a plan that are asked which of two is the trapped one
 SETTLING = 20.0  # s at a reading: to come to rest, to load, to read
 
 
 class NoWay(Refusal):
-    """No free way to a pose was found; `pose` is its index."""
+    """No free way between two poses was found; `pose` is the index of the one to leave out."""
 
-    def __init__(self, robot: str, here: int, there: int) -> None:
+    def __init__(self, robot: str, here: int, there: int, trapped: int) -> None:
         super().__init__(
             f"no free way was found from pose {here + 1} of the plan to pose {there + 1}",
             where=robot,
             remedy="Take another --seed, or leave one of them out.",
         )
-        self.pose = there
+        self.pose = trapped
+
+
+@dataclass(frozen=True, eq=False)
+class Jump:
+    """A straight way from a pose to the next one that is not free.
+
+    Attributes:
+        row: Index of the pose from which it goes.
+        a: (n,) coordinates on the way that cannot be.
+        touching: Pairs of solids that touch there; none where a closed loop cannot be closed.
+    """
+
+    row: int
+    a: Array
+    touching: tuple[Pair, ...]
+
+    @property
+    def words(self) -> str:
+        """What is met, in words."""
+        pairs = ", ".join(f"{first} touches {second}" for first, second in self.touching)
+        return pairs or "the closed loops cannot be closed"
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +101,7 @@ def route(
     speed = joint_speeds(robot)
     order = _ordered(_times(poses, poses, speed))
     stops, which, seconds = [poses[order[0]]], [int(order[0])], 0.0
-    roadmap: Array | None = None
+    roadmap = poses
     for here, there in itertools.pairwise(order):
         way = [poses[here], poses[there]]
         if not straight_is_free(robot, scene, way[0], way[1]):
@@ -87,14 +109,15 @@ def route(
             ends = int(here), int(there)
             found: list[Array] | None = None
             for size in ROADMAPS:
-                if roadmap is None or len(roadmap) < len(poses) + size:
+                if len(roadmap) < len(poses) + size:
                     rng = np.random.default_rng(seed)
                     roadmap = np.concatenate([poses, poses_in(robot, size, rng, cell, at)])
                 found = _around(robot, scene, roadmap, *ends, speed)
                 if found is not None:
                     break
             if found is None:
-                raise NoWay(robot.name, *ends)
+                trapped = _trapped(robot, scene, roadmap, len(poses), ends, speed)
+                raise NoWay(robot.name, *ends, trapped)
             way = found
         for k, stop in enumerate(way[1:], 1):
             stops.append(stop)
@@ -115,20 +138,42 @@ def joint_speeds(robot: Robot) -> Array:
 
 def straight_is_free(robot: Robot, scene: Scene, start: Array, end: Array) -> bool:
     """Can the joints go straight from one pose to another?"""
+    ends = np.array([start, end])
+    free = robot.closes(ends).all() and scene.free(ends).all()
+    return bool(free) and _met(robot, scene, start, end) is None
+
+
+def jumps(
+    robot: Robot, cell: Cell, a: ArrayLike, *, point: ArrayLike | None = None
+) -> tuple[Jump, ...]:
+    """What is met where joints go straight from each of the poses (N, n) to the next.
+
+    The poses themselves are not asked: `feasible` does that.
+    """
+    poses = np.atleast_2d(robot.coordinates(a))
+    scene = scene_of(robot, cell, point)
+    found = []
+    for k, (start, end) in enumerate(itertools.pairwise(poses)):
+        met = _met(robot, scene, start, end)
+        if met is not None:
+            pairs = scene.contacts(met[None])[0] if robot.closes(met[None])[0] else ()
+            found.append(Jump(k, met, pairs))
+    return tuple(found)
+
+
+def _met(robot: Robot, scene: Scene, start: Array, end: Array) -> Array | None:
+    """A pose (n,) between two at which something touches or a loop stays open; None: none does."""
     longest = np.abs(end - start) / np.where(robot.prismatic, SLIDE_STEP, STEP)
-    count = max(int(np.ceil(longest.max())), 1)
-    shares = _halving(count)
-    between = start + shares[:, None] * (end - start)
-    if not robot.closes(between).all():
-        return False
-    return all(bool(scene.free(row[None])[0]) for row in between)
-
-
-def _halving(count: int) -> Array:
-    """Shares of a way, the middle first: what blocks it is met soon."""
-    steps = np.arange(1, count)
-    key = [int(k & -k) for k in steps]
-    return np.concatenate([steps[np.argsort(key, kind="stable")[::-1]] / count, [0.0, 1.0]])
+    steps = np.arange(1, int(np.ceil(longest.max())))
+    if not len(steps):
+        return None
+    # the middle first: what blocks the way is met soon
+    halving = np.argsort([int(k & -k) for k in steps], kind="stable")[::-1]
+    between = start + (steps[halving] / (len(steps) + 1))[:, None] * (end - start)
+    opened = ~robot.closes(between)
+    if opened.any():
+        return np.asarray(between[int(np.argmax(opened))])
+    return next((row for row in between if not scene.free(row[None])[0]), None)
 
 
 def _times(a: Array, b: Array, speed: Array) -> Array:
@@ -156,6 +201,28 @@ def _ordered(times: Array) -> Index:
 
 def _length(times: Array, order: Sequence[int]) -> float:
     return float(times[order[:-1], order[1:]].sum())
+
+
+def _trapped(
+    robot: Robot, scene: Scene, nodes: Array, count: int, ends: tuple[int, int], speed: Array
+) -> int:
+    """Which of two poses without a way between them fewer of the other poses are driven to from.
+
+    Args:
+        nodes: The roadmap; its first `count` nodes are the poses of the plan.
+        ends: The two; where nothing tells, the second one.
+    """
+    times = _times(nodes[:count], nodes[:count], speed)
+    others = [int(k) for k in np.argsort(times[list(ends)].sum(axis=0)) if k not in ends]
+
+    def driven(start: int, end: int) -> bool:
+        return (
+            straight_is_free(robot, scene, nodes[start], nodes[end])
+            or _around(robot, scene, nodes, start, end, speed) is not None
+        )
+
+    reached = [sum(driven(end, other) for other in others[:ASKED]) for end in ends]
+    return ends[0] if reached[0] < reached[1] else ends[1]
 
 
 def _around(

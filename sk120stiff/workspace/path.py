@@ -27,7 +27,7 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.files import guarded_cell, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
-from sk120stiff.robot.rotations import rotation_from_rpy
+from sk120stiff.robot.rotations import rotation_from_rpy, rotation_vector
 from sk120stiff.units import from_si, is_kind, to_si
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, near, solve_inverse, starting_poses
@@ -38,7 +38,8 @@ STARTS = 32  # poses from which the first point of a path is sought
 SAME_BRANCH = 0.05  # rad or m between solutions that count as one
 NEIGHBOURS = 0.1  # rad or m: neighbours of one block that are farther apart are sought one by one
 LONGEST_BLOCK = 1024  # points sought together
-AGREE = 1e-4  # m by which joints and positions of one point may differ, as rounded by people
+# m and rad by which joints and placement of one point may differ, as rounded by people
+AGREE, AGREE_TURNED = 1e-4, 2e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,19 +200,28 @@ def joints_along(
 
 
 def _agree(path: LoadedPath, arm: ElasticArm) -> None:
-    """Positions that stand beside joints, held against them."""
+    """Positions and orientations that stand beside joints, held against them."""
     if path.joints is None or path.position is None:
         return
-    away = np.linalg.norm(arm.kinematics(path.joints).position - path.position, axis=1)
-    worst = int(np.argmax(away))
-    if away[worst] > AGREE:
-        raise InputError(
-            f"the joints put {arm.frame} {1e3 * away[worst]:.3g} mm away from the position beside "
-            "them",
-            where=f"{path.table.path}, line {path.table.lines[worst]}",
-            remedy="Delete the columns that are not meant: the joints, or x, y, z (with roll, "
-            "pitch, yaw).",
-        )
+    stands = arm.kinematics(path.joints)
+    away = np.linalg.norm(stands.position - path.position, axis=1)
+    worst, what = int(np.argmax(away)), "position"
+    far = f"{1e3 * away[worst]:.3g} mm"
+    if away[worst] <= AGREE:
+        if path.rotation is None:
+            return
+        turn = np.swapaxes(stands.rotation, 1, 2) @ path.rotation
+        off = np.linalg.norm(rotation_vector(turn), axis=1)
+        worst, what = int(np.argmax(off)), "orientation (roll, pitch, yaw)"
+        far = f"{np.rad2deg(off[worst]):.3g} deg"
+        if off[worst] <= AGREE_TURNED:
+            return
+    raise InputError(
+        f"the joints put {arm.frame} {far} away from the {what} beside them",
+        where=f"{path.table.path}, line {path.table.lines[worst]}",
+        remedy="Delete the columns that are not meant: the joints, or x, y, z (with roll, pitch, "
+        "yaw).",
+    )
 
 
 def _branches(

@@ -1,5 +1,6 @@
 """`sk120stiff plan`: files for the measurement, and what they promise."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from sk120stiff.measurements import read_measurements
 from sk120stiff.plan import NoWay, Pool
 from sk120stiff.robot import load_robot
+from tests.plan.test_cell import ARM
 
 MODEL = "robots/motoman_sk120/model.yaml"
 DATA = "robots/motoman_sk120/data/table2_measured.csv"
@@ -204,7 +206,7 @@ def test_poses_are_given_as_places_of_the_point(run, tmp_path: Path) -> None:
 
 
 def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, monkeypatch):
-    from sk120stiff.cli import plan as command
+    from sk120stiff.cli.plan import entry as command
 
     asked: list[np.ndarray] = []
     drive = command.in_order
@@ -212,7 +214,7 @@ def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, 
     def blocked(plan, robot, cell, seed):
         asked.append(plan.joints)
         if len(asked) == 1:
-            raise NoWay(robot.name, 0, 1)
+            raise NoWay(robot.name, 0, 1, 1)
         return drive(plan, robot, cell, seed)
 
     monkeypatch.setattr(command, "in_order", blocked)
@@ -225,13 +227,13 @@ def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, 
 
 @pytest.mark.parametrize("said", ["no free way to it was found", "the motors hold no load there"])
 def test_a_place_that_falls_out_is_named(run, tmp_path: Path, monkeypatch, said: str) -> None:
-    from sk120stiff.cli import plan as command
+    from sk120stiff.cli.plan import entry as command
 
     drive, drawn = command.in_order, command.feasible_pool
 
     def blocked(plan, robot, cell, seed):
         if "B" in plan.poses:
-            raise NoWay(robot.name, 0, plan.poses.index("B"))
+            raise NoWay(robot.name, 0, *2 * [plan.poses.index("B")])
         return drive(plan, robot, cell, seed)
 
     def unheld(robot, **options):
@@ -252,3 +254,43 @@ def test_a_place_that_falls_out_is_named(run, tmp_path: Path, monkeypatch, said:
     assert outcome.code == 0, outcome.stderr
     assert {row["pose"] for row in outcome.document["poses"]} == {"A", "C"}
     assert f"B: {said}." in outcome.document["remarks"]
+
+
+@pytest.fixture
+def posted(tmp_path: Path) -> Path:
+    """A planar arm, with a post before it where it is stretched."""
+    arm = tmp_path / "arm.urdf"
+    arm.write_text(re.sub(r'effort="\d+"', 'effort="1000"', ARM), encoding="utf-8")
+    (tmp_path / "cell.yaml").write_text(
+        "pedestal: none\nobstacles:\n- {name: post, sphere: 0.1, xyz: [1.4, 0, 0], unit: m}\n",
+        encoding="utf-8",
+    )
+    return arm
+
+
+def test_a_robot_may_stand_first_and_jumps_between_rows_are_told(run, posted: Path) -> None:
+    """Rows that are free each, with a post between two of them: told, and no refusal."""
+    made = run("plan", str(posted), "--count", "3", *FEW, "--json")
+    assert made.code == 0, made.stderr
+    assert len(made.document["poses"]) == 3
+    rows = posted.with_name("rows.csv")
+    way = ["30,0,0,0,0", "20,0,0,0,0", "-30,0,0,0,0", "-31,0,0,0,0"]
+    rows.write_text("\n".join(["a[deg],b[deg],fx[N],fy[N],fz[N]", *way]) + "\n", encoding="utf-8")
+    found = run("plan", str(posted), "--check", str(rows), "--json")
+    assert found.code == 0 and found.document["feasible"] == 4, found.document
+    (jump,) = found.document["jumps"]
+    assert jump["lines"] == [3, 4] and jump["meets"] == "fore touches post"
+    said = run("plan", str(posted), "--check", str(rows)).stdout
+    assert "fore touches post" in said and "put points between" in said
+
+
+def test_rows_are_followed_in_the_order_in_which_they_were_read(run, posted: Path) -> None:
+    file = posted.with_name("plan.csv")
+    rows = ["p1,30,0,0,0,9,1", "p2,-30,0,0,0,9,3", "p3,28,0,0,0,9,2"]
+    head = "pose,a[deg],b[deg],fx[N],fy[N],fz[N],order"
+    file.write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    file.with_suffix(".yaml").write_text(
+        "robot: arm.urdf\nforce: {frame: base}\ndisplacement: {zero: separate}\n", encoding="utf-8"
+    )
+    found = run("plan", "--check", str(file), "--json").document
+    assert [jump["poses"] for jump in found["jumps"]] == [["p3", "p2"]]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.errors import Refusal
-from sk120stiff.plan import Cell, route
+from sk120stiff.plan import Cell, NoWay, jumps, route
 from sk120stiff.plan.route import joint_speeds
 from sk120stiff.robot import load_robot
 from sk120stiff.robot.solids import Solid
@@ -52,3 +52,32 @@ def test_the_way_goes_around_a_post(arm) -> None:
     wall = Solid("wall", "base", np.eye(4), "box", (4.0, 4.0, 0.02))
     with pytest.raises(Refusal, match="no free way"):
         route(arm, Cell(pedestal=0.0, obstacles=(wall,)), a)
+
+
+def ball(name: str, x: float, z: float) -> Solid:
+    T = np.eye(4)
+    T[[0, 2], 3] = x, z
+    return Solid(name, "base", T, "sphere", (0.1,))
+
+
+def test_the_pose_that_is_trapped_is_the_one_to_leave_out(arm) -> None:
+    """The first pose holds the hand between two posts; the others all go to each other."""
+    posts = ball("above", 1.4, 0.22), ball("below", 1.4, -0.22)
+    cell = Cell(pedestal=0.0, clearance=0.0, obstacles=posts)
+    free = [[-1.2, 0.3], [-1.4, -0.2], [-1.0, -0.6], [-1.6, 0.4]]
+    with pytest.raises(NoWay) as caught:
+        route(arm, cell, np.array([[0.0, 0.0], *free]))
+    assert caught.value.pose == 0
+    with pytest.raises(NoWay) as caught:
+        route(arm, cell, np.array([*free, [0.0, 0.0]]))
+    assert caught.value.pose == 4
+
+
+def test_what_stands_between_two_poses_is_named(arm) -> None:
+    cell = Cell(pedestal=0.0, clearance=0.0, obstacles=(ball("post", 1.4, 0.0),))
+    a = np.array([[0.5, 0.0], [0.3, 0.0], [-0.5, 0.0], [-0.6, 0.0]])
+    (found,) = jumps(arm, cell, a)
+    assert found.row == 1 and found.touching == (("fore", "post"),)
+    t = float(found.a[0])  # the pose itself, by the spheres' own distance
+    assert np.hypot(1.4 * np.cos(t) - 1.4, 1.4 * np.sin(t)) < 0.2
+    assert jumps(arm, cell, a[[0, 1]]) == () == jumps(arm, cell, a[:1])

@@ -19,7 +19,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.settings import find_settings
 from sk120stiff.measurements.table import read_table
 from sk120stiff.model import joint_spring_model
-from sk120stiff.plan import Cell, assumptions, feasible
+from sk120stiff.plan import Cell, assumptions, feasible, jumps
 from sk120stiff.robot import Robot
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import elastic_arm, joints_along, read_path
@@ -33,6 +33,7 @@ class _Rows(NamedTuple):
         wrench: (N, 6) at `force_point`, base axes [N, N·m].
         point, force_point: (3,) in the tool frame [m].
         assumed: Sentences about what was taken for granted.
+        otherwise: How to drive another way.
     """
 
     robot: Robot
@@ -44,6 +45,7 @@ class _Rows(NamedTuple):
     point: Array
     force_point: Array
     assumed: tuple[str, ...]
+    otherwise: str
 
 
 def checked(
@@ -53,7 +55,9 @@ def checked(
     given: Path | None,
     stated: Callable[[Cell], Cell],
 ) -> Answer:
-    """Every row that is used held against the cell.
+    """Every row that is used held against the cell, and the joints' straight way to the next one.
+
+    What stands in the way between two rows is told, not refused: there may be another way.
 
     Args:
         path: The plan, readings, or a path by joints.
@@ -75,11 +79,21 @@ def checked(
         )
     ]
     bad = [row for row in rows if not row["ok"]]
+    met = jumps(used.robot, used.cell, used.a, point=used.point)
+    ways: list[dict[str, object]] = [
+        {
+            "lines": [rows[k]["line"] for k in (way.row, way.row + 1)],
+            "poses": [used.poses[k] for k in (way.row, way.row + 1)],
+            "meets": way.words,
+        }
+        for way in met
+    ]
     document = {
         "robot": used.robot.name,
         "cell": used.cell.source or None,
         "rows": rows,
         "feasible": len(rows) - len(bad),
+        "jumps": ways,
         "assumed": used.assumed,
     }
     said: list[object] = [f"{len(rows) - len(bad)} of {len(rows)} rows can be driven and held."]
@@ -88,6 +102,15 @@ def checked(
             (r["line"], r["pose"], text) for r in bad for text in verdict.faults[rows.index(r)]
         ]
         said.insert(0, table("What is wrong", ["line", "pose", "fault"], lines))
+    if ways:
+        said.append(
+            table(
+                "Not straight from one to the next",
+                ["from line", "to line", "on the way"],
+                [(*(rows[k]["line"] for k in (way.row, way.row + 1)), way.words) for way in met],
+            )
+        )
+        said.append(f"Joints that go straight meet something {len(ways)} times; {used.otherwise}")
     return Answer(document, [*said, *used.assumed], exit_code=int(bool(bad)))
 
 
@@ -96,10 +119,14 @@ def _read(path: Path, given: Path | None, stated: Callable[[Cell], Cell]) -> _Ro
     data, robot = open_data(path)
     cell = stated(opened_cell(robot, given, path))
     used = data.masked()
+    when = used.order if used.order is not None else used.time
+    if when is not None:  # as it was driven
+        used = used.select(np.argsort(when, kind="stable"))
     load_cases = load_cases_of(robot, used)
     return _Rows(
         robot, cell, tuple(used.line), used.pose, load_cases.a, load_cases.wrench,
         used.point, used.force_point, assumptions(robot, cell, used.point),
+        "drive around it by hand, or let 'sk120stiff plan --program FILE' find order and way.",
     )  # fmt: skip
 
 
@@ -133,7 +160,10 @@ def _path(
         f"Loads act at {1e3 * at[0]:g}, {1e3 * at[1]:g}, {1e3 * at[2]:g} mm in {robot.tool_frame}.",
         *assumed_at_work(robot, cell),
     )
-    return _Rows(robot, cell, found.table.lines, called, a, found.wrench, at, at, assumed)
+    return _Rows(
+        robot, cell, found.table.lines, called, a, found.wrench, at, at, assumed,
+        "put points between these two, or choose another posture.",
+    )  # fmt: skip
 
 
 def points_of(known: Measurements | None, text: str | None) -> tuple[Array, Array]:

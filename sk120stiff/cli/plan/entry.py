@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from sk120stiff.cli.cell import CellOption, as_measured, opened_cell
+from sk120stiff.cli.cell import CellOption, as_measured, height_words, opened_cell
 from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
@@ -18,7 +18,7 @@ from sk120stiff.cli.plan.check import checked, points_of
 from sk120stiff.cli.plan.chosen import precise, telling
 from sk120stiff.cli.plan.places import Places, places_of
 from sk120stiff.cli.plan.program import in_order, language_for, write_route
-from sk120stiff.cli.plan.shown import as_keys, height_words, plan_table, write_page
+from sk120stiff.cli.plan.shown import as_keys, plan_table, write_page
 from sk120stiff.cli.tables import progress_bar
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
@@ -42,8 +42,12 @@ MOST_LEFT_OUT = 5  # poses to which no way is found, before that is the answer
 
 
 def command(
+    robot: Annotated[
+        str | None,
+        typer.Argument(metavar="ROBOT", help="Robot or model file; --model does as well."),
+    ] = None,
     model: Annotated[
-        Path | None, typer.Option("--model", metavar="MODEL", help="Model file (YAML).")
+        Path | None, typer.Option("--model", metavar="MODEL", help="Model file (YAML), or a robot.")
     ] = None,
     count: Annotated[int | None, typer.Option(min=1, help="Number of poses.")] = None,
     loads: Annotated[int, typer.Option(min=1, help="Number of loads at each pose.")] = 1,
@@ -52,7 +56,7 @@ def command(
         typer.Option(
             metavar="CSV",
             help="Plan nothing: say row by row what is wrong with this plan, these readings, or "
-            "(with --model) this path by joints, as 'posture' writes it.",
+            "(of ROBOT) this path by joints, as 'posture' writes it.",
         ),
     ] = None,
     between: Annotated[
@@ -172,17 +176,19 @@ def command(
     the URDF and cell.yaml tell: limits, efforts, collisions, floor, rig, tracker. `gain` is the
     precision (or evidence) over that of random poses.
 
-    Example: sk120stiff plan --model model.yaml --count 15 --floor '-0.8 m' --out plan.csv
+    Example: sk120stiff plan model.yaml --count 15 --floor '-0.8 m' --out plan.csv
     Example: sk120stiff plan --model model.yaml --places reach.csv --page plan.html
     Example: sk120stiff plan --check plan.csv --cell cell.yaml
     Example: sk120stiff plan --check best.csv --model model.yaml
     """
     if check is not None:
-        return checked(check, model, point, cell, lambda found: _stated(found, lowest, box))
-    if model is None or (count is None and places is None):
+        return checked(
+            check, model or _file(robot), point, cell, lambda found: _stated(found, lowest, box)
+        )
+    if (robot is None and model is None) or (count is None and places is None):
         raise InputError(
-            "a plan needs --model and --count, or --places",
-            remedy="Write --model model.yaml --count 12; --check plan.csv checks one there is.",
+            "a plan needs a robot or --model, and --count or --places",
+            remedy="Write plan model.yaml --count 12; --check plan.csv checks one there is.",
         )
     if axis is not None and places is None:
         raise InputError("this says how the tool stands at --places", where="--tool-axis")
@@ -191,9 +197,9 @@ def command(
     will_write(page, "--page")
     will_draw(None, page)
     language = None if program is None else language_for(program)
-    known, start = _opened(model, data)
+    known, start = _opened(robot, model, data)
     at, force_at = points_of(known, point)
-    within = _stated(opened_cell(start.robot, cell, data, model), lowest, box)
+    within = _stated(opened_cell(start.robot, cell, data, model or _file(robot)), lowest, box)
     within = as_measured(start.robot, within, known)
     given: Places | None = None
     wanted_poses = count or 0
@@ -290,7 +296,7 @@ def command(
         "page": page,
         "out": out,
     }
-    said += [*remarks, height_words(plan, heights, within.floor)]
+    said += [*remarks, height_words(heights, plan.pose, within.floor)]
     if page is not None:
         write_page(page, start, plan)
         said.append(f"Shown in {page}.")
@@ -300,11 +306,17 @@ def command(
     return Answer(document, [plan_table(plan), *said])
 
 
-def _opened(model: Path, data: Path | None) -> tuple[Measurements | None, Model]:
+def _opened(
+    named: str | None, model: Path | None, data: Path | None
+) -> tuple[Measurements | None, Model]:
     if data is None:
-        return None, open_model(str(model))
+        return None, open_model(named or str(model), model if named else None)
     known, robot = open_data(data)
-    return known, model_for(robot, model)
+    return known, model_for(robot, model or str(named))
+
+
+def _file(named: str | None) -> Path | None:
+    return None if named is None else Path(named)
 
 
 def _sigma(known: Measurements | None, text: str | None) -> float:

@@ -7,21 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.arrays import Array
 from sk120stiff.cli.tables import table
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
-
-
-def height_words(plan: Measurements, heights: Array, floor: float) -> str:
-    """How low the arm comes, and what the floor is."""
-    row = int(np.argmin(heights))
-    text = (
-        f"The arm's lowest point is {1e3 * heights[row]:.0f} mm high (base frame, {plan.pose[row]})"
-    )
-    if not np.isfinite(floor):
-        return f"{text}: give --floor if that is too low."
-    return f"{text}, the floor {1e3 * floor:.0f} mm."
 
 
 def as_keys(plan: Measurements) -> list[dict[str, object]]:
