@@ -135,8 +135,7 @@ class Belief:
     def _beside(self, first: int) -> list[int]:
         """Effects that explain most of what one leaves."""
         columns = self._columns((first,))
-        gram = self.sums.gram[np.ix_(columns, columns)]
-        gram = gram + np.diag(self._precision(columns, self.linear.spread[-1], 3.0))
+        gram = self.sums.gram[np.ix_(columns, columns)] + np.diag(self._precision(columns, 3.0))
         inverse = np.linalg.inv(gram)
         gains = []
         for e, own in enumerate(self.linear.columns):
@@ -149,8 +148,10 @@ class Belief:
     def _columns(self, members: Sequence[int]) -> Index:
         return np.concatenate([self.linear.base, *(self.linear.columns[e] for e in members)])
 
-    def _precision(self, columns: Index, spread: Array, size: float) -> Array:
-        return np.concatenate([spread**-2.0, np.full(len(columns) - len(spread), size**-2)])
+    def _precision(self, columns: Index, size: float) -> Array:
+        k = len(self.linear.base)
+        own = np.full(len(columns) - k, size**-2)
+        return np.concatenate([self.linear.spread**-2.0, own])
 
     def _weighed(self, members: tuple[int, ...], prior: float) -> Hypothesis:
         columns, k = self._columns(members), len(self.linear.base)
@@ -158,9 +159,7 @@ class Belief:
         bound = self.linear.positive[columns].copy()
         bound[:k] = False
         sizes = SIZES if members else (1.0,)
-        precision = np.array(  # (S, k)
-            [self._precision(columns, near, size) for near in self.linear.spread for size in sizes]
-        )
+        precision = np.array([self._precision(columns, size) for size in sizes])  # (S, k)
         inner = gram + precision[:, :, None] * np.eye(len(columns))
         covariances = np.linalg.inv(inner)
         means = covariances @ moment
@@ -177,5 +176,5 @@ class Belief:
         mean = share @ means
         off = means - mean
         covariance = np.einsum("s,sij->ij", share, covariances + off[:, :, None] * off[:, None])
-        total = evidence - float(np.log(len(precision))) + prior
+        total = evidence - float(np.log(len(sizes))) + prior
         return Hypothesis(members, total, columns, mean, covariance, max(misfit, 0.0))

@@ -89,9 +89,7 @@ def separation(
     signature = X[:, :, own] @ first.mean[np.isin(first.columns, own)]
     other = X[:, :, second.columns].reshape(-1, len(second.columns))
     flat = signature.reshape(-1)
-    ridge = np.concatenate(
-        [belief.linear.spread[-1] ** -1.0, np.full(len(second.columns) - k, 0.1)]
-    )
+    ridge = np.concatenate([belief.linear.spread**-1.0, np.full(len(second.columns) - k, 0.1)])
     A = np.vstack([other, np.diag(ridge)])
     b = np.concatenate([flat, np.zeros(len(ridge))])
     left = flat - other @ np.linalg.lstsq(A, b, rcond=None)[0]

@@ -70,6 +70,7 @@ def test_people_see_what_there_was_to_gain(run: Run, path: str, tmp_path: Path) 
     assert found.code == 0, found.stderr
     assert "blind choices" in found.stdout
     assert "N/µm" in found.stdout
+    assert "The arm's lowest point is" in found.stdout and "give floor:" in found.stdout
 
 
 @pytest.mark.parametrize(
@@ -167,12 +168,13 @@ def test_its_path_is_taken_by_compensate(run: Run, path: str, tmp_path: Path) ->
     assert "joints are driven" in assumed and "joint limits" in assumed
     assert "No floor" not in assumed  # it was given
     rows = best.read_text().splitlines()
-    x = rows[0].split(",").index("x[mm]")
-    cells = rows[2].split(",")
-    rows[2] = ",".join([*cells[:x], str(float(cells[x]) + 1.0), *cells[x + 1 :]])
-    best.write_text("\n".join(rows) + "\n")
-    refused = run(*words)
-    assert refused.code == 2 and "line 3" in refused.stderr and "1 mm away" in refused.stderr
+    for column, said in (("x[mm]", "1 mm away"), ("yaw[deg]", "1 deg away from the orientation")):
+        k = rows[0].split(",").index(column)
+        cells = rows[2].split(",")
+        other = ",".join([*cells[:k], str(float(cells[k]) + 1.0), *cells[k + 1 :]])
+        best.write_text("\n".join([*rows[:2], other, *rows[3:]]) + "\n")
+        refused = run(*words)
+        assert refused.code == 2 and "line 3" in refused.stderr and said in refused.stderr
 
 
 def test_rig_and_tracker_are_asked_of_measurements_alone(

@@ -76,7 +76,7 @@ def test_limits_efforts_and_what_to_do_about_them_are_told(arm: Robot) -> None:
     # 100 N down at the hand: 60 N·m in b, limit 45; 49 N·m weight and 160 N·m load in a, limit 90
     said = faults(arm, Cell(), [0.0, 0.0], [0, 0, -100.0, 0, 0, 0])
     assert "b must give 60 of 45 N*m" in said and "a must give 209 of 90 N*m" in said
-    pool = feasible_pool(arm, poses=20, directions=3, force=100.0, point=np.zeros(3))
+    pool = feasible_pool(arm, poses=np.int64(20), directions=3, force=100.0, point=np.zeros(3))
     verdict = feasible(arm, Cell(), pool.load_cases.a, pool.load_cases.wrench)
     assert verdict.ok.all()
 

@@ -7,11 +7,14 @@ import pytest
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
+from sk120stiff.cli.plan.shown import write_page
+from sk120stiff.effects import load_case
+from sk120stiff.plan import Pool, to_be_taken
 from sk120stiff.show.scene.frame import Request, compute_frame
 from sk120stiff.show.scene.payload import frame_payload
 from sk120stiff.stiffness import POSITIONS
 from tests.show.browser import Page, changed, clean, colours
-from tests.show.scenes import random_pose, sk120, sk120_scene
+from tests.show.scenes import random_pose, sk120, sk120_scene, springs
 from tests.show.shown import SCENES
 
 pytestmark = pytest.mark.timeout(180)
@@ -200,6 +203,32 @@ def test_a_path_is_drawn_with_what_was_free(page: Page, files) -> None:
     assert "weakest: 0.25 N/µm" in page.js("return document.getElementById('pane').textContent")
     legend = page.driver.find_element(By.ID, "legend").text
     assert all(said in legend for said in ("path as placed", "path as given", "free: x"))
+    clean(page)
+
+
+def test_the_way_through_a_plan_is_driven_and_all_of_it_seen(page: Page, tmp_path) -> None:
+    """Joints go straight, so the point does not; no part of its way lies outside the picture."""
+    stops = np.deg2rad([[-150, 60, 10, 0, 0, 0], [0, 60, 10, 0, 0, 0], [150, 60, 10, 0, 0, 0]])
+    load = np.tile([0.0, 0.0, -300.0, 0.0, 0.0, 0.0], (3, 1))
+    pool = Pool(load_case(sk120(), stops, load, point=np.array([0.0, 0.0, 0.1])))
+    plan = to_be_taken(sk120(), pool, [0, 1, 2], zero="separate")
+    write_page(tmp_path / "plan.html", springs(), plan)
+    page.open((tmp_path / "plan.html").as_uri())
+    page.ready()
+    path = json.loads(page.js("return document.getElementById('scene').textContent"))["path"]
+    at, middle = np.array(path["after"]), 0.5 * (stops[0] + stops[1])
+    marked = at[path["stops"]]
+    for a, where in ((stops, marked), (middle[None], at)):
+        met = sk120().screws(a, point=plan.point).position
+        np.testing.assert_allclose(
+            np.linalg.norm(met[:, None] - where, axis=2).min(axis=1), 0, atol=1e-6
+        )
+    shown = page.js(
+        "const { toWorld, viewer } = SK.stage;"
+        "return arguments[0].map((p) => toWorld(p).project(viewer.camera).toArray())",
+        path["after"],
+    )
+    assert np.abs(np.array(shown)[:, :2]).max() < 1.0
     clean(page)
 
 

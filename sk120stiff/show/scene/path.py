@@ -20,6 +20,7 @@ class ScenePath:
         worst: Number of the point that counts.
         said: What is told at that point.
         mark: What that point is, in the legend.
+        stops: Numbers of the points that are marked; every so many where there are none.
         freedom: What was free, in words.
         middle, reach: (3,) middle of the path as given and the half widths by which the middle may
             be moved; None where it may not.
@@ -35,6 +36,7 @@ class ScenePath:
     reach: Array | None = None
     turns: bool = False
     mark: str = "its weakest point"
+    stops: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         shapes = np.shape(self.before), np.shape(self.after)
@@ -53,6 +55,7 @@ class ScenePath:
             "worst": self.worst,
             "said": self.said,
             "mark": self.mark,
+            "stops": list(self.stops),
             "freedom": self.freedom,
             "box": box,
             "turns": self.turns,

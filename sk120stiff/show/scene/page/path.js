@@ -14,7 +14,7 @@ SK.makePath = (stage, actors, path) => {
     vectors.slice(1).forEach((point, k) => { if (point.distanceTo(vectors[k]) > 0) curve.add(new THREE.LineCurve3(vectors[k], point)); });
     if (curve.curves.length) put("line", new THREE.TubeGeometry(curve, Math.min(2000, 4 * points.length), 0.0035 * reach, 8), [0, 0, 0]);
     const every = Math.ceil(points.length / 40);
-    points.forEach((point, k) => { if (k % every === 0) put("dot" + k, new THREE.SphereGeometry(0.007 * reach, 12, 8), point); });
+    points.forEach((point, k) => { if (path.stops.length ? path.stops.includes(k) : k % every === 0) put("dot" + k, new THREE.SphereGeometry(0.007 * reach, 12, 8), point); });
   }
   const { colours } = SK;
   if (path.moved) draw("before", path.before, colours.before);
@@ -24,6 +24,8 @@ SK.makePath = (stage, actors, path) => {
   stage.put(["path", "worst"], worst);
   stage.move(["path", "worst"], [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, ...path.after[path.worst], 1]);
   actors.makeLabel("mark").set(path.after[path.worst], path.said);
+  const robotBounds = stage.bounds, laid = path.after.map((point) => stage.toWorld(point));
+  stage.bounds = () => robotBounds().union(new THREE.Box3().setFromPoints(laid)); // all of it is in the picture
   const free = materials.line(colours.yields, 0.9);
   if (path.box) {
     const sides = path.box.reach.map((half) => Math.max(2 * half, 0.004 * reach));
