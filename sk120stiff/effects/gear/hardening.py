@@ -81,13 +81,11 @@ class GearHardening(GearEffect):
         )  # fmt: skip
 
     def other_laws(self, load_cases: LoadCases) -> tuple[GearHardening, ...]:
-        """The series, or steps at `STEPS` of the largest torque among the readings."""
-        if self.breaks:
-            return (replace(self, breaks=()),)
+        """The series, one step, or steps at all `STEPS` of the largest torque of the readings."""
         largest = self.largest_torque(load_cases)
-        if largest <= 0.0:
-            return ()
-        return (replace(self, breaks=tuple(float(f"{share * largest:.3g}") for share in STEPS)),)
+        steps = tuple(float(f"{share * largest:.3g}") for share in STEPS) if largest > 0.0 else ()
+        laws = [(), *((T,) for T in steps), steps]
+        return tuple(replace(self, breaks=own) for own in laws if own != self.breaks)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`. A position has no zero reading to be subtracted."""

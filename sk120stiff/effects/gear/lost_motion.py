@@ -100,7 +100,7 @@ class LostMotion(GearEffect, Switching):
         if largest <= 0.0:
             return ()
         flanks = tuple(float(f"{share * largest:.3g}") for share in FLANKS)
-        smooth = [replace(self, flanks=(T,), sided=False) for T in flanks]
+        smooth = [replace(self, flanks=(T,), sided=False) for T in (0.0, *flanks)]
         unequal = [replace(self, flanks=(T,), sided=True) for T in (0.0, *flanks)]
         free = [
             replace(self, flanks=(0.0, *flanks), sided=False),
