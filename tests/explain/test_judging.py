@@ -97,13 +97,21 @@ def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
     assert "gear_hardening:joint_1_s.cubic" in answer.final.model.names
 
 
-def test_the_two_laws_of_a_gear_lead_to_each_other(springs):
-    series = effect(springs.robot, "gear_hardening", "joint_2_l")
+@pytest.mark.parametrize("name", ["gear_hardening", "lost_motion"])
+def test_every_law_of_a_gear_leads_to_all_others(springs, name):
+    usual = effect(springs.robot, name, "joint_2_l")
     load_cases = load_cases_of(springs.robot, hidden())
-    (steps,) = series.other_laws(load_cases)
-    assert steps.id == series.id
-    assert len(steps.parameters) == len(STEPS)
-    assert steps.other_laws(load_cases) == (series,)
+    family = {usual, *usual.other_laws(load_cases)}
+    assert len(family) >= 7 and {law.id for law in family} == {usual.id}
+    for law in family:
+        assert {law, *law.other_laws(load_cases)} == family
+
+
+def test_a_gear_that_stiffens_at_a_small_torque_is_no_play_beyond_doubt(springs):
+    steps = GearHardening("joint_1_s", {"first": 0.5, "second": 0.1}, {"T1": 70.0, "T2": 140.0})
+    answer = explain(springs, hidden(steps, sigma=10e-6))
+    (found,) = answer.findings
+    assert "gear_hardening:joint_1_s" in (found.effect.id, *found.alternatives)
 
 
 def test_a_gear_that_stiffens_needs_a_spring_to_stiffen(springs):

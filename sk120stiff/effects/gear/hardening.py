@@ -17,6 +17,7 @@ from sk120stiff.robot import Robot
 
 # of the largest torque: where the gear may change its stiffness
 STEPS = (0.06, 0.12, 0.2, 0.3, 0.45, 0.7)
+FIRST = 1  # of them that may be the only one: what gives way at once about no torque is play
 BELOW = "extra_below_"  # extra_below_150: softer by the value of this parameter below 150 N·m
 
 
@@ -84,7 +85,7 @@ class GearHardening(GearEffect):
         """The series, one step, or steps at all `STEPS` of the largest torque of the readings."""
         largest = self.largest_torque(load_cases)
         steps = tuple(float(f"{share * largest:.3g}") for share in STEPS) if largest > 0.0 else ()
-        laws = [(), *((T,) for T in steps), steps]
+        laws = [(), *((T,) for T in steps[FIRST:]), steps]
         return tuple(replace(self, breaks=own) for own in laws if own != self.breaks)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import against_noise_alone
@@ -26,6 +26,8 @@ INTERVAL = float(stats.chi2.isf(0.05, 1))  # rise of -2 ln L at the ends of a 95
 ONE = 1.0  # rise of -2 ln L one standard error away
 NORMAL = float(stats.norm.isf(0.025))  # standard deviations of a 95 % interval
 SMALLEST = 1e-6  # of a pose's compliance: where an upper limit is looked for from
+NOISE = 1.5  # ln of the factors by which noise is looked for
+STARTS = (-1.0, -0.5, 0.0, 0.5)  # ln of factors from which the likeliest size is looked for
 WIDEST = 16.0  # ln of the factors by which the size is looked for
 
 
@@ -50,32 +52,45 @@ class LeftOver:
 
 
 def left_over(fit: Fit) -> LeftOver:
-    """The remainder of a fitted model; a model-form error that its noise holds is found anew."""
+    """The remainder of a fitted model; a model-form error that its noise holds is found anew.
+
+    Its size is told beside the noise as it was stated. Its interval is a profile likelihood over
+    the noise, since what is stated of it is an estimate too.
+    """
     fit = against_noise_alone(fit)
     found = variance_components(fit)
     readings = fit.problem.measurements
     deviance = Deviance.of(fit)
-    relative = found.form.scaled(1.0 / found.noise_factor)
-    least = deviance(relative)
-    form = relative or ModelForm(proportional=SMALLEST)
+    form = found.form or ModelForm(proportional=SMALLEST)
 
-    def end(rise: float, far: float) -> ModelForm | None:
-        """Sizes at which -2 ln L has risen so much, towards ln of a factor; None: nowhere."""
+    def profile(logarithm: float) -> tuple[float, ModelForm, float]:
+        """-2 ln L at the likeliest noise, sizes, and that noise over the one assumed."""
+        sizes = form.scaled(float(np.exp(logarithm)))
+        tried = minimize_scalar(
+            lambda each: deviance.with_noise(sizes, found.noise_factor * float(np.exp(each))),
+            bounds=(-NOISE, NOISE), method="bounded", options={"xatol": 0.01},
+        )  # fmt: skip
+        return float(tried.fun), sizes, found.noise_factor * float(np.exp(tried.x))
+
+    start = min((*STARTS, -WIDEST), key=lambda each: profile(each)[0])
+    least = profile(start)[0]
+
+    def end(rise: float, far: float) -> tuple[ModelForm, float] | None:
+        """Sizes and noise at which -2 ln L has risen so much; None: nowhere before `far`."""
 
         def beyond(logarithm: float) -> float:
-            return deviance(form.scaled(float(np.exp(logarithm)))) - least - rise
+            return profile(logarithm)[0] - least - rise
 
         if beyond(far) <= 0.0:
             return None
-        factor = float(np.exp(brentq(beyond, *sorted((0.0, far)))))
-        return form.scaled(factor * found.noise_factor)
+        return profile(float(brentq(beyond, *sorted((start, far)), xtol=0.01)))[1:]
 
     rms = _left(fit, found.form, found.noise_factor)[1]
-    smallest = end(INTERVAL, -WIDEST) if relative else None
+    smallest = end(INTERVAL, -WIDEST) if found.form else None
     largest, larger = end(INTERVAL, WIDEST), end(ONE, WIDEST)
-    low = 0.0 if smallest is None else _left(fit, smallest, found.noise_factor)[0]
-    high = np.inf if largest is None else _left(fit, largest, found.noise_factor)[2]
-    upper = np.inf if larger is None else max(larger.rms(readings), rms)
+    low = 0.0 if smallest is None else min(_left(fit, *smallest)[0], rms)
+    high = np.inf if largest is None else max(_left(fit, *largest)[2], rms)
+    upper = np.inf if larger is None else max(larger[0].rms(readings), rms)
     grows = found.form.rms(readings) ** 2 >= 2.0 * found.form.constant**2
     return LeftOver(rms, (low, high), upper, grows, found)
 

@@ -30,6 +30,8 @@ from sk120stiff.measurements.model_form import (
 PROPORTIONS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)  # of a pose's compliance, where the search starts
 ROUNDING = 1e-13  # of the largest random effect, so that none outweighs the noise by rounding
 FAR = 4.0  # ln of the factor by which a size is sought away from its start
+# relative standard uncertainty of a stated σ: that of a scatter of 15 readings (GUM, table E.1)
+STATED = 0.19
 CONSTANTS = (0.0, 0.3, 1.0, 3.0, 10.0, 30.0)  # of the noise of one reading
 
 
@@ -150,6 +152,16 @@ class Deviance:
     def noise_factor(self, form: ModelForm, spread: float = 0.0) -> float:
         """The likeliest noise beside a form, over the one assumed; 1 where σ is known."""
         return 1.0 if self.known else float(np.sqrt(self._terms(form, spread)[2] / self.freedom))
+
+    def with_noise(self, form: ModelForm, factor: float) -> float:
+        """-2 ln L of a form in metres beside noise so many times as large as assumed.
+
+        A stated σ is known to `STATED` of itself, as a normal prior of its logarithm.
+        """
+        logdet, information, square = self._terms(form.scaled(1.0 / factor), 0.0)
+        logarithm = float(np.log(factor))
+        held = (logarithm / STATED) ** 2 if self.known else 0.0
+        return logdet + information + 2.0 * self.freedom * logarithm + square / factor**2 + held
 
     def _terms(self, form: ModelForm, spread: float = 0.0) -> tuple[float, float, float]:
         """ln|V| beyond the noise, ln|XᵀV⁻¹X| and rᵀPr."""
