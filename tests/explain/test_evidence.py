@@ -144,6 +144,24 @@ def test_what_explains_something_else_does_not_take_an_effects_place(imitates, w
     assert confirming._winner(reg, model, 0, {0}, reg.sums()) == winner
 
 
+def test_a_name_wins_by_a_plausible_law_where_its_likeliest_is_beyond_belief():
+    reg = regression()
+    X = reg.X.copy()
+    X[:, 4] = 0.1 * X[:, 2] + 0.005 * X[:, 4]
+    y = X[:, [0, 1, 4]] @ np.array([4.0, -3.0, 15.0]) + np.random.default_rng(5).normal(size=len(X))
+    plausible = reg.plausible.copy()
+    plausible[4] = 10.0
+    reg = replace(
+        reg, X=X, y=y, plausible=plausible, candidates=reg.candidates[:1], columns=reg.columns[:1],
+        variants=((np.array([2]), np.array([4])),), laws=((reg.laws[0][0],) * 2,),
+        tied=(-1,), usual=(1,),
+    )  # fmt: skip
+    model = score_set(reg, reg.sums(), (0,))
+    assert model.plausible and model.variants == (0,)
+    assert not score_set(reg, reg.sums(), (0,), start={0: 1}, only=()).plausible
+    assert confirming._winner(reg, model, 0, {0}, reg.sums()) == 0
+
+
 @pytest.mark.parametrize(
     ("others", "alternatives"),
     [

@@ -9,7 +9,6 @@ from scipy import stats
 
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.effects.gear.hardening import STEPS
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Confirmation

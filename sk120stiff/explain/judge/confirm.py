@@ -124,8 +124,10 @@ def _winner(
     contenders = {*same, *(e for e in order if not regression.candidates[e].random_effects)}
     scored = {}
     for e in contenders:
-        likely = {e: likeliest(regression, sums, e, promised[e])}
-        scored[e] = score_set(regression, sums, (*rest, e), start=start | likely, only=())
+        likely = start | {e: likeliest(regression, sums, e, promised[e])}
+        scored[e] = score_set(regression, sums, (*rest, e), start=likely, only=())
+        if not scored[e].plausible:  # another law of it may be
+            scored[e] = score_set(regression, sums, (*rest, e), start=likely, only=(e,))
     fair = {e: model.score for e, model in scored.items() if model.plausible}
     best = min(fair, key=lambda e: fair[e], default=None)
     if best is None or best in same or effect not in fair:
