@@ -49,7 +49,7 @@ def test_strong_parameters_cost_what_the_information_criterion_asks():
 
 def test_a_floor_that_yields_with_the_square_is_not_called_noise_that_grows(springs):
     mount = QuadraticMount("base_link", {"x": 1.0e-7, "y": 1.4e-7}, {"full": 1500.0})
-    answer = explain(springs, hidden(mount))
+    answer = explain(springs, hidden(mount, poses=12, loads=4))
     told = "the moment that tips the base, not in proportion to it"
     # Rocking is right in kind and place; that it is not in proportion is told as what is left.
     assert {finding.effect.id for finding in answer.findings} <= {"base_rocking:base_link"}
@@ -61,8 +61,9 @@ def test_a_floor_that_yields_with_the_square_is_not_called_noise_that_grows(spri
 
 def test_a_bias_that_the_catalogue_lacks_does_not_hide_behind_zero_offsets(springs):
     bias = ForceBias("sensor", {"x": -18.0, "y": 8.0, "z": 8.0})
-    readings = hidden(bias, stated=False)
-    assert explain(springs, readings).verdict == "named"
+    readings = hidden(bias, poses=12, loads=4, stated=False)
+    names = Options(only=("force_bias", "zero_offset"))
+    assert explain(springs, readings, options=names).verdict == "named"
     answer = explain(springs, readings, options=Options(exclude=("force_bias",)))
     assert answer.verdict == "outside"
     assert "a constant error of the load in tool axes" in " ".join(answer.adequacy.tests)
