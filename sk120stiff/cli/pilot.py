@@ -136,7 +136,7 @@ def _settings(said: dict[str, object]) -> Settings:
         return Settings.model_validate(said).checked()
     except ValidationError as error:
         key = error.errors()[0]["loc"][0]
-        raise schema_error(error, f"--{key}", Settings.model_fields, LIKE) from error
+        raise schema_error(error, f"--{key}", Settings, LIKE) from error
     except InputError as error:
         raise InputError(error.what, where=f"--{error.where}", remedy=error.remedy) from error
 

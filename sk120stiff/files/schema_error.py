@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from difflib import get_close_matches
+from typing import get_args
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from sk120stiff.errors import InputError
 
@@ -23,39 +24,59 @@ LONGEST = 60  # letters of a value that are repeated
 
 
 def schema_error(
-    error: ValidationError, where: str, keys: Iterable[str], like: Mapping[str, str] | None = None
+    error: ValidationError,
+    where: str | Callable[[str], str],
+    model: type[BaseModel],
+    like: Mapping[str, str] | None = None,
 ) -> InputError:
     """The first slip: which key, what stands there, and what to write.
 
     Args:
-        where: The file.
-        keys: Those of its top level.
-        like: Examples of what can be written, by the key's own name.
+        where: The file, or what tells the place of a key in it.
+        model: What was to be read.
+        like: Examples of what can be written, by the key's own name or that of its section.
     """
     # a misspelt key goes before what is missing because of it
     slip = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")
     place = list(slip["loc"])
     inside = bool(place) and isinstance(place[-1], int)  # one number of several
     path = [str(part) for part in place if isinstance(part, str)] or [""]
-    named = path[-1]
     key = ".".join(str(part) for part in (place[:-1] if inside else place))
-    known = list(keys)
-    remedy = f"Keys are: {', '.join(known)}."
-    # a key that is not known has no example: that of what it stands in has its neighbours
-    unknown = slip["type"] == "extra_forbidden"
-    example = named if not unknown else path[-2] if len(path) > 1 else ""
-    if like and example in like:
-        remedy = f"Write it like  {like[example]}"
-    if unknown:
-        close = get_close_matches(named, known, n=1)
+    known = _keys(model, path[:-1])
+    section = f" of {'.'.join(path[:-1])}" if path[1:] else ""
+    remedy = f"Keys{section} are: {', '.join(known)}."
+    example = (like or {}).get(path[-1]) or (like or {}).get(path[0])
+    kind = slip["type"]
+    if kind == "extra_forbidden":
+        close = get_close_matches(path[-1], known, n=1)
         what = f"the key {key!r} is not known" + (f" (did you mean {close[0]!r}?)" if close else "")
-    elif slip["type"] == "missing" and inside:
+        example = None
+    elif kind == "missing" and inside:
         what = f"key {key!r}: only {len(slip['input'])} numbers stand there"
-    elif slip["type"] == "missing":
+    elif kind == "missing":
         what = f"the key {key!r} is missing"
     else:
         found = repr(slip["input"])
         found = found if len(found) <= LONGEST else f"{found[:LONGEST]}…"
-        said = WANTED.get(slip["type"], slip["msg"][0].lower() + slip["msg"][1:])
+        said = WANTED.get(kind, slip["msg"][0].lower() + slip["msg"][1:])
         what = f"key {key!r} is {found}: {said}" if key else f"the file holds {found}: {said}"
-    return InputError(what, where=where, remedy=remedy)
+    return InputError(
+        what,
+        where=where if isinstance(where, str) else where(key),
+        remedy=f"Write it like  {example}" if example else remedy,
+    )
+
+
+def _keys(model: type[BaseModel], path: Iterable[str]) -> list[str]:
+    """What may stand in a section; parts of the path that are no keys are names of entries."""
+    for part in path:
+        field = model.model_fields.get(part)
+        model = model if field is None else next(_models(field.annotation), model)
+    return list(model.model_fields)
+
+
+def _models(annotation: object) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for inner in get_args(annotation):
+        yield from _models(inner)

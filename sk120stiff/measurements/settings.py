@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -13,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sk120stiff import files, units
 from sk120stiff.errors import InputError
+from sk120stiff.files import schema_error
 
 _Frame = Literal["base", "tool"]
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -119,18 +119,6 @@ class Settings(_Entry):
     source: str = ""
 
 
-_SECTIONS: dict[str, type[_Entry]] = {
-    "": Settings,
-    "point": PointEntry,
-    "force": ForceEntry,
-    "force.point": PointEntry,
-    "displacement": DisplacementEntry,
-    "position": PositionEntry,
-    "registered": RegisteredEntry,
-    "payload": PayloadEntry,
-    "payload.point": PointEntry,
-    "noise": NoiseEntry,
-}
 _EXAMPLES = {
     "point": "point: {xyz: [-60.0, 40.0, 150.0], unit: mm}",
     "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
@@ -197,7 +185,8 @@ def read_settings(path: Path | None) -> SettingsFile:
         raise InputError(
             "the file holds no keys",
             where=str(path),
-            remedy=f"Write one 'key: value' per line. The keys are {_names('')}.",
+            remedy="Write one 'key: value' per line. The keys are "
+            f"{', '.join(Settings.model_fields)}.",
         )
     return settings_of(content, path, lines)
 
@@ -215,7 +204,8 @@ def settings_of(
     try:
         settings = Settings.model_validate(_without_empty(keys))
     except ValidationError as error:
-        raise _explain(error, SettingsFile(Settings(), path, known)) from None
+        draft = SettingsFile(Settings(), path, known)
+        raise schema_error(error, draft.place, Settings, _EXAMPLES) from None
     return SettingsFile(settings, path, known)
 
 
@@ -245,36 +235,3 @@ def _without_empty(content: dict[object, object]) -> dict[str, object]:
         for key, value in content.items()
         if value is not None
     }
-
-
-def _fields(section: str) -> list[str]:
-    entry = PointEntry if section.startswith("points.") else _SECTIONS.get(section, Settings)
-    return list(entry.model_fields)
-
-
-def _names(section: str) -> str:
-    return ", ".join(_fields(section))
-
-
-def _explain(error: ValidationError, draft: SettingsFile) -> InputError:
-    """The first slip as one message; a misspelt key goes before what is missing because of it."""
-    slips = sorted(error.errors(), key=lambda slip: slip["type"] != "extra_forbidden")
-    slip = slips[0]
-    names = [str(part) for part in slip["loc"] if isinstance(part, str)]
-    key, section = ".".join(names), ".".join(names[:-1])
-    example = _EXAMPLES.get(names[0], f"{names[0]}: text")
-    remedy = f"Write it like  {example}"
-    if slip["type"] == "extra_forbidden":
-        close = get_close_matches(names[-1], _fields(section), n=1)
-        meant = f" (did you mean {close[0]!r}?)" if close else ""
-        what = f"the key {key!r} is not known{meant}"
-        remedy = f"The keys {f'of {section}' if section else 'here'} are {_names(section)}."
-    elif slip["type"] == "missing":
-        what = f"the key {key!r} is missing"
-    elif slip["type"] == "literal_error":
-        what = f"{key} is {slip['input']!r}"
-        remedy = f"Write {slip['ctx']['expected']}."
-    else:
-        reason = slip["msg"][0].lower() + slip["msg"][1:]
-        what = f"{key} is {slip['input']!r}: {reason}"
-    return InputError(what, where=draft.place(key), remedy=remedy)

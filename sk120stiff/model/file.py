@@ -290,7 +290,7 @@ def _parsed(text: str, where: str) -> _File:
     try:
         return _File.model_validate(parse_yaml(text, where).content or {})
     except ValidationError as error:
-        raise schema_error(error, where, _File.model_fields, LIKE) from error
+        raise schema_error(error, where, _File, LIKE) from error
 
 
 def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:

@@ -131,7 +131,7 @@ class Folder:
         try:
             return Settings.model_validate(read_yaml(file).content or {}).checked()
         except ValidationError as error:
-            raise schema_error(error, str(file), Settings.model_fields, LIKE) from error
+            raise schema_error(error, str(file), Settings, LIKE) from error
         except InputError as error:
             place = f"{file}, key {error.where!r}"
             raise InputError(error.what, where=place, remedy=error.remedy) from error

@@ -185,7 +185,7 @@ def read_cell(path: Path, robot: Robot) -> Cell:
     try:
         said = CellFile.model_validate(read_yaml(path).content or {})
     except ValidationError as error:
-        raise schema_error(error, str(path), CellFile.model_fields, LIKE) from error
+        raise schema_error(error, str(path), CellFile, LIKE) from error
 
     def number(key: str, text: str, kind: str) -> float:
         (value,) = _numbers(path, key, text, kind, LIKE[key].partition(": ")[2].partition("   ")[0])

@@ -106,4 +106,4 @@ def read_description(path: Path) -> RobotDescription:
     try:
         return RobotDescription.model_validate(content or {})
     except ValidationError as error:
-        raise schema_error(error, str(path), RobotDescription.model_fields) from error
+        raise schema_error(error, str(path), RobotDescription) from error

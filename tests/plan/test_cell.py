@@ -165,7 +165,7 @@ def test_a_file_and_the_line_of_sight(arm: Robot, tmp_path: Path) -> None:
         ("obstacles: [{name: x, box: [1, 1]}]", "only 2 numbers"),
         ("obstacles: [{name: x, box: 300 mm}]", "box: [100, 3000, 2000], unit: mm"),
         ("obstacles: [{name: x, box: [1, 1, 1], unit: cm}]", "'cm'"),
-        ("obstacles: [{name: x, bix: [1, 1, 1]}]", "'obstacles.0.bix' is not known"),
+        ("obstacles: [{name: x, bix: [1]}]", "'obstacles.0.bix' is not known (did you mean 'box'?"),
         ("obstacles: [{name: x}]", "0 shapes"),
         ("obstacles: [{name: x, box: [1, 1, 0]}]", "positive"),
         ("obstacles: [{name: x, mesh: nowhere.stl}]", "nowhere.stl"),
