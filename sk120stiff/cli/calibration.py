@@ -13,7 +13,8 @@ from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError, listed
-from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
+from sk120stiff.identify.absolute.remainder import remainder_entry, remainder_sentences
 from sk120stiff.identify.absolute.words import (
     angle_gap,
     findings,
@@ -51,7 +52,7 @@ def calibration_answer(
     waves: bool = True,
 ) -> Answer:
     """Geometry, springs and what cannot be told, as JSON and for people."""
-    found = calibrate(model, readings, freedom=tuple(fix), waves=waves)
+    found = with_model_form(calibrate(model, readings, freedom=tuple(fix), waves=waves))
     fit = found.fit
     if out is not None:
         write_model(replace(known_calibration(found), provenance=provenance(data, readings)), out)
@@ -78,12 +79,13 @@ def calibration_answer(
             for row in found.wild.nonzero()[0]
         ],
         "waves": list(found.waves),
+        "remainder": remainder_entry(found),
         "noise": gap_sentence(found),
         "notes": list(found.notes),
         "iterations": fit.iterations,
         "model": out,
     }
-    parts: list[object] = [_table(found), *findings(found, readings)]
+    parts: list[object] = [_table(found), *findings(found, readings), *remainder_sentences(found)]
     if fit.exceeds:
         parts.append("What is missing is what 'sk120stiff explain' looks for.")
     if out is not None:

@@ -13,22 +13,17 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import InputError
 from sk120stiff.explain import Options
+from sk120stiff.explain.absolute.accounts import heldout_on
 from sk120stiff.explain.absolute.document import gaps_table, save_positions
-from sk120stiff.explain.absolute.next_step import next_step_of_positions
-from sk120stiff.explain.absolute.run import Explained, explain_positions, heldout_on
+from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
+from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.identify.absolute.start import in_gravity
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model
 from sk120stiff.model.prediction_table import rows_of
-
-SAID = {
-    "none": "Model and data agree: nothing is missing that these positions show.",
-    "named": "Something was missing, and it has names.",
-    "ambiguous": "Something is missing; these positions cannot tell which of several names.",
-    "outside": "Something is missing that no effect of the catalogue explains.",
-}
 
 
 def positions_answer(
@@ -137,7 +132,7 @@ def yielding(model: Model) -> Model:
 
 
 def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]:
-    shown: list[object] = [SAID[answer.verdict]]
+    shown: list[object] = [headline(answer)]
     for item in answer.named:
         shown.append(
             f"{item.effect.sentence()} [{item.effect.id}] (P = {item.probability:.2f}, takes off "
@@ -160,6 +155,8 @@ def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]
     shown += findings(answer.final, readings)
     shown += answer.dropped
     shown += answer.left_over()
+    if answer.guess is not None:
+        shown.append(f"The best guess stands in {out / BEST_GUESS}; it is not confirmed.")
     shown.append(f"What to do now: {next_step_of_positions(answer)}")
     shown.append(f"Results are in {out}.")
     return shown

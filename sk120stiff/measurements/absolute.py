@@ -79,10 +79,6 @@ class Absolute:
             series=cut(self.series),
         )
 
-    def with_channels(self, channels: Channels) -> Absolute:
-        """The same rows with other readings."""
-        return dataclasses.replace(self, channels=channels)
-
     @property
     def groups(self) -> tuple[str, ...] | None:
         """N labels of series and markers whose places may differ; None where all is one.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +66,18 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
     return Chosen(_beside_frames(linear, chosen, dropped), dropped)
 
 
+def nothing_named(linear: Linear, found: Chosen) -> Chosen:
+    """No name, and why: what is left is no noise, and as likely brings all of it."""
+    dropped = dict(found.dropped)
+    for e in found.order:
+        dropped[e] = (
+            f"{linear.candidates[e].id} fits, and at poses left out takes off "
+            f"{100 * gain(linear, found.order, e).share:.1f} % of the gap; but what is left is no "
+            "noise, and an unknown cause of that size may bring as much."
+        )
+    return Chosen((), dropped)
+
+
 def _searched(
     linear: Linear, most: int, *, at_once: bool
 ) -> tuple[tuple[int, ...], dict[int, str]]:
@@ -73,46 +86,79 @@ def _searched(
     dropped: dict[int, str] = {}
     threshold = _threshold(linear)
     seen: set[frozenset[int]] = set()
+    stuck = False  # what joins one by one is given up again
     while len(chosen) < most:
-        noise = linear.noise(chosen)
-        now = linear.score(chosen, noise)
-        tried = {
-            step: linear.score((*chosen, *step), noise)
-            - now
-            + sum(usual(linear.candidates[e]) for e in step)
-            - threshold * len(step)
-            for step in _steps(linear, chosen)
-            if not set(step) & dropped.keys()
-        }
-        if not tried:
+        best = _next(linear, chosen, dropped.keys(), at_once=stuck)
+        if not best:
             break
-        best = max(tried, key=lambda step: tried[step])
-        if tried[best] < 0.0:
-            break
+        before = chosen
         chosen = _backward(linear, _plainer(linear, (*chosen, *best)), threshold)
         if frozenset(chosen) in seen:
-            break
+            if stuck:
+                break
+            chosen, stuck = before, True
+            continue
+        stuck = False
         seen.add(frozenset(chosen))
         for e in best if at_once else ():
             gained = gain(linear, chosen, e) if e in chosen else None
             if gained is not None and not _confirmed(gained, linear):
-                dropped[e] = (
-                    f"{linear.candidates[e].id} fits, but at poses left out it takes off no more "
-                    f"than {100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard "
-                    "errors)."
+                why = (
+                    f"fits, but at poses left out it takes off no more than "
+                    f"{100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard errors)."
                 )
-                chosen = linear.less(chosen, e)
+                chosen = _without(linear, chosen, e, why, dropped)
     for e in list(chosen):
         if e in chosen and not _confirmed(gain(linear, chosen, e), linear):
-            chosen = linear.less(chosen, e)
-            dropped[e] = f"{linear.candidates[e].id} is not confirmed by poses left out."
+            chosen = _without(linear, chosen, e, "is not confirmed by poses left out.", dropped)
     return chosen, dropped
+
+
+def _next(
+    linear: Linear, chosen: tuple[int, ...], dropped: Set[int], *, at_once: bool
+) -> tuple[int, ...]:
+    """What joins best, one by one where that explains more, or all of a kind; nothing: ()."""
+    before = linear.noise(chosen)
+    now, threshold = linear.score(chosen, before), _threshold(linear)
+
+    def best(steps: list[tuple[int, ...]], noise: float | None) -> tuple[int, ...]:
+        tried = {}
+        for step in steps:
+            if not dropped & set(step):
+                own = noise or linear.noise((*chosen, *step))
+                likely = sum(usual(linear.candidates[e]) for e in step)
+                tried[step] = linear.score((*chosen, *step), own) + likely - threshold * len(step)
+        found = max(tried, key=lambda step: tried[step], default=())
+        return found if found and tried[found] >= now else ()
+
+    alone = () if at_once else best(_steps(linear, chosen), before)
+    return alone or best(_together(linear, chosen), None)
+
+
+def _without(
+    linear: Linear, chosen: tuple[int, ...], e: int, why: str, dropped: dict[int, str]
+) -> tuple[int, ...]:
+    """The chosen without one and what bends it, the reasons told."""
+    rest = linear.less(chosen, e)
+    own = linear.candidates[e].id
+    for gone in set(chosen) - set(rest):
+        bends = f"bends {own}, which is not confirmed by poses left out."
+        dropped[gone] = f"{linear.candidates[gone].id} {why if gone == e else bends}"
+    return rest
 
 
 def _steps(linear: Linear, chosen: tuple[int, ...]) -> list[tuple[int, ...]]:
     """Candidates that may join next: one by one, and what bends a spring together with it."""
     pairs = ((s, e) for e, s in linear.bent.items() if not {s, e} & set(chosen))
     return [*((e,) for e in linear.may_join(chosen)), *pairs]
+
+
+def _together(linear: Linear, chosen: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """What every arm has, all at once: of few numbers each alone explains too little to join."""
+    frames = tuple(f for f in _frames(linear) if f not in chosen)
+    every = enumerate(linear.candidates)
+    springs = tuple(e for e, effect in every if effect.joint_spring and e not in chosen)
+    return [step for step in (frames, springs, (*frames, *springs)) if len(step) > 1]
 
 
 def _beside_frames(
@@ -266,7 +312,23 @@ def _rivals(
     )
     scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
     prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
-    return rivals, prior, np.exp(scores - scores.max())
+    weight = np.exp(scores - scores.max())
+    weight[-1] += _impostor(linear, chosen, rest) * weight[:-1].sum()
+    return rivals, prior, weight
+
+
+def _impostor(linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]) -> float:
+    """Odds that a name is the part of an unknown cause that looks like it.
+
+    An unknown cause is at work where what is left is smooth. It is as likely to be like the name
+    as not: of the squares of such causes any share may be alike (the squared cosine between the
+    two, evenly spread), and the rest is left.
+    """
+    if not linear.smooth:
+        return 0.0
+    after, before = (linear.left_out(each, linear.noise(each)) for each in (chosen, rest))
+    left = linear.smooth * after
+    return left / (left + max(before - after, 0.0))
 
 
 def lengths(gap: Array, linear: Linear, sigma: Array, whole: Array) -> Array:

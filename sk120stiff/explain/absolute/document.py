@@ -14,10 +14,12 @@ from sk120stiff.arrays import Mask
 from sk120stiff.effects import load_cases_of
 from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.run import Explained, Named
-from sk120stiff.explain.answer.document import parameter_entry
+from sk120stiff.explain.answer.document import BEST_GUESS, parameter_entry
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.remainder import remainder_entry
 from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter, write_model
@@ -62,10 +64,7 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
         ],
         "springs_share": answer.springs,
         "remainder": {
-            "rms_um": None if answer.remainder is None else um(answer.remainder[0]),
-            "interval_95": [um(end) for end in (answer.remainder or (None,) * 3)[1:]],
-            "p": answer.chance,
-            "significant": bool(answer.chance is not None and answer.chance < 0.01),
+            **remainder_entry(final),
             "where": list(answer.where),
         },
         "probabilities": [
@@ -73,6 +72,10 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
             for name, p in sorted(answer.probabilities.items(), key=lambda item: -item[1])
         ],
         "where": list(answer.where),
+        "suspects": [
+            {"name": item.id, "heldout_gain_um": um(item.heldout_gain)} for item in answer.suspects
+        ],
+        "best_guess": None if answer.guess is None else BEST_GUESS,
         "not_named": list(answer.dropped),
         "not_observable": list(answer.hidden),
         "frozen": [item.name for item in final.frozen],
@@ -82,7 +85,7 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
         ],
         "noise": {
             "model": gap_sentence(final),
-            "source": "stated" if stated is not None else "unknown",
+            "source": _source(final),
             "sigma_um": um(stated),
             "set_aside": [
                 {"pose": readings.pose[row], "line": int(readings.line[row])}
@@ -104,6 +107,9 @@ def save_positions(
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
         write_atomically(out / "gaps.csv", csv_text(table.items()))
+        if answer.guess is not None:
+            guess = replace(known_calibration(answer.guess), provenance=dict(provenance))
+            write_model(guess, out / BEST_GUESS)
         if answer.following is not None:
             write_atomically(out / NEXT_POSES, _next_csv(answer.following))
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
@@ -141,6 +147,13 @@ def _next_csv(following: NextPoses) -> str:
     if said is not None and any(said.markers):
         columns["marker"] = list(said.markers)
     return csv_text(columns.items())
+
+
+def _source(final: Calibration) -> str:
+    """What tells the noise."""
+    if final.problem.stated_sigma is not None:
+        return "stated"
+    return "unknown" if final.form is None else "smoothness"
 
 
 def _none(_radians: float | None) -> None:

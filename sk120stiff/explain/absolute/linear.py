@@ -35,6 +35,8 @@ class Linear:
         row: (M,) reading that each number belongs to.
         fold: (M,) part that it is left out with.
         stated: The size of the noise was stated.
+        independent: How many independent numbers what is left amounts to; None: all of them.
+        smooth: Share of the variance left that is an error of the model, smooth over the joints.
     """
 
     residual: Array
@@ -47,6 +49,8 @@ class Linear:
     row: Index
     fold: Index
     stated: bool
+    independent: float | None = None
+    smooth: float = 0.0
 
     @cached_property
     def sums(self) -> Array:
@@ -63,6 +67,11 @@ class Linear:
     def folds(self) -> int:
         """Number of parts."""
         return int(self.fold.max()) + 1
+
+    @property
+    def count(self) -> float:
+        """Independent numbers beside the base."""
+        return self.independent or float(len(self.residual) - self.base.shape[1])
 
     @cached_property
     def bent(self) -> dict[int, int]:
@@ -163,18 +172,22 @@ class Linear:
     def score(self, chosen: tuple[int, ...], noise: float) -> float:
         """Logarithm of the evidence, up to a constant of all models."""
         found = self.solved(chosen, noise)
-        count = len(self.residual) - self.base.shape[1]
+        count = self.count
         if self.stated and noise <= 1.0:
             return -0.5 * (found.square + found.volume)
         return float(-0.5 * (count * np.log(found.square / count) + found.volume))
 
     def noise(self, chosen: tuple[int, ...]) -> float:
-        """Variance of what a model leaves, at least the stated one."""
-        left = 1.0
+        """Variance of what a model leaves, at least the stated one.
+
+        Numbers that err together count as fewer ones, each known as badly as all of them.
+        """
+        left, all_of_them = 1.0, len(self.residual) - self.base.shape[1]
+        together = all_of_them / self.count
         for _ in range(3):
             spent = len(self.picked(chosen))
-            left = self.solved(chosen, left).square / max(len(self.residual) - spent, 1)
-        return max(left, 1.0) if self.stated else left
+            left = self.solved(chosen, left).square / max(len(self.residual) - spent, 1) * together
+        return max(left, together) if self.stated else left
 
     def gap(self, chosen: tuple[int, ...], noise: float, *, held_out: bool) -> Array:
         """(M,) whitened gap of a model, fitted, or at the parts left out one by one."""

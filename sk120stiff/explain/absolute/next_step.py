@@ -8,6 +8,28 @@ if TYPE_CHECKING:
     from sk120stiff.explain.absolute.run import Explained
 
 
+def headline(answer: Explained) -> str:
+    """The verdict as a sentence: how many names are settled, and which are open."""
+    if answer.verdict == "none":
+        return "Model and data agree: nothing is missing that these positions show."
+    if answer.verdict == "outside":
+        return "Something is missing that no effect of the catalogue explains for sure."
+    left = answer.final.form is not None or answer.lacking
+    more = "; more is left than noise makes" if left else ""
+    open_ones = [item for item in answer.named if not item.settled]
+    count = len(answer.named)
+    if not open_ones:
+        what = "its name is" if count == 1 else f"its {count} names are"
+        return f"Something was missing, and {what} settled{more}."
+    told = "; ".join(
+        " or ".join((item.effect.id, *item.alternatives)) + f" (P = {item.probability:.2f})"
+        for item in open_ones
+    )
+    settled = f"{count - len(open_ones)} of {count} names" if count > 1 else "its name"
+    verb = ("are" if count - len(open_ones) != 1 else "is") if count > 1 else "is not"
+    return f"Something was missing: {settled} {verb} settled{more}. Open: {told}."
+
+
 def next_step_of_positions(answer: Explained) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))

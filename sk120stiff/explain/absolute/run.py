@@ -6,11 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
-from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError
+from sk120stiff.explain.absolute.accounts import (
+    GapStep,
+    families_of,
+    rms,
+    springs_of,
+    steps_of,
+    suspects_of,
+)
 from sk120stiff.explain.absolute.advice import (
     NextPoses,
     detectable,
@@ -18,31 +24,40 @@ from sk120stiff.explain.absolute.advice import (
     open_pair,
     probabilities,
 )
-from sk120stiff.explain.absolute.candidates import family, linear_at
+from sk120stiff.explain.absolute.candidates import linear_at
 from sk120stiff.explain.absolute.choose import (
     Chosen,
     Gain,
     alternatives,
     choose,
     gain,
-    lengths,
+    nothing_named,
 )
 from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at
 from sk120stiff.explain.absolute.linear import Linear
-from sk120stiff.explain.findings import Detectable
+from sk120stiff.explain.absolute.remainder import where_it_lives
+from sk120stiff.explain.findings import Contender, Detectable
 from sk120stiff.explain.options import Options
 from sk120stiff.identify.absolute.calibrate import (
     Calibration,
     calibrate,
     refined,
+    with_model_form,
     with_values_of,
+)
+from sk120stiff.identify.absolute.remainder import (
+    LEVEL,
+    Size,
+    chance_of_noise,
+    left_beyond_noise,
+    remainder_sentences,
 )
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
-LEVEL = 0.01  # probability of noise alone below which something is missing
-LARGEST = 5  # places told
+SURE = 0.95  # probability of a name that is settled
+EVEN = 0.5  # probability that one name at least must have to be confirmed
 MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
 
@@ -56,15 +71,10 @@ class Named:
     probability: float
     gain: Gain
 
-
-@dataclass(frozen=True)
-class GapStep:
-    """The gap with one cause more: rms per axis, fitted and held out, and mean distance [m]."""
-
-    label: str
-    fit_rms: float
-    heldout_rms: float
-    heldout_distance: float
+    @property
+    def settled(self) -> bool:
+        """Nothing else explains as much, and it is sure."""
+        return not self.alternatives and self.probability >= SURE
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +93,12 @@ class Explained:
             as a share of it; None where they are named, or nothing bends the arm.
         dropped: What fitted and is not named, in sentences.
         hidden: Candidates that do not show in these positions at all.
-        remainder: Rms per axis that is left beyond the stated noise, and its 95 % interval [m];
-            None: no noise is stated.
-        chance: Probability of as large a misfit if the noise were all; None where none is stated.
+        remainder: Rms per axis that is left beyond the noise, and its 95 % interval [m]; None: no
+            noise is stated, and what is left may be noise.
+        chance: Probability of as large a misfit if the noise were all; None as before.
+        suspects: Where nothing is confirmed: names that fit, and what they take off the held-out
+            rms [m].
+        guess: The calibration with these.
         where: Where what is left lives, in sentences.
         smallest: Sizes that would have been named beside the named causes.
         probabilities: Name → probability of its being at work, of all that have one worth telling.
@@ -102,12 +115,19 @@ class Explained:
     springs: float | None
     dropped: tuple[str, ...]
     hidden: tuple[str, ...]
-    remainder: tuple[float, float, float] | None
+    remainder: Size | None
     chance: float | None
+    suspects: tuple[Contender, ...]
+    guess: Calibration | None
     where: tuple[str, ...]
     smallest: tuple[Detectable, ...]
     probabilities: dict[str, float]
     following: NextPoses | None
+
+    @property
+    def lacking(self) -> bool:
+        """More is left than the noise makes."""
+        return self.chance is not None and self.chance < LEVEL
 
     def weight(self) -> tuple[str, ...]:
         """What the arm's weight would explain where no spring is named, in a sentence."""
@@ -121,12 +141,7 @@ class Explained:
 
     def left_over(self) -> tuple[str, ...]:
         """What is left beyond the stated noise and where it lives, in sentences."""
-        if self.remainder is None:
-            return self.where
-        rms, low, high = (1e6 * size for size in self.remainder)
-        unit = self.final.problem.unit
-        told = f"Left beyond the stated noise are {rms:.3g} {unit} rms per axis"
-        return (f"{told} (95 %: {low:.3g} to {high:.3g}).", *self.where)
+        return (*remainder_sentences(self.final), *self.where)
 
 
 def explain_positions(
@@ -173,35 +188,42 @@ def explain_positions(
         if set(again) == set(before):
             break
         final = _exactly(base, seen, linear, found, readings, catalogue)
-    final = beside_laws(final, linear, found.order, laws)
     tell("what is left", 0.85)
+    final, guess = with_model_form(final), None
+    suspects: tuple[Contender, ...] = ()
+    if final.form is not None:
+        linear = replace(linear, independent=final.form.independent, smooth=final.form.share)
+        likely = [alternatives(linear, found.order, e)[1] for e in found.order]
+        if likely and max(likely) < EVEN:
+            guess, suspects = final, suspects_of(linear, found, seen)
+            found, laws = nothing_named(linear, found), {}
+            final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
+    final = beside_laws(final, linear, found.order, laws)
     noise = linear.noise(found.order)
     named = tuple(_named(linear, found, e) for e in found.order)
     gap = linear.gap(found.order, noise, held_out=True)
-    remainder = chance = None
-    if final.fit.sigma_known and final.fit.misfit is not None:
-        chance = final.fit.misfit[2]
-        sigma = final.problem.stated_sigma
-        remainder = None if sigma is None else _beyond(final, sigma)
+    chance = chance_of_noise(final)
     lacking = chance is not None and chance < LEVEL
     verdict = "outside" if lacking else "none"
     pair = open_pair([(item.effect, item.alternatives) for item in named], linear)
     if named:
-        verdict = "ambiguous" if any(item.alternatives for item in named) else "named"
+        verdict = "named" if all(item.settled for item in named) else "ambiguous"
     return Explained(
         verdict=verdict,
         named=named,
         base=base,
         final=final,
         linear=linear,
-        steps=_steps(linear, found, base, seen),
-        families=_families(linear, found, seen),
-        springs=_springs(linear, found),
+        steps=steps_of(linear, found, base, seen),
+        families=families_of(linear, found, seen),
+        springs=springs_of(linear, found),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
-        remainder=remainder,
+        remainder=left_beyond_noise(final),
         chance=chance,
-        where=_where(linear, gap, seen, readings),
+        suspects=suspects,
+        guess=guess,
+        where=where_it_lives(linear, gap, replace(seen, form=final.form), readings),
         smallest=detectable(linear, found),
         probabilities=probabilities(linear, found),
         following=None
@@ -237,7 +259,7 @@ def _exactly(
     final = refined(base, picked, readings, seen.fit.model, catalogue)
     noise = linear.noise(found.order)
     foretold = linear.gap(found.order, noise, held_out=False) * seen.problem.of_channels.sigma
-    if _left(final) <= MORE * _rms(foretold):
+    if _left(final) <= MORE * rms(foretold):
         return final
     known = linear.values(found.order, noise)
     wide = final.fit.model
@@ -249,7 +271,7 @@ def _exactly(
 
 
 def _left(found: Calibration) -> float:
-    return _rms(found.fit.residual * found.problem.of_channels.sigma)
+    return rms(found.fit.residual * found.problem.of_channels.sigma)
 
 
 def _picked(linear: Linear, found: Chosen) -> list[Effect]:
@@ -264,108 +286,3 @@ def _named(linear: Linear, found: Chosen, e: int) -> Named:
         probability,
         gain(linear, found.order, e),
     )
-
-
-def _whole(linear: Linear, seen: Calibration) -> Array:
-    """(M,) numbers that are coordinates of positions."""
-    part = np.zeros(len(linear.residual), dtype=bool)
-    for kind, own in zip(seen.problem.channels.present, seen.problem.channels.kinds, strict=True):
-        part[own] = kind == "position"
-    return part
-
-
-def _steps(
-    linear: Linear, found: Chosen, base: Calibration, seen: Calibration
-) -> tuple[GapStep, ...]:
-    sigma, whole = seen.problem.of_channels.sigma, _whole(linear, seen)
-    first = " + ".join(effect.id for effect in base.fit.model.effects) or "rigid"
-    labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
-    steps = []
-    for k, label in enumerate(labels):
-        chosen = found.order[:k]
-        noise = linear.noise(chosen)
-        fitted = linear.gap(chosen, noise, held_out=False)
-        held = linear.gap(chosen, noise, held_out=True)
-        distance = lengths(held, linear, sigma, whole)
-        inside = seen.problem.counted
-        steps.append(
-            GapStep(
-                label,
-                _rms((fitted * sigma)[inside]),
-                _rms((held * sigma)[inside]),
-                float(distance.mean()) if len(distance) else np.nan,
-            )
-        )
-    return tuple(steps)
-
-
-def _families(linear: Linear, found: Chosen, seen: Calibration) -> dict[str, float]:
-    sigma, counted = seen.problem.of_channels.sigma, seen.problem.counted
-    groups: dict[str, list[int]] = {}
-    for e in found.order:
-        groups.setdefault(family(linear.candidates[e]), []).append(e)
-    noise = linear.noise(found.order)
-    left = _rms((linear.gap(found.order, noise, held_out=True) * sigma)[counted])
-    out = {}
-    for name, members in groups.items():
-        rest = tuple(e for e in found.order if e not in members)
-        out[name] = _rms((linear.gap(rest, noise, held_out=True) * sigma)[counted]) - left
-    return out
-
-
-def _beyond(final: Calibration, sigma: float) -> tuple[float, float, float]:
-    """Rms per axis beyond the stated noise and its 95 % interval [m]."""
-    square, freedom = final.fit.judged
-    freedom = max(freedom, 1)
-    shares = [freedom, *(float(stats.chi2.ppf(level, freedom)) for level in (0.975, 0.025))]
-    best, low, high = (sigma * max(square / s - 1.0, 0.0) ** 0.5 for s in shares)
-    return best, low, high
-
-
-def _springs(linear: Linear, found: Chosen) -> float | None:
-    springs = [e for e, effect in enumerate(linear.candidates) if effect.joint_spring]
-    if not springs or set(springs) & set(found.order):
-        return None
-    noise = linear.noise(found.order)
-    before = _rms(linear.gap(found.order, noise, held_out=True))
-    return 1.0 - _rms(linear.gap((*found.order, *springs), noise, held_out=True)) / before
-
-
-def _where(
-    linear: Linear, gap: Array, seen: Calibration, readings: Measurements
-) -> tuple[str, ...]:
-    """Rows with the largest gaps left, and joints whose angle it goes with most."""
-    rows = np.flatnonzero(readings.use & ~seen.wild)
-    counted, unit = seen.problem.counted, seen.problem.unit
-    square = (gap * seen.problem.of_channels.sigma)[counted] ** 2
-    size = np.sqrt(np.bincount(linear.row[counted], square, minlength=len(rows)))
-    worst = np.argsort(-size)[:LARGEST]
-    places = ", ".join(f"{readings.pose[rows[k]]} ({1e6 * size[k]:.0f} {unit})" for k in worst)
-    said = [f"The largest gaps left at poses left out: {places}."]
-    a = readings.joints[rows]
-    strength = {}
-    for k, name in enumerate(readings.joint_names):
-        if np.ptp(a[:, k]) > 1e-3:
-            order = stats.spearmanr(np.abs(a[:, k] - np.median(a[:, k])), size)
-            strength[name] = abs(float(order.statistic))
-    if strength and max(strength.values()) > 4.0 / np.sqrt(len(rows)):
-        joint = max(strength, key=lambda name: strength[name])
-        said.append(f"What is left grows most as {joint} leaves the middle of its range.")
-    return tuple(said)
-
-
-def _rms(x: Array) -> float:
-    return float(np.sqrt(np.mean(x**2))) if len(x) else 0.0
-
-
-def heldout_on(final: Calibration, others: Measurements) -> tuple[float, float]:
-    """Rms per axis and mean distance [m] of a calibration at readings it never saw."""
-    problem = replace(final.problem, measurements=others.masked(), model=final.fit.model)
-    gap = problem.channel_gap(final.fit.model.values)[0]
-    if "position" not in problem.channels.present:
-        return _rms(gap[problem.lengths]), np.nan
-    held = problem.channels.held("position")
-    first = np.flatnonzero(held.all(axis=1))
-    full = np.full(held.shape, np.nan)
-    full[held] = gap[problem.channels.kinds[0]]
-    return _rms(gap[problem.lengths]), float(np.linalg.norm(full[first], axis=1).mean())

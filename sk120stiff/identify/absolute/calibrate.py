@@ -15,6 +15,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.gauge import Frozen, least_set
 from sk120stiff.identify.absolute.gauss_newton import gauss_newton
 from sk120stiff.identify.absolute.left_out import doubted
+from sk120stiff.identify.absolute.model_form import ModelForm, model_form, widened
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.selection import waves_that_show
 from sk120stiff.identify.absolute.start import in_gravity, loaded, started
@@ -48,6 +49,8 @@ class Calibration:
         wild: (N,) rows of the readings given that were set aside.
         waves: Transmission errors that show beyond doubt and so are in the model.
         notes: What is to be said, in sentences.
+        form: The smooth error of the model in what is left, where it was looked for and is there;
+            it is in the standard errors.
     """
 
     fit: Fit
@@ -57,6 +60,7 @@ class Calibration:
     wild: Mask
     waves: tuple[str, ...]
     notes: tuple[str, ...]
+    form: ModelForm | None = None
 
     @property
     def problem(self) -> PoseProblem:
@@ -352,3 +356,9 @@ def refined(
         model = with_values_of(model, near)
     found, frozen, wild = _fitted(model, readings, base.wild)
     return replace(base, fit=doubted(found, catalogue), frozen=frozen, wild=wild)
+
+
+def with_model_form(found: Calibration) -> Calibration:
+    """The calibration with the smooth error of the model, if any, in its standard errors."""
+    form = model_form(found.fit)
+    return replace(found, fit=widened(found.fit, form), form=form)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sk120stiff.explain.absolute.next_step import next_step_of_positions
+from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.absolute.run import Explained
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.measurements import Measurements
@@ -23,14 +23,6 @@ from sk120stiff.show.report import (
     Table,
 )
 from sk120stiff.show.wording import said_in
-
-VERDICTS = {
-    "none": "The registered arm agrees with the positions: nothing is missing that they show.",
-    "named": "What was missing has names.",
-    "ambiguous": "What is missing has names, some of which these positions cannot tell apart.",
-    "outside": "More is left than the stated noise makes, and no effect of the catalogue explains "
-    "it at poses left out.",
-}
 
 
 def positions_report(
@@ -101,7 +93,7 @@ def positions_report(
                 ],
             ),
         ],
-        lead=VERDICTS[answer.verdict],
+        lead=headline(answer),
         reproducibility=reproducibility,
     )
 

@@ -1,0 +1,117 @@
+"""What each named cause takes off the gap, fitted and at poses left out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.explain.absolute.candidates import family
+from sk120stiff.explain.absolute.choose import Chosen, lengths
+from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.findings import Contender
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.measurements import Measurements
+
+
+@dataclass(frozen=True)
+class GapStep:
+    """The gap with one cause more: rms per axis, fitted and held out, and mean distance [m]."""
+
+    label: str
+    fit_rms: float
+    heldout_rms: float
+    heldout_distance: float
+
+
+def steps_of(
+    linear: Linear, found: Chosen, base: Calibration, seen: Calibration
+) -> tuple[GapStep, ...]:
+    """The gap as one named cause after the other joins."""
+    sigma, whole = seen.problem.of_channels.sigma, _whole(linear, seen)
+    first = " + ".join(effect.id for effect in base.fit.model.effects) or "rigid"
+    labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
+    steps = []
+    for k, label in enumerate(labels):
+        chosen = found.order[:k]
+        noise = linear.noise(chosen)
+        fitted = linear.gap(chosen, noise, held_out=False)
+        held = linear.gap(chosen, noise, held_out=True)
+        distance = lengths(held, linear, sigma, whole)
+        inside = seen.problem.counted
+        steps.append(
+            GapStep(
+                label,
+                rms((fitted * sigma)[inside]),
+                rms((held * sigma)[inside]),
+                float(distance.mean()) if len(distance) else np.nan,
+            )
+        )
+    return tuple(steps)
+
+
+def _whole(linear: Linear, seen: Calibration) -> Array:
+    """(M,) numbers that are coordinates of positions."""
+    part = np.zeros(len(linear.residual), dtype=bool)
+    for kind, own in zip(seen.problem.channels.present, seen.problem.channels.kinds, strict=True):
+        part[own] = kind == "position"
+    return part
+
+
+def families_of(linear: Linear, found: Chosen, seen: Calibration) -> dict[str, float]:
+    """Family → rms per axis that its causes take off the held-out gap together [m]."""
+    sigma, counted = seen.problem.of_channels.sigma, seen.problem.counted
+    groups: dict[str, list[int]] = {}
+    for e in found.order:
+        groups.setdefault(family(linear.candidates[e]), []).append(e)
+    noise = linear.noise(found.order)
+    left = rms((linear.gap(found.order, noise, held_out=True) * sigma)[counted])
+    out = {}
+    for name, members in groups.items():
+        rest = tuple(e for e in found.order if e not in members)
+        out[name] = rms((linear.gap(rest, noise, held_out=True) * sigma)[counted]) - left
+    return out
+
+
+def springs_of(linear: Linear, found: Chosen) -> float | None:
+    """Share of the held-out gap that springs in all joints would take off, where none is named."""
+    springs = [e for e, effect in enumerate(linear.candidates) if effect.joint_spring]
+    if not springs or set(springs) & set(found.order):
+        return None
+    noise = linear.noise(found.order)
+    before = rms(linear.gap(found.order, noise, held_out=True))
+    return 1.0 - rms(linear.gap((*found.order, *springs), noise, held_out=True)) / before
+
+
+def suspects_of(linear: Linear, found: Chosen, seen: Calibration) -> tuple[Contender, ...]:
+    """Names that fit, and what each takes off the held-out rms beside the others [m]."""
+    sigma, counted = seen.problem.of_channels.sigma, seen.problem.counted
+
+    def left(chosen: tuple[int, ...]) -> float:
+        gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
+        return rms((gap * sigma)[counted])
+
+    whole = left(found.order)
+    return tuple(
+        Contender(linear.candidates[e].id, left(linear.less(found.order, e)) - whole)
+        for e in found.order
+    )
+
+
+def rms(x: Array) -> float:
+    """Root of the mean square; 0 of nothing."""
+    return float(np.sqrt(np.mean(x**2))) if len(x) else 0.0
+
+
+def heldout_on(final: Calibration, others: Measurements) -> tuple[float, float]:
+    """Rms per axis and mean distance [m] of a calibration at readings it never saw."""
+    problem = replace(final.problem, measurements=others.masked(), model=final.fit.model)
+    gap = problem.channel_gap(final.fit.model.values)[0]
+    if "position" not in problem.channels.present:
+        return rms(gap[problem.lengths]), np.nan
+    held = problem.channels.held("position")
+    first = np.flatnonzero(held.all(axis=1))
+    full = np.full(held.shape, np.nan)
+    full[held] = gap[problem.channels.kinds[0]]
+    return rms(gap[problem.lengths]), float(np.linalg.norm(full[first], axis=1).mean())

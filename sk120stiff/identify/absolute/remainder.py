@@ -1,0 +1,93 @@
+"""What a calibration leaves beyond the noise: how much, in numbers and in words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.model_form import ModelForm
+
+LEVEL = 0.01  # probability of noise alone below which what is left is significant
+ENDS = (0.975, 0.025)  # of an interval that holds 95 %
+
+Size = tuple[float, float, float]  # best value and 95 % interval
+
+
+def beyond(final: Calibration, sigma: float) -> Size:
+    """Rms per axis beyond a stated noise [m].
+
+    Readings that scatter less than was stated by chance exclude no more than others: the upper end
+    is at least what noise alone would hide (power-constrained, Cowan et al. 2011).
+    """
+    square, freedom = final.fit.judged
+    freedom = max(freedom, 1)
+    high, low = (float(stats.chi2.ppf(level, freedom)) for level in ENDS)
+    shares = square / freedom, square / high, max(square / low, high / freedom)
+    best, least, most = (sigma * max(share - 1.0, 0.0) ** 0.5 for share in shares)
+    return best, least, most
+
+
+def smooth_part(final: Calibration, form: ModelForm) -> Size:
+    """Rms per axis of the smooth error where no noise is stated [m]."""
+    gap = final.fit.residual * final.problem.of_channels.sigma
+    whole = len(gap) / max(final.fit.degrees_of_freedom, 1)
+    own = gap[final.problem.counted]
+    best = float(np.sqrt(np.mean(own**2) * form.share * whole))
+    ends = [(form.smooth / float(stats.chi2.ppf(level, form.smooth))) ** 0.5 for level in ENDS]
+    return best, best * ends[0], best * ends[1]
+
+
+def left_beyond_noise(final: Calibration) -> Size | None:
+    """Rms per axis beyond the noise and its 95 % interval; None where nothing tells the two."""
+    form, stated = final.form, final.problem.stated_sigma
+    if final.fit.sigma_known and stated is not None:
+        return beyond(final, stated)
+    return None if form is None else smooth_part(final, form)
+
+
+def chance_of_noise(final: Calibration) -> float | None:
+    """Probability that noise alone leaves as much; None where nothing tells the two apart."""
+    if final.fit.sigma_known and final.fit.misfit is not None:
+        return final.fit.misfit[2]
+    return None if final.form is None else final.form.chance
+
+
+def remainder_entry(final: Calibration) -> dict[str, Any]:
+    """What is left as callers rely on it."""
+    size, chance = left_beyond_noise(final), chance_of_noise(final)
+    um: list[float | None] = [None] * 3
+    if size is not None and len(final.problem.lengths):
+        um = [1e6 * x for x in size]
+    return {
+        "rms_um": um[0],
+        "interval_95": um[1:],
+        "p": chance,
+        "significant": bool(chance is not None and chance < LEVEL),
+    }
+
+
+def remainder_sentences(final: Calibration) -> list[str]:
+    """How much is left beyond the noise, where something tells."""
+    size = left_beyond_noise(final)
+    if size is None:
+        return []
+    return [in_words(size, final.problem.unit, stated=final.fit.sigma_known)]
+
+
+def in_words(size: Size, unit: str, *, stated: bool) -> str:
+    """How much is left beyond the noise, in a sentence."""
+    best, low, high = (f"{1e6 * x:.3g}" for x in size)
+    if not stated:
+        return (
+            f"What is left is mostly smooth over the joints, as an error of the model is and noise "
+            f"is not: {best} {unit} rms per axis (95 %: {low} to {high})."
+        )
+    if size[0] == 0.0:
+        return (
+            f"Nothing is left beyond the stated noise; more than {high} {unit} rms per axis is "
+            "excluded (95 %)."
+        )
+    return f"Left beyond the stated noise are {best} {unit} rms per axis (95 %: {low} to {high})."
