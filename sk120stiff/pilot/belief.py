@@ -1,10 +1,11 @@
 """How probable each name is after some readings: exact evidence of linear Gaussian models.
 
 A hypothesis is a set of effects beside the base model: none, each alone, and pairs of the leaders.
-Parameters are Gaussian beforehand, those of the springs about the model's values with a wide range,
-those of an effect about zero with a size that is a multiple of the typical one; the multiple is
-integrated over. Then ln Z = -½ (yᵀy - mᵀ(G + Λ)⁻¹m + ln det(G + Λ) - ln det Λ) (Bishop 2006, 3.5),
-and compliances that would be negative count for as much as their posterior lies above zero.
+Parameters are Gaussian beforehand: those of the springs about the model's values, near them where
+the model is a good one and over a wide range where it is not; those of an effect about zero, with a
+size that is a multiple of the typical one. Both are integrated over. Then ln Z = -½ (yᵀy
+- mᵀ(G + Λ)⁻¹m + ln det(G + Λ) - ln det Λ) (Bishop 2006, 3.5), and compliances that would be
+negative count for as much as their posterior lies above zero.
 """
 
 from __future__ import annotations
@@ -57,11 +58,13 @@ class Belief:
         linear: The candidates.
         sums: The readings.
         given: Probabilities that the user gave to effects beforehand.
+        own: The readings as linearised at the place of a hypothesis itself, by its members.
     """
 
     linear: LinearMap
     sums: Sums
     given: dict[str, float] = field(default_factory=dict)
+    own: dict[tuple[int, ...], Sums] = field(default_factory=dict)
 
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
@@ -135,7 +138,8 @@ class Belief:
     def _beside(self, first: int) -> list[int]:
         """Effects that explain most of what one leaves."""
         columns = self._columns((first,))
-        gram = self.sums.gram[np.ix_(columns, columns)] + np.diag(self._precision(columns, 3.0))
+        gram = self.sums.gram[np.ix_(columns, columns)]
+        gram = gram + np.diag(self._precision(columns, self.linear.spread[-1], 3.0))
         inverse = np.linalg.inv(gram)
         gains = []
         for e, own in enumerate(self.linear.columns):
@@ -148,33 +152,34 @@ class Belief:
     def _columns(self, members: Sequence[int]) -> Index:
         return np.concatenate([self.linear.base, *(self.linear.columns[e] for e in members)])
 
-    def _precision(self, columns: Index, size: float) -> Array:
-        k = len(self.linear.base)
-        own = np.full(len(columns) - k, size**-2)
-        return np.concatenate([self.linear.spread**-2.0, own])
+    def _precision(self, columns: Index, spread: Array, size: float) -> Array:
+        return np.concatenate([spread**-2.0, np.full(len(columns) - len(spread), size**-2)])
 
     def _weighed(self, members: tuple[int, ...], prior: float) -> Hypothesis:
         columns, k = self._columns(members), len(self.linear.base)
-        gram, moment = self.sums.gram[np.ix_(columns, columns)], self.sums.moment[columns]
+        sums = self.own.get(members, self.sums)
+        gram, moment = sums.gram[np.ix_(columns, columns)], sums.moment[columns]
         bound = self.linear.positive[columns].copy()
         bound[:k] = False
         sizes = SIZES if members else (1.0,)
-        precision = np.array([self._precision(columns, size) for size in sizes])  # (S, k)
+        precision = np.array(  # (S, k)
+            [self._precision(columns, near, size) for near in self.linear.spread for size in sizes]
+        )
         inner = gram + precision[:, :, None] * np.eye(len(columns))
         covariances = np.linalg.inv(inner)
         means = covariances @ moment
-        logs = -0.5 * (self.sums.square - means @ moment)
+        logs = -0.5 * (sums.square - means @ moment)
         logs += 0.5 * (np.log(precision).sum(axis=1) - np.linalg.slogdet(inner)[1])
         if bound.any():
             variance = np.diagonal(covariances, axis1=1, axis2=2)[:, bound]
             logs += (log_ndtr(means[:, bound] / np.sqrt(variance)) + np.log(2.0)).sum(axis=1)
         best = means[int(np.argmax(logs))]
-        misfit = self.sums.square - 2.0 * float(best @ moment) + float(best @ gram @ best)
+        misfit = sums.square - 2.0 * float(best @ moment) + float(best @ gram @ best)
         evidence = float(np.logaddexp.reduce(logs))
         # One size alone, the smallest while little is known, would hide what a reading could show.
         share = np.exp(logs - evidence)
         mean = share @ means
         off = means - mean
         covariance = np.einsum("s,sij->ij", share, covariances + off[:, :, None] * off[:, None])
-        total = evidence - float(np.log(len(sizes))) + prior
+        total = evidence - float(np.log(len(precision))) + prior
         return Hypothesis(members, total, columns, mean, covariance, max(misfit, 0.0))

@@ -5,7 +5,7 @@ Everything follows from the readings alone: a campaign can be left and taken up 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -29,6 +29,7 @@ APART = 3.3  # √λ at which two names are told apart
 LITTLE = 0.01  # nat: a reading that brings less about names tells next to nothing
 QUIET, ENOUGH = 0.7, 12  # probability of nothing, and readings, from which silence counts
 ROUNDS = 2  # of putting the linearisation where the readings are
+COUNTS, CHECKED = 1e-3, 6  # probability, and number, of names that are held against the exact law
 
 Reason = Literal["named", "class", "none", "target", "hopeless", "most"]
 
@@ -113,28 +114,46 @@ class Campaign:
 
     def belief(self, readings: Measurements | None) -> Belief:
         """What readings say, the linearisation put where the most probable hypothesis is."""
-        linear = self.linear
-        size = len(linear.scale)
+        found = Belief(self.linear, Sums.none(len(self.linear.scale)), self.given)
         if readings is None:
-            return Belief(linear, Sums.none(size), self.given)
+            return found
+        problem, v = self._problem(readings), np.zeros(len(self.linear.scale))
+        for _ in range(ROUNDS):
+            found = Belief(self.linear, self._sums(problem, v), self.given)
+            v = self._place(found.leader)
+        return found
+
+    def held(self, belief: Belief, readings: Measurements) -> Belief:
+        """The same with every name that counts at its own place, where its law is exact.
+
+        About the place of another one a name that turns or scales what springs do fits worse than
+        it does, by the product of both.
+        """
+        problem = self._problem(readings)
+        counts = [h for w, h in zip(belief.weights, belief.hypotheses, strict=True) if w > COUNTS]
+        own = {h.members: self._sums(problem, self._place(h)) for h in counts[:CHECKED]}
+        return replace(belief, own=own)
+
+    def _problem(self, readings: Measurements) -> Problem:
         used = without_copies(readings)[0].masked()
         zero: Literal["shared", "separate"] = "shared" if used.zero == "shared" else "separate"
-        problem = Problem(self.model, used, NoiseModel(self.sigma, zero=zero))
-        start = linear.model.values
-        v = np.zeros(size)
-        found = Belief(linear, Sums.none(size), self.given)
-        for _ in range(ROUNDS):
-            predicted, derivative = self.rows(problem.load_cases, v)
-            X = problem.whitener.apply(derivative)
-            y = problem.whitener.apply(problem.measured - predicted) + X @ v
-            found = Belief(linear, Sums.none(size).plus(X, y), self.given)
-            leader = found.leader
-            v = np.zeros(size)
-            v[leader.columns] = leader.mean
-            least = np.where(linear.positive, 0.0, -np.inf)
-            base = start / linear.scale
-            v = np.maximum(base + v, np.where(base > 0.0, 0.2 * base, least)) - base
-        return found
+        return Problem(self.model, used, NoiseModel(self.sigma, zero=zero))
+
+    def _sums(self, problem: Problem, v: Array) -> Sums:
+        """Of readings, linearised at v (P,) typical sizes off the start."""
+        predicted, derivative = self.rows(problem.load_cases, v)
+        X = problem.whitener.apply(derivative)
+        y = problem.whitener.apply(problem.measured - predicted) + X @ v
+        return Sums.none(len(v)).plus(X, y)
+
+    def _place(self, h: Hypothesis) -> Array:
+        """(P,) where a hypothesis is, typical sizes off the start, within what can be."""
+        linear = self.linear
+        v = np.zeros(len(linear.scale))
+        v[h.columns] = h.mean
+        least = np.where(linear.positive, 0.0, -np.inf)
+        base = linear.model.values / linear.scale
+        return np.maximum(base + v, np.where(base > 0.0, 0.2 * base, least)) - base
 
     def rows(self, load_cases: LoadCases, v: Array) -> tuple[Array, Array]:
         """(N, 3) predictions and (N, 3, P) changes per typical size [m], v of these off the start.
@@ -150,8 +169,14 @@ class Campaign:
     def state(self, readings: Measurements | None) -> State:
         """What is known, what comes next, or why to stop."""
         belief = self.belief(readings)
-        count = 0 if readings is None else without_copies(readings)[0].masked().n_readings
         taken = self._taken(readings)
+        state = self._judged(belief, readings, taken)
+        if readings is not None and state.stop is not None and state.stop.names:
+            state = self._judged(self.held(belief, readings), readings, taken)
+        return state
+
+    def _judged(self, belief: Belief, readings: Measurements | None, taken: Mask) -> State:
+        count = 0 if readings is None else without_copies(readings)[0].masked().n_readings
         springs = self._springs(belief)
         row, found = best(belief, self.X, ~taken)
         decides = self._decides(belief, row)

@@ -18,7 +18,8 @@ from sk120stiff.effects import CATALOGUE, Catalogue, Effect, LoadCases, all_effe
 from sk120stiff.model import Model
 
 FAINT = 0.5  # of the noise: an effect whose usual size shows less at every reading is not weighed
-SPREAD = 3.0  # typical sizes by which springs may be off; at least what is plausible
+SPREAD = 3.0  # typical sizes by which base parameters may be off; at least what is plausible
+NEAR = 0.5  # of its value by which a base parameter is off where the model is a good one
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,8 @@ class LinearMap:
         model: Base model with all candidates in it, those at zero.
         scale: (P,) typical sizes of the parameters.
         base: Columns of the base model's free parameters.
-        spread: (len(base),) standard deviations that they are given beforehand, typical sizes.
+        spread: (2, len(base)) standard deviations that they are given beforehand, typical sizes:
+            where the model is a good one, and where it says nothing about them.
         effects: The candidates.
         columns: For each candidate its columns.
         positive: (P,) parameters that cannot be negative.
@@ -81,11 +83,15 @@ class LinearMap:
         base = np.array([k for i in present for k in owner.get(i, [])], dtype=np.intp)
         base.sort()
         plausible = np.array([p.spec.plausible for p in full.parameters]) / scale
+        wide = np.maximum(plausible[base], SPREAD)
+        values = np.abs(full.values[base]) / scale[base]
         found = cls(
             model=full,
             scale=scale,
             base=base,
-            spread=np.maximum(plausible[base], SPREAD),
+            spread=np.array(
+                [np.where(values > 0.0, np.minimum(NEAR * values, wide), SPREAD), wide]
+            ),
             effects=tuple(fit_for),
             columns=tuple(np.array(owner[e.id], dtype=np.intp) for e in fit_for),
             positive=np.array([p.spec.lower == 0.0 for p in full.parameters]),

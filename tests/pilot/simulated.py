@@ -159,7 +159,7 @@ class Bench:
             return None
         if policy == "random":
             return [int(k) for k in rng.permutation(len(X))[:MOST]]
-        columns, spread = linear.base, linear.spread
+        columns, spread = linear.base, linear.spread[-1]
         if policy == "D-optimal for all":
             every = np.concatenate(linear.columns)
             columns = np.concatenate([columns, every])
