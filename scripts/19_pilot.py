@@ -14,6 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+from tests.pilot import simulated
 from tests.pilot.simulated import ARMS, MOST, POLICIES, Bench, Run, campaigns
 
 
@@ -21,9 +22,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--campaigns", type=int, default=300)
     parser.add_argument("--seed", type=int, default=2026)
+    parser.add_argument("--off", type=float, default=simulated.OFF, help="log of springs' errors")
     parser.add_argument("--ask", action="store_true", help="confirm every stop by explain")
     parser.add_argument("--log", type=Path, help="one line for each run; gone on with if it exists")
     options = parser.parse_args()
+    simulated.OFF = options.off
     done: list[Run] = []
     if options.log and options.log.is_file():
         done = [Run(**json.loads(line)) for line in options.log.read_text().splitlines()]
@@ -42,23 +45,25 @@ def table(runs: Sequence[Run]) -> None:
     total = len(runs) // len(POLICIES)
     print(f"{total} campaigns")
     print(
-        "policy              readings to the right name   named  class  wrong  clean: false alarms"
+        "policy       readings to the right name     pilot's share (95 %)   named  class  wrong  "
+        "clean: false alarms"
     )
-    print("                    median   mean   over pilot")
-    means = {}
+    print("             median   mean  where right")
+    pilot = np.zeros(0)
     for policy in POLICIES:
         own = [run for run in runs if run.policy == policy]
         hidden = [run for run in own if run.truth != "none"]
         clean = [run for run in own if run.truth == "none"]
         counts = np.array([run.count if run.right else MOST for run in hidden])
-        means[policy] = counts.mean()
+        pilot = counts if policy == "pilot" else pilot
+        told = np.mean([run.count for run in hidden if run.right])
         right = np.mean([run.right and run.reason == "named" for run in hidden])
         several = np.mean([run.right and run.reason == "class" for run in hidden])
         wrong = np.mean([run.wrong for run in own])
         alarms = sum(run.wrong for run in clean)
         print(
-            f"{policy:18s} {np.median(counts):7.1f} {counts.mean():6.1f}   "
-            f"{means['pilot'] / counts.mean():6.0%}      {right:8.0%} {several:6.0%} {wrong:6.1%}"
+            f"{policy:11s} {np.median(counts):7.1f} {counts.mean():6.1f} {told:8.1f}       "
+            f"{share(pilot, counts):>22s} {right:7.0%} {several:6.0%} {wrong:6.1%}"
             f"   {alarms} of {len(clean)}"
         )
     print("\nPilot's runs that were not right:")
@@ -66,6 +71,14 @@ def table(runs: Sequence[Run]) -> None:
         if run.policy == "pilot" and not run.right:
             names = " or ".join(run.names) or "nothing"
             print(f"  {run.arm} {run.truth} ({run.visible:.0f}): {run.reason} {names}, {run.count}")
+
+
+def share(some: np.ndarray, others: np.ndarray) -> str:
+    """Ratio of two means over the same campaigns, with its interval by bootstrap over these."""
+    drawn = np.random.default_rng(0).integers(len(some), size=(5000, len(some)))
+    ratios = some[drawn].mean(axis=1) / others[drawn].mean(axis=1)
+    low, high = np.quantile(ratios, [0.025, 0.975])
+    return f"{some.mean() / others.mean():.0%} ({low:.0%} to {high:.0%})"
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ CAUSES = (
     "tool_compliance", "closure_rod", "lost_motion", "gear_hardening", "force_scale",
     "force_rotation", "joint_tilt", "link_bending",
 )  # fmt: skip
+OFF = 0.2  # of its logarithm by which each spring is off
 SHOWN = (8.0, 30.0)  # √λ of the cause beyond the springs, over thirty random readings
 MOST = 40
 POLICIES = ("pilot", "random", "D-optimal")
@@ -110,7 +111,7 @@ class Bench:
     def truth(self, cause: str, rng: np.random.Generator) -> tuple[Model, str, float]:
         """Springs of its own, and a cause somewhere with a size that shows."""
         linear, X, base = self.campaign.linear, self.campaign.X, self.campaign.model
-        off = np.exp(0.2 * rng.normal(size=len(base.values)))
+        off = np.exp(OFF * rng.normal(size=len(base.values)))
         model = base.with_values(base.values * off)
         places = [e for e in linear.effects if e.name == cause]
         if not places:
