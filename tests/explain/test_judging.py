@@ -83,11 +83,13 @@ def test_a_notebook_shows_the_name_its_size_and_the_gap(springs):
     rocking = hidden(BaseRocking("base_link", {"x": 2e-7, "y": 2e-7}))
     answer = explain(springs, rocking, options=Options(only=("base_rocking", "joint_tilt")))
     shown = answer._repr_html_()
-    page = ET.fromstring(shown.replace("<br>", "<br/>"))
-    cells = ["".join(cell.itertext()) for cell in page.iter("td")]
-    assert "base_rocking:base_link" in cells
-    assert any("stiffness_x = " in cell and "N*m/rad" in cell for cell in cells)
-    assert f"{1e6 * answer.steps[-1].heldout_rms:.3g}" in cells
+    page = ET.fromstring(f"<div>{shown}</div>")
+    text = " ".join(page.itertext())
+    assert "base_rocking:base_link" in text
+    cells = ["".join(cell.itertext()) for row in page.iter("tr") for cell in row]
+    (row,) = (k for k, cell in enumerate(cells) if cell.endswith("stiffness_x"))
+    assert "±" in cells[row + 1] and cells[row + 4].endswith("N·m/rad")
+    assert f"{1e6 * answer.steps[-1].heldout_rms:#.3g}" in cells
 
 
 def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):

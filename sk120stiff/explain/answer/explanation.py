@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
-from sk120stiff.explain.answer.notebook import summary_html
 from sk120stiff.explain.findings import Contender, Detectable, Finding, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.budget import error_budget
@@ -205,5 +204,7 @@ class Explanation:
         return f"<Explanation: {self.verdict}{' ' if names else ''}{names}; gap {gap} µm rms>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """What a notebook shows: the first lines of the report, sizes and gap."""
+        from sk120stiff.show.stories.explain_report import summary_html
+
         return summary_html(self)

@@ -14,7 +14,7 @@ from sk120stiff.show.report.blocks import (
 )
 from sk120stiff.show.report.fallback import failure, section_or_note
 from sk120stiff.show.report.provenance import reproducibility
-from sk120stiff.show.report.rendering import Report
+from sk120stiff.show.report.rendering import Report, fragment
 
 __all__ = [
     "Block",
@@ -29,6 +29,7 @@ __all__ = [
     "Section",
     "Table",
     "failure",
+    "fragment",
     "reproducibility",
     "section_or_note",
 ]

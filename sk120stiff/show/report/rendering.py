@@ -59,6 +59,12 @@ class Report:
         )
 
 
+def fragment(section: Section) -> str:
+    """A section alone as HTML, to be put into a page that is not ours."""
+    blocks = _environment().get_template("blocks.html.j2").module
+    return str(blocks.render_section(section, 4, _slug(section.title)))  # type: ignore[attr-defined]
+
+
 def _has_scene(blocks: Sequence[Block]) -> bool:
     return any(
         isinstance(block, SceneFrame) or (isinstance(block, Section) and _has_scene(block.blocks))

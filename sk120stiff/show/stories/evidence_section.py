@@ -49,7 +49,7 @@ def evidence_section(answer: Explanation) -> Section:
 
 def _finding(answer: Explanation, finding: Finding) -> list[Block]:
     blocks: list[Block] = [f"**{finding.effect.sentence()}** (`{finding.effect.id}`)"]
-    blocks += [_sizes(answer, finding), Items(list(comment_lines(finding.effect)))]
+    blocks += [sizes_of(answer, finding), Items(list(comment_lines(finding.effect)))]
     if finding.exact:
         blocks.append(
             Note(
@@ -88,7 +88,8 @@ def _scores(finding: Finding) -> Picture:
     )
 
 
-def _sizes(answer: Explanation, finding: Finding) -> Table | str:
+def sizes_of(answer: Explanation, finding: Finding) -> Table | str:
+    """Parameters of a finding with error and interval; very many are told by their size alone."""
     own = [p for p in answer.final.model.parameters if p.effect == finding.effect]
     if len(own) > MANY:
         return many_values(own)

@@ -16,11 +16,12 @@ from sk120stiff.show.report import (
     Note,
     Report,
     Section,
+    fragment,
     section_or_note,
 )
 from sk120stiff.show.stories.budget_section import budget_section
-from sk120stiff.show.stories.evidence_section import evidence_section
-from sk120stiff.show.stories.gap_section import gap_section
+from sk120stiff.show.stories.evidence_section import evidence_section, sizes_of
+from sk120stiff.show.stories.gap_section import gap_section, steps_table
 from sk120stiff.show.stories.gear_section import gear_section
 from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
 from sk120stiff.show.stories.parameters_section import parameters_section
@@ -79,6 +80,17 @@ def explain_report(
         sections=[section for section in sections if section is not None],
         reproducibility=reproducibility or {},
     )
+
+
+def summary_html(answer: Explanation) -> str:
+    """The answer, the sizes of what was named, the gap and where it lives, as a notebook shows it.
+
+    A fragment of HTML without scripts and pictures; every text in it is escaped.
+    """
+    told = _answer(answer).blocks
+    sizes = [sizes_of(answer, finding) for finding in answer.findings]
+    blocks = [lead_of(answer), *told, *sizes, steps_table(answer), Items([*answer.unnamed, *answer.where])]
+    return fragment(Section(title_of(answer), blocks))
 
 
 def _answer(answer: Explanation) -> Section:
