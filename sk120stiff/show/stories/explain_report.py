@@ -89,7 +89,8 @@ def summary_html(answer: Explanation) -> str:
     """
     told = _answer(answer).blocks
     sizes = [sizes_of(answer, finding) for finding in answer.findings]
-    blocks = [lead_of(answer), *told, *sizes, steps_table(answer), Items([*answer.unnamed, *answer.where])]
+    where = Items([*answer.unnamed, *answer.where])
+    blocks = [lead_of(answer), *told, *sizes, steps_table(answer), where]
     return fragment(Section(title_of(answer), blocks))
 
 
