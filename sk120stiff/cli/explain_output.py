@@ -13,18 +13,16 @@ from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
-from sk120stiff.explain import DOUBTFUL, Explanation
+from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
-from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.files import will_write, write_atomically
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.wording import with_error
 
-FEW_POSES = 8  # below this other poses confirm little
 STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
 LISTED = 8  # effects whose share is printed; verdict.json has all
@@ -203,48 +201,12 @@ def _budget(answer: Explanation) -> object:
 
 
 def said(answer: Explanation) -> str:
-    """The verdict as a sentence."""
-    if answer.verdict == "none":
-        return _none(answer.adequacy)
-    return {
-        "named": "Something was missing, and it has a name.",
-        "ambiguous": _ambiguous(answer),
-        "outside": _outside(answer),
-    }[answer.verdict]
+    """The verdict in the words of the report; what is named follows."""
+    if answer.verdict == "named":
+        return "Something was missing, and it has a name."
+    from sk120stiff.show.stories.verdicts import lead_of  # slow to import
 
-
-def _ambiguous(answer: Explanation) -> str:
-    if all(set(each.alternatives) <= set(each.exact) for each in answer.findings):
-        return "Something seems to be missing; its name is likely, but not sure."
-    return "Something is missing; these readings cannot tell which of several names."
-
-
-def _none(left: Adequacy) -> str:
-    if left.chance is None:
-        return (
-            "No effect can be named. The noise is unknown, so whether something is missing stays "
-            "open: state it, or repeat readings."
-        )
-    if left.understated is not None:
-        return (
-            f"σ looks {left.understated:.2f} times too small; nothing structured is left that the "
-            "data could show."
-        )
-    if left.chance < DOUBTFUL:
-        return (
-            f"No effect can be named. What is left is a little more than the noise (p = "
-            f"{left.chance:.2g}), not enough to claim that something is missing."
-        )
-    return "Model and data agree within the noise: nothing is missing that they could show."
-
-
-def _outside(answer: Explanation) -> str:
-    if answer.unnamed:
-        poses = len(answer.base.problem.load_cases.poses)
-        few = f" {poses} poses are few: measure at more." if poses < FEW_POSES else ""
-        return f"Something is missing, and no name for it is confirmed by other poses.{few}"
-    allowed = "that was looked for" if answer.limits else "of the catalogue"
-    return f"Something is missing that no effect {allowed} explains."
+    return lead_of(answer)
 
 
 def findings(answer: Explanation) -> list[str]:

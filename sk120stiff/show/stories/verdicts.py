@@ -5,6 +5,7 @@ from __future__ import annotations
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.show.wording import chance, counted, um
 
+FEW_POSES = 8  # below this other poses confirm little
 FEW = 2  # rivals that are told in the first lines; the evidence lists all
 
 
@@ -77,6 +78,9 @@ def _outside(answer: Explanation) -> str:
     why = "no effect of the catalogue explains it"
     if answer.unnamed:
         why = "no name for it is confirmed by other poses"
+        poses = len(answer.base.problem.load_cases.poses)
+        if poses < FEW_POSES:
+            why += f" ({poses} poses are few: measure at more)"
     elif answer.limits:
         why = "no effect that was looked for explains it"
     return (
