@@ -15,6 +15,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.absolute.remainder import remainder_entry, remainder_sentences
+from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import (
     angle_gap,
     findings,
@@ -53,6 +54,7 @@ def calibration_answer(
 ) -> Answer:
     """Geometry, springs and what cannot be told, as JSON and for people."""
     found = with_model_form(calibrate(model, readings, freedom=tuple(fix), waves=waves))
+    found = replace(found, notes=(*found.notes, *pounds(found)))
     fit = found.fit
     if out is not None:
         write_model(replace(known_calibration(found), provenance=provenance(data, readings)), out)

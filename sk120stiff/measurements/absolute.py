@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
@@ -12,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from sk120stiff import units
 from sk120stiff.arrays import Array, Index
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.columns import (
     ANCHORS,
@@ -165,7 +166,7 @@ def _places(markers: tuple[str, ...], known: Mapping[str, object], table: Table)
 
 
 def _payload(table: Table) -> Array:
-    """(N,) [kg]; a blank cell is no payload."""
+    """(N,) [kg]; a blank cell is no payload, which is told."""
     if table.column_units["payload"] != "kg":
         raise InputError(
             "the column 'payload' is a mass, in kg",
@@ -179,6 +180,15 @@ def _payload(table: Table) -> Array:
             f"a payload of {mass[negative[0]]:.4g} kg: no mass is negative",
             where=table.place("payload", int(negative[0])),
             remedy="Write the mass that hangs on the tool; 0 or a blank cell where there is none.",
+        )
+    blank = np.flatnonzero(~np.isfinite(mass))
+    if len(blank):
+        cells = "1 blank cell counts" if len(blank) == 1 else f"{len(blank)} blank cells count"
+        warnings.warn(
+            f"{table.place('payload', int(blank[0]))}: {cells} as no payload. Write 0 where none "
+            "hangs on the tool, the mass where one does.",
+            ToolkitWarning,
+            stacklevel=2,
         )
     return np.where(np.isfinite(mass), mass, 0.0)
 

@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations, permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.cloud import Cloud
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.placing_distances import place_distances
-from sk120stiff.measurements.registration import Registration, register
+from sk120stiff.measurements.placing_slips import conventions, markers, slips
+from sk120stiff.measurements.registration import Registration
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
 
 FEWEST = 3  # positions that a frame can be registered from
-ROUNDS = 8  # of registering and leaving out what lies far off
-FAR = 8.0  # times the median distance: a wild row
-WILD = 0.2  # share of rows beyond which they are no outliers
-LEAST = 2e-4  # m; no row is wild for less
 FITS = 0.03  # of the spread of the positions: what no calibrated arm leaves after placing
 SUSPECT = 1e-3  # of the spread of the positions: what is worth a look for slips of the pen
 BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
-MARKERS = 4  # up to which every exchange of markers is tried
-LOOKED_AT = 150  # rows that slips are looked for in
+FEWER = 50  # rows that sums of joints are looked for in: there are many
 TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
 MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
 
@@ -76,7 +70,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     names = np.array(said.markers)[whole]
     labels = list(dict.fromkeys(said.groups or ()))
     one = np.zeros(len(whole), dtype=np.intp)
-    cloud = _Cloud(robot, readings.joints[whole], x[whole], said.point[whole], names, one)
+    cloud = Cloud(robot, readings.joints[whole], x[whole], said.point[whole], names, one)
     found, kept = cloud.placed(fit_marker=True)
     spread = float(np.sqrt(((x[whole] - x[whole].mean(axis=0)) ** 2).sum(axis=1).mean()))
     if free and len(labels) > 1 and found.rms > SUSPECT * spread:
@@ -161,82 +155,33 @@ def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Cloud:
-    """Positions (N, 3) [m], joint values (N, n), stated markers (N, 3), their names (N,), and which
-    of them have a place of their own (N,).
-    """
-
-    robot: Robot
-    a: Array
-    x: Array
-    point: Array
-    marker: NDArray[np.str_]
-    group: Index
-
-    def placed(self, *, fit_marker: bool) -> tuple[Registration, Mask]:
-        """The best placing, and the rows that it rests on (N,)."""
-        screws = self.robot.screws(self.a)
-        flange, rotation = screws.frame_position, screws.rotation
-        kept = np.ones(len(self.x), dtype=bool)
-        for _ in range(ROUNDS):
-            found = register(
-                self.x[kept], flange[kept], rotation[kept], self.point[kept],
-                fit_marker=fit_marker, group=self.group[kept],
-            )  # fmt: skip
-            if found is None:
-                raise InputError("fewer than three positions", remedy="Measure more poses.")
-            left = self.left(found)
-            best = found
-            again = left <= max(FAR * float(np.median(left)), LEAST)
-            if (again == kept).all() or again.mean() < 1.0 - WILD:
-                break
-            kept = again
-        return best, kept
-
-    def left(self, found: Registration) -> Array:
-        """(N,) distance of every position from where the placed robot has the marker [m]."""
-        screws = self.robot.screws(self.a)
-        at = screws.frame_position + np.einsum(
-            "nij,nj->ni", screws.rotation, self.point + found.marker + found.apart[self.group]
-        )
-        return np.asarray(np.linalg.norm(self.x - at @ found.turn.T - found.shift, axis=1))
-
-    def some(self) -> _Cloud:
-        """A part of the rows, spread over all."""
-        pick = np.unique(np.linspace(0, len(self.x) - 1, LOOKED_AT).astype(int))
-        return replace(
-            self, a=self.a[pick], x=self.x[pick], point=self.point[pick], marker=self.marker[pick],
-            group=self.group[pick],
-        )  # fmt: skip
-
-
-def _refuse_slips(cloud: _Cloud, found: Registration, readings: Measurements) -> None:
+def _refuse_slips(cloud: Cloud, found: Registration, readings: Measurements) -> None:
     """Refuse positions that one slip of the pen explains far better."""
     where = str(readings.path or "measurements")
     told = _left(found)
     few = cloud.some()
     base = few.placed(fit_marker=True)[0].rms
-    tried = min(_slips(few, readings.joint_names), key=lambda item: item[0])
+    tried = min(slips(few, readings.joint_names), key=lambda item: item[0])
     if tried[0] < BETTER * base:
         _, rms, what, remedy = tried
         raise InputError(
             f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
         )
-    rest, mapping = _zeros_and_signs(few, readings.joint_names)
-    if mapping and rest < BETTER * base:
-        raise InputError(
-            f"{told}. With other zeros or signs of joints {1e3 * rest:.3g} mm are left",
-            where=where,
-            remedy=f"Check the controller's convention. If it is so, write into the YAML file: "
-            f"joints: {{{mapping}}}; where a joint has an expression there already, change that "
-            "one so.",
-        )
+    for sums, what in ((False, "zeros or signs"), (True, "zeros, signs or sums")):
+        rest, mapping = conventions(cloud.some(FEWER) if sums else few, readings.joint_names, sums)
+        if mapping and rest < BETTER * base:
+            raise InputError(
+                f"{told}. With other {what} of joints {1e3 * rest:.3g} mm are left",
+                where=where,
+                remedy="Check the controller's convention. If it is so, write into the YAML file: "
+                f"joints: {{{mapping}}}; where a joint has an expression there already, put that "
+                "in its place on the right.",
+            )
 
 
-def _refuse_exchange(cloud: _Cloud, found: Registration, readings: Measurements) -> None:
+def _refuse_exchange(cloud: Cloud, found: Registration, readings: Measurements) -> None:
     """Refuse names of markers whose exchange explains what one shift of all leaves."""
-    tried = min(_markers(cloud.some()), key=lambda item: item[0], default=None)
+    tried = min(markers(cloud.some()), key=lambda item: item[0], default=None)
     if tried is not None and tried[0] < BETTER * found.rms:
         _, rms, what, remedy = tried
         where = str(readings.path or "measurements")
@@ -253,7 +198,7 @@ def _left(found: Registration) -> str:
 
 
 def _no_such_arm(
-    cloud: _Cloud, found: Registration, readings: Measurements, whole: Index
+    cloud: Cloud, found: Registration, readings: Measurements, whole: Index
 ) -> InputError:
     """Positions that no placing of this robot gives."""
     distance = cloud.left(found)
@@ -268,117 +213,8 @@ def _no_such_arm(
     )
 
 
-def _slips(cloud: _Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, str, str]]:
-    """What is left with one slip mended, what it is, and the remedy."""
-    turning = ~np.array(cloud.robot.prismatic)
-
-    def left(a: Array = cloud.a, x: Array = cloud.x) -> float:
-        return replace(cloud, a=a, x=x).placed(fit_marker=True)[0].rms
-
-    for factor, was, unit in (
-        (np.pi / 180.0, "degrees, not radians", "deg"),
-        (180.0 / np.pi, "radians, not degrees", "rad"),
-    ):
-        a = np.where(turning, cloud.a * factor, cloud.a)
-        rms = left(a=a)
-        said = f"The joint angles look like {was}"
-        yield rms, rms, said, f"Write [{unit}] in their headers."
-        for k in np.flatnonzero(turning):
-            a = cloud.a.copy()
-            a[:, k] *= factor
-            rms = left(a=a)
-            said = f"The column of {names[k]} looks like {was}"
-            yield rms, rms, said, f"Write [{unit}] in its header."
-    for factor, unit in ((1e-3, "mm"), (1e3, "m"), (0.0254, "in"), (25.4, "in"), (1e-6, "um")):
-        rms = left(x=cloud.x * factor)
-        size = f"{factor:g} times too small" if factor > 1 else f"{1 / factor:g} times too large"
-        yield (
-            rms / factor,
-            rms,
-            f"The positions look {size}, as if in another unit",
-            f"Check the unit of x, y, z: {unit}?",
-        )
-    rms = left(x=cloud.x * np.array([-1.0, 1.0, 1.0]))
-    yield (
-        rms,
-        rms,
-        "The positions look mirrored: one axis has the other sign, or two axes are swapped",
-        "Check signs and order of x, y, z: the tracker's axes are right-handed.",
-    )
-    for i, j in combinations(range(len(names)), 2):
-        a = cloud.a.copy()
-        a[:, [i, j]] = a[:, [j, i]]
-        rms = left(a=a)
-        said = f"The columns of {names[i]} and {names[j]} look exchanged"
-        yield rms, rms, said, "Put the right names over the columns."
-    yield from _markers(cloud)
-
-
-def _markers(cloud: _Cloud) -> Iterator[tuple[float, float, str, str]]:
-    """Names of markers exchanged: all ways of a few, pairs of many."""
-    kinds, first = np.unique(cloud.marker, return_index=True)
-    place, count = cloud.point[first], len(kinds)
-    ways = permutations(range(count)) if count <= MARKERS else _pairs(count)
-    for way in ways:
-        moved = [k for k in range(count) if way[k] != k]
-        if not moved:
-            continue
-        point = cloud.point.copy()
-        for k in moved:
-            point[cloud.marker == kinds[k]] = place[way[k]]
-        rms = replace(cloud, point=point).placed(fit_marker=True)[0].rms
-        yield (
-            rms,
-            rms,
-            f"{len(moved)} markers look exchanged: what is written as "
-            + ", ".join(f"{kinds[k]} is {kinds[way[k]]}" for k in moved),
-            "Check the column marker against points.",
-        )
-
-
-def _pairs(count: int) -> Iterator[tuple[int, ...]]:
-    for i, j in combinations(range(count), 2):
-        way = list(range(count))
-        way[i], way[j] = j, i
-        yield tuple(way)
-
-
-def _zeros_and_signs(cloud: _Cloud, names: tuple[str, ...]) -> tuple[float, str]:
-    """What is left with the best zeros (quarter turns) and signs, and how to write them."""
-    n = cloud.a.shape[1]
-    sign, zero = np.ones(n), np.zeros(n)
-    turning = ~np.array(cloud.robot.prismatic)
-
-    def left(sign: Array, zero: Array) -> float:
-        moved = replace(cloud, a=cloud.a * sign + zero)
-        return moved.placed(fit_marker=True)[0].rms
-
-    best = left(sign, zero)
-    for _ in range(n):
-        tried: list[tuple[float, int, float, float]] = []
-        for k in range(n):
-            for s in (1.0, -1.0):
-                for quarter in range(4 if turning[k] else 1):
-                    own_sign, own_zero = sign.copy(), zero.copy()
-                    own_sign[k], own_zero[k] = s, quarter * np.pi / 2
-                    tried.append((left(own_sign, own_zero), k, s, quarter * np.pi / 2))
-        nearest = min(tried)
-        if nearest[0] > 0.9 * best:
-            break
-        best, k, sign[nearest[1]], zero[nearest[1]] = nearest
-    changed = []
-    for k, name in enumerate(names):
-        degrees = (np.degrees(zero[k]) + 180.0) % 360.0 - 180.0
-        if sign[k] < 0.0 or degrees:
-            text = f"{'-' if sign[k] < 0.0 else ''}{name}"
-            changed.append(f"{name}: {text}" + (f" {degrees:+.0f} deg" if degrees else ""))
-    return best, ", ".join(changed).replace(" +", " + ").replace(" -9", " - 9").replace(
-        " -1", " - 1"
-    )
-
-
 def _refuse_other_axes(
-    found: Registration, cloud: _Cloud, spread: float, readings: Measurements
+    found: Registration, cloud: Cloud, spread: float, readings: Measurements
 ) -> None:
     """Positions said to be in base axes must be there."""
     screws = cloud.robot.screws(cloud.a)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.cli.main import main
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
@@ -196,3 +198,37 @@ def test_single_axes_of_another_frame_are_no_readings_of_this_arm(tmp_path: Path
     readings = arm.written(np.degrees(arm.a), x, FIT, frame="base")
     with pytest.raises(InputError, match=r"(?s)worst in lines.*mm are left.*frame: unknown"):
         calibrate(sk.base_model(arm.robot), readings)
+
+
+FLOOR: dict[str, tuple[Callable[[Array], Array], str]] = {  # what the file makes of joint 3
+    "a sum that nobody took": (lambda a: a[:, 2] + a[:, 1], r"{3}: -{2} \+ {3}"),
+    "against the floor": (lambda a: -a[:, 2] - a[:, 1], r"{3}: -{2} - {3}"),
+    "the wrong sign in a sum": (lambda a: a[:, 2] - 2.0 * a[:, 1], r"{3}: 2\*{2} \+ {3}"),
+}
+
+
+@pytest.mark.parametrize("slip", FLOOR)
+def test_a_joint_measured_against_another_is_told_with_the_sum(slip: str, tmp_path: Path) -> None:
+    arm = Campaign("ur5", tmp_path)
+    shown, said = FLOOR[slip]
+    a = arm.a.copy()
+    a[:, 2] = shown(arm.a)
+    two, three = arm.robot.actuated[1:3]
+    said = said.replace("{2}", two).replace("{3}", three)
+    with pytest.raises(InputError, match=f"signs or sums of joints.* mm are left.*{said}") as told:
+        arm.placed(np.degrees(a), 1e3 * arm.x)
+    assert "where a joint has an expression there already" in str(told.value)
+
+
+@pytest.mark.parametrize("slip", ["radians", "metres", "mirrored", "two axes"])
+def test_both_commands_tell_the_slips(
+    slip: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Through the door: the same words, and nothing is written."""
+    arm = Campaign("panda", tmp_path, 30)
+    spoil, said = SLIPS[slip]
+    arm.written(*spoil(np.degrees(arm.a), 1e3 * arm.x, arm.robot.n), FIT)
+    for command in (["identify"], ["explain", "--out", str(tmp_path / "out")]):
+        assert main([command[0], str(tmp_path / "readings.csv"), *command[1:]]) == 2
+        assert re.search(said, " ".join(capfd.readouterr().err.split()))
+        assert not (tmp_path / "out").exists()

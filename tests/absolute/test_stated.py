@@ -9,10 +9,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.identify.absolute.calibrate import calibrate
+from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import findings
-from tests.absolute.arm import TURN, Arm, errors, poses, tracked, write
+from tests.absolute.arm import TURN, Arm, Array, errors, poses, tracked, write
 from tests.absolute.test_forms import FIT, NOISE, SIGMA, _with, calibrated, rows
 
 A = poses(60, 2)
@@ -179,3 +180,28 @@ def test_poses_too_few_for_waves_to_show_are_told(tmp_path: Path) -> None:
         path = write(tmp_path, A[:count], READ[:count], FIT + NOISE)
         said = " ".join(findings(calibrated(path), sk.read(path)))
         assert ("(24 unknowns) could not show" in said) == told
+
+
+def hung(masses: Array) -> Array:
+    """Positions with these masses [kg] on the tool's origin, as a tracker sees them."""
+    x = [
+        _with(payload=(m, np.zeros(3))).stands(q[None])[0][0]
+        for m, q in zip(masses, A, strict=True)
+    ]
+    return tracked(np.array(x)) + SIGMA * np.random.default_rng(3).normal(size=(60, 3))
+
+
+@pytest.mark.parametrize("pound", [1.0, 2.2046226])
+def test_payloads_in_pounds_are_told(pound: float, tmp_path: Path) -> None:
+    masses = np.where(np.arange(60) % 2, 30.0, 0.0)
+    cells = [f"{pound * m:.6g}" for m in masses]
+    for settings in (FIT, FIT + NOISE):
+        path = write(tmp_path, A, hung(masses), settings, more=",payload[kg]", cells=cells)
+        assert any("look like pounds" in said for said in pounds(calibrated(path))) == (pound > 1)
+
+
+def test_blank_cells_of_a_payload_are_told(tmp_path: Path) -> None:
+    cells = ["10" if k % 3 else "" for k in range(60)]
+    path = write(tmp_path, A, READ, FIT + NOISE, more=",payload[kg]", cells=cells)
+    with pytest.warns(ToolkitWarning, match=r"line 2, column payload.*: 20 blank cells count"):
+        sk.read(path)

@@ -52,6 +52,7 @@ from sk120stiff.identify.absolute.remainder import (
     left_beyond_noise,
     remainder_sentences,
 )
+from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
@@ -199,6 +200,7 @@ def explain_positions(
             found, laws = nothing_named(linear, found), {}
             final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
     final = beside_laws(final, linear, found.order, laws)
+    final = replace(final, notes=(*final.notes, *pounds(final)))
     noise = linear.noise(found.order)
     named = tuple(_named(linear, found, e) for e in found.order)
     gap = linear.gap(found.order, noise, held_out=True)

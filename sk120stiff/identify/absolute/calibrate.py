@@ -22,7 +22,7 @@ from sk120stiff.identify.absolute.start import in_gravity, loaded, started
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.placing import FITS, Placing, place
+from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.measurements.placing_distances import EACH
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
 from sk120stiff.measurements.turned import refuse_other_turns
@@ -35,6 +35,7 @@ START = {  # m or rad
 SAME = 0.2  # change of the logarithm of a noise that is none
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
 FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is wild
+LARGEST = 0.03  # of the reach of the arm, which the fitted model of the right arm does not leave
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +184,7 @@ def _refuse_another_robot(found: Fit, readings: Measurements) -> None:
     gap = found.residual * problem.of_channels.sigma
     left = float(np.sqrt(np.mean(gap[problem.lengths] ** 2))) if len(problem.lengths) else 0.0
     reach = arm_length(found.model.robot)
-    if left <= FITS * reach:
+    if left <= LARGEST * reach:
         return
     worst = problem.lengths[np.argsort(-np.abs(gap[problem.lengths]))[:3]]
     lines = ", ".join(str(problem.measurements.line[problem.rows[k]]) for k in worst)

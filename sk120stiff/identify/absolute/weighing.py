@@ -1,0 +1,48 @@
+"""Payloads in pounds under a header of kilograms: told by sag that fits far better so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.errors import Refusal
+from sk120stiff.identify.absolute.calibrate import Calibration, fitted
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+
+POUND = 0.45359237  # kg
+BETTER = 0.8  # of the gap's rms, below which pounds must bring it
+CLEAR = 10.0  # logarithm of the odds for them
+
+
+def pounds(found: Calibration) -> list[str]:
+    """That payloads look like pounds, where nothing but another unit explains the sag as well.
+
+    Own weight and payloads bend the same springs: what stands in another unit bends them by too
+    much against it. A payload that is the same in every row tells little, and one that is fitted
+    nothing.
+    """
+    problem, fit = found.problem, found.fit
+    said = problem.said
+    if not said.payload.any() or not any(p.effect.joint_spring for p in fit.parameters):
+        return []
+    if any(p.effect.name == "payload" for p in fit.parameters):
+        return []
+    lighter = replace(said, payload=POUND * said.payload)
+    other = PoseProblem(
+        fit.model,
+        replace(problem.measurements, absolute=lighter),
+        problem.noise,
+        sigma=problem.sigma,
+    )
+    try:
+        tried = fitted(other)
+    except Refusal:
+        return []
+    share = tried.chi_square / fit.chi_square
+    if share > BETTER**2 or -0.5 * len(fit.residual) * np.log(share) < CLEAR:
+        return []
+    return [
+        f"The payloads look like pounds: taken so, the fit leaves {100 * share**0.5:.0f} % of the "
+        "gap. Write them in kg under payload[kg]."
+    ]

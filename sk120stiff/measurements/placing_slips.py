@@ -1,0 +1,144 @@
+"""Slips of the pen in positions: what is left with each one mended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations, permutations
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.measurements.cloud import Cloud
+
+MARKERS = 4  # up to which every exchange of markers is tried
+BETTERED = 0.9  # of what is left, that one change of a convention must fall below
+TIMES = (1.0, -1.0, 2.0, -2.0)  # another joint's share in a sum, and in one of the wrong sign
+
+
+def slips(cloud: Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, str, str]]:
+    """What is left with one slip mended, what it is, and the remedy."""
+    turning = ~np.array(cloud.robot.prismatic)
+
+    def left(a: Array = cloud.a, x: Array = cloud.x) -> float:
+        return replace(cloud, a=a, x=x).placed(fit_marker=True)[0].rms
+
+    for factor, was, unit in (
+        (np.pi / 180.0, "degrees, not radians", "deg"),
+        (180.0 / np.pi, "radians, not degrees", "rad"),
+    ):
+        a = np.where(turning, cloud.a * factor, cloud.a)
+        rms = left(a=a)
+        said = f"The joint angles look like {was}"
+        yield rms, rms, said, f"Write [{unit}] in their headers."
+        for k in np.flatnonzero(turning):
+            a = cloud.a.copy()
+            a[:, k] *= factor
+            rms = left(a=a)
+            said = f"The column of {names[k]} looks like {was}"
+            yield rms, rms, said, f"Write [{unit}] in its header."
+    for factor, unit in ((1e-3, "mm"), (1e3, "m"), (0.0254, "in"), (25.4, "in"), (1e-6, "um")):
+        rms = left(x=cloud.x * factor)
+        size = f"{factor:g} times too small" if factor > 1 else f"{1 / factor:g} times too large"
+        yield (
+            rms / factor,
+            rms,
+            f"The positions look {size}, as if in another unit",
+            f"Check the unit of x, y, z: {unit}?",
+        )
+    rms = left(x=cloud.x * np.array([-1.0, 1.0, 1.0]))
+    yield (
+        rms,
+        rms,
+        "The positions look mirrored: one axis has the other sign, or two axes are swapped",
+        "Check signs and order of x, y, z: the tracker's axes are right-handed.",
+    )
+    for i, j in combinations(range(len(names)), 2):
+        a = cloud.a.copy()
+        a[:, [i, j]] = a[:, [j, i]]
+        rms = left(a=a)
+        said = f"The columns of {names[i]} and {names[j]} look exchanged"
+        yield rms, rms, said, "Put the right names over the columns."
+    yield from markers(cloud)
+
+
+def markers(cloud: Cloud) -> Iterator[tuple[float, float, str, str]]:
+    """Names of markers exchanged: all ways of a few, pairs of many."""
+    kinds, first = np.unique(cloud.marker, return_index=True)
+    place, count = cloud.point[first], len(kinds)
+    ways = permutations(range(count)) if count <= MARKERS else _pairs(count)
+    for way in ways:
+        moved = [k for k in range(count) if way[k] != k]
+        if not moved:
+            continue
+        point = cloud.point.copy()
+        for k in moved:
+            point[cloud.marker == kinds[k]] = place[way[k]]
+        rms = replace(cloud, point=point).placed(fit_marker=True)[0].rms
+        yield (
+            rms,
+            rms,
+            f"{len(moved)} markers look exchanged: what is written as "
+            + ", ".join(f"{kinds[k]} is {kinds[way[k]]}" for k in moved),
+            "Check the column marker against points.",
+        )
+
+
+def _pairs(count: int) -> Iterator[tuple[int, ...]]:
+    for i, j in combinations(range(count), 2):
+        way = list(range(count))
+        way[i], way[j] = j, i
+        yield tuple(way)
+
+
+def conventions(cloud: Cloud, names: tuple[str, ...], sums: bool) -> tuple[float, str]:
+    """What is left with the best zeros (quarter turns) and signs, and how to write them.
+
+    With `sums` a joint may be measured against others' too, as joint 3 is against the floor.
+    """
+    n = cloud.a.shape[1]
+    share, zero = np.eye(n), np.zeros(n)
+    turning = ~np.array(cloud.robot.prismatic)
+
+    def left(share: Array, zero: Array) -> float:
+        moved = replace(cloud, a=cloud.a @ share.T + zero)
+        return moved.placed(fit_marker=True)[0].rms
+
+    best = left(share, zero)
+    for _ in range(n):
+        tried: list[tuple[float, int, Array, float]] = []
+        for k in range(n):
+            ways = [(sign * share[k], turn) for sign in (1.0, -1.0) for turn in range(4)]
+            if not turning[k]:
+                ways = [way for way in ways if way[1] == 0]
+            elif sums:
+                others = (j for j in range(n) if j != k and turning[j])
+                ways += [
+                    (sign * (share[k] + times * np.eye(n)[j]), 0)
+                    for j in others for times in TIMES for sign in (1.0, -1.0)
+                ]  # fmt: skip
+            for own, turn in ways:
+                both = share.copy(), zero.copy()
+                both[0][k], both[1][k] = own, turn * np.pi / 2
+                tried.append((left(*both), k, own, turn * np.pi / 2))
+        nearest = min(tried, key=lambda item: item[0])
+        if nearest[0] > BETTERED * best:
+            break
+        best, k, share[nearest[1]], zero[nearest[1]] = nearest
+    changed = []
+    for k, name in enumerate(names):
+        degrees = (np.degrees(zero[k]) + 180.0) % 360.0 - 180.0
+        if degrees or (share[k] != np.eye(n)[k]).any():
+            constant = f" {'-' if degrees < 0 else '+'} {abs(degrees):.0f} deg" if degrees else ""
+            changed.append(f"{name}: {_expression(share[k], names)}{constant}")
+    return best, ", ".join(changed)
+
+
+def _expression(share: Array, names: tuple[str, ...]) -> str:
+    """``-j2 - j3``: joints times their shares."""
+    out = ""
+    for times, name in zip(share, names, strict=True):
+        if times:
+            sign = ("-" if times < 0 else "") if not out else (" - " if times < 0 else " + ")
+            out += f"{sign}{'' if abs(times) == 1 else f'{abs(times):g}*'}{name}"
+    return out
