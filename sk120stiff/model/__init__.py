@@ -1,7 +1,7 @@
 """Robot + effects with values: predict, differentiate, read, write."""
 
 from sk120stiff.model.assembly import Assembly, Solution
-from sk120stiff.model.budget import Share, shares
+from sk120stiff.model.budget import Share, moved_by, shares
 from sk120stiff.model.compliance import (
     ModelCompliance,
     model_compliance,
@@ -48,6 +48,7 @@ __all__ = [
     "model_compliance",
     "model_from_text",
     "model_text",
+    "moved_by",
     "parameter_frame",
     "predict",
     "predict_with_uncertainty",

@@ -7,6 +7,7 @@ their sizes need not add up: springs and tilts may pull opposite ways.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,17 @@ class Share:
     std: float | None
 
 
+def moved_by(model: Model, derivative: Array, effects: Collection[str]) -> Array:
+    """(N, 3) what some effects of a model bring together [m].
+
+    Args:
+        derivative: (N, 3, P) of the displacements by the internal values.
+        effects: Their ids, ``name:where``.
+    """
+    own = np.array([parameter.effect.id in effects for parameter in model.parameters], dtype=bool)
+    return np.asarray(derivative[:, :, own] @ model.values[own])
+
+
 def shares(model: Model, derivative: Array, covariance: Array | None) -> tuple[Share, ...]:
     """Shares of all effects of a model, the largest first.
 
@@ -37,19 +49,18 @@ def shares(model: Model, derivative: Array, covariance: Array | None) -> tuple[S
         derivative: (N, 3, P) of the displacements by the internal values.
         covariance: (P, P) of the internal values; None: unknown.
     """
-    values = model.values
     ids = [parameter.effect.id for parameter in model.parameters]
     found = []
     for name in dict.fromkeys(ids):
         own = np.array([k for k, other in enumerate(ids) if other == name])
         part = None if covariance is None else covariance[np.ix_(own, own)]
-        found.append(_share(name, derivative[:, :, own], values[own], part))
+        moved = moved_by(model, derivative, {name})
+        found.append(_share(name, moved, derivative[:, :, own], part))
     return tuple(sorted(found, key=lambda share: -share.rms))
 
 
-def _share(name: str, columns: Array, values: Array, covariance: Array | None) -> Share:
-    """Size of what some parameters bring: columns (N, 3, p), values (p,), covariance (p, p)."""
-    moved = columns @ values
+def _share(name: str, moved: Array, columns: Array, covariance: Array | None) -> Share:
+    """Size of what some parameters bring (N, 3): columns (N, 3, p), covariance (p, p)."""
     rms = float(np.sqrt(np.mean(moved**2)))
     if covariance is None or not np.isfinite(covariance).all():
         return Share(name, rms, None)

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
 from sk120stiff.identify import Fit
-from sk120stiff.model import Share, shares
+from sk120stiff.model import Share, moved_by, shares
+
+
+def brought(fit: Fit, *effects: str) -> Array:
+    """(N, 3) what the effects with these ids bring at the readings of a fit, base axes [m]."""
+    _, derivative = fit.model.predict_with_sensitivities(fit.problem.load_cases)
+    return moved_by(fit.model, derivative, effects)
 
 
 def error_budget(fit: Fit, load_cases: LoadCases | None = None) -> tuple[Share, ...]:

@@ -24,6 +24,7 @@ from scipy.optimize import minimize
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
+from sk120stiff.explain.judge.budget import brought
 from sk120stiff.explain.localise.places import INDISTINCT, line_up, look_at
 from sk120stiff.explain.localise.suspects import Suspect
 from sk120stiff.identify import Fit, yardstick
@@ -62,14 +63,6 @@ def own_columns(fit: Fit, effect: Effect) -> Mask:
     return np.array([parameter.effect.id == effect.id for parameter in fit.parameters], dtype=bool)
 
 
-def _displacement(fit: Fit, effects: Sequence[Effect]) -> Array:
-    """(N, 3) what some effects bring, reading axes [m]."""
-    full = fit.model.predict_with_sensitivities(fit.problem.load_cases)[1]
-    ids = {effect.id for effect in effects}
-    own = np.array([parameter.effect.id in ids for parameter in fit.model.parameters], dtype=bool)
-    return np.asarray(full[:, :, own] @ fit.model.values[own])
-
-
 def spread_over_poses(fit: Fit, effect: Effect) -> tuple[float, float]:
     """How far poses differ in the size of one effect, and how sure that is.
 
@@ -78,12 +71,10 @@ def spread_over_poses(fit: Fit, effect: Effect) -> tuple[float, float]:
             -2 ln L against a size that is the same everywhere, or against poses that differ in the
             size of everything else, where that is likelier: then it is nothing of the effect's.
     """
-    full = fit.model.predict_with_sensitivities(fit.problem.load_cases)[1]
-    own = np.array([parameter.effect.id == effect.id for parameter in fit.model.parameters])
-    values = fit.model.values
-    spread, gain = _spread(fit, full[:, :, own] @ values[own])
+    spread, gain = _spread(fit, brought(fit, effect.id))
     if spread > DIFFER and gain > BEYOND_CHANCE:
-        gain -= max(_spread(fit, full[:, :, ~own] @ values[~own])[1], 0.0)
+        others = {each.id for each in fit.model.effects} - {effect.id}
+        gain -= max(_spread(fit, brought(fit, *others))[1], 0.0)
     return spread, gain
 
 
@@ -216,9 +207,8 @@ class _Lineup:
 def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
     look = look_at(fit, yardstick(fit))
     # Without the names nothing of theirs is read, or misread.
-    explained = np.einsum(
-        "nij,nj->ni", fit.problem.load_cases.reading_axes, _displacement(fit, names)
-    )
+    ids = (effect.id for effect in names)
+    explained = np.einsum("nij,nj->ni", fit.problem.load_cases.reading_axes, brought(fit, *ids))
     lineup = line_up(replace(look, predicted=look.predicted - explained))
     own = [own_columns(fit, effect) for effect in names]
     free = np.any(own, axis=0)

@@ -6,6 +6,7 @@ import numpy as np
 
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
+from sk120stiff.explain.judge.budget import brought
 from sk120stiff.explain.localise.localisation import OwnAtPoses
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.select.score import price_of_sizes
@@ -25,11 +26,7 @@ def joint_that_turns(found: Selection, effect: Effect) -> str | None:
         return None
     fit = found.final
     load_cases = fit.problem.load_cases
-    own = np.array([parameter.effect == effect for parameter in fit.model.parameters])
-    _, full = fit.model.predict_with_sensitivities(load_cases)
-    drawn = np.einsum(
-        "nij,nj->ni", load_cases.reading_axes, full[:, :, own] @ fit.model.values[own]
-    )
+    drawn = np.einsum("nij,nj->ni", load_cases.reading_axes, brought(fit, effect.id))
     ways = load_cases.nominal.linear_jacobian
     length = np.maximum(np.linalg.norm(ways, axis=1), 1e-300)
     along = (np.einsum("ni,nij->nj", drawn, ways) / length) ** 2
