@@ -1,6 +1,7 @@
 """A name that imitates is told from one that stands beside a cause without a name."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.imitation import _Lineup as Lineup
 from sk120stiff.explain.judge.imitation import _precision as precision
 from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
+from sk120stiff.explain.judge.outweighed import outweighed
 from sk120stiff.explain.localise.suspects import Suspect
 from sk120stiff.explain.select.stepwise import refit, select
 from sk120stiff.identify import Fit, fit
@@ -280,3 +282,17 @@ def test_how_widely_random_effects_scatter_comes_from_their_sizes():
     sizes = 3.0 * rng.normal(size=4000) * np.sqrt(scale) / length
     estimated = sizes + rng.normal(size=4000) * np.sqrt(scale) / length
     assert precision(estimated, length, scale) == pytest.approx(1.0 / 9.0, rel=0.1)
+
+
+@pytest.mark.parametrize("share", [1.0, 0.05])
+def test_a_name_that_takes_less_than_remains_may_imitate_part_of_it(springs, share):
+    """A tilting joint beside a tracker on the same floor: the larger one, and the smaller."""
+    tilt = JointTilt("joint_2_l", {"first": 8e-7 * share, "second": 0.0})
+    stand = TrackerStand("tracker", {"compliance": 3e-8}, {"at": (2.0, -2.5, 0.5)})
+    found = fitted(springs, hidden(tilt, stand), "joint_tilt", "joint_2_l")
+    base = fit(springs, found.problem.measurements, noise=ROUGH)
+    reason = outweighed(SimpleNamespace(base=base, final=found), [named(found)])
+    assert (reason is None) == (share == 1.0)
+    assert reason is None or "remain without a name" in reason[1]
+    exact = fit(springs, found.problem.measurements, noise=NOISE)
+    assert outweighed(SimpleNamespace(base=exact, final=found), [named(found)]) is None

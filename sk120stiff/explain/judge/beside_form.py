@@ -16,6 +16,7 @@ from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged
 from sk120stiff.explain.judge.imitation import imitated
+from sk120stiff.explain.judge.outweighed import outweighed
 from sk120stiff.explain.judge.posterior import NONE, one_more
 from sk120stiff.explain.select.stepwise import Selection, refit, with_effects
 from sk120stiff.identify import Fit
@@ -87,7 +88,7 @@ def unless_imitating(found: Selection, named: Named, seed: int) -> tuple[Selecti
     so beside whatever is left.
     """
     effects = [finding.effect for finding in named.findings]
-    reason = imitated(found.final, effects)
+    reason = imitated(found.final, effects) or outweighed(found, effects)
     if reason is None:
         return found, named
     kept = [effect for effect in effects if effect.id != reason[0]]
