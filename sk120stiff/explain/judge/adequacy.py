@@ -128,13 +128,6 @@ def adequacy(fit: Fit, named: Collection[str]) -> Adequacy:
     return _judged(tests, size, whole)
 
 
-def structure(fit: Fit, named: Collection[str]) -> Adequacy:
-    """As `adequacy`, of structure alone: beside model-form error the whole misfit says nothing."""
-    noise = yardstick(fit)
-    size = explained(fit, named) / float(np.sqrt(noise.scale))
-    return _judged(dict(_structure(fit, noise)), size, None)
-
-
 def _judged(
     tests: Tests, explained: float, whole: LackOfFit | None, understated: float | None = None
 ) -> Adequacy:

@@ -166,7 +166,6 @@ class Localisation:
         suspects: All that it may go with, the strongest first.
         beside: The same for what remains once the strongest has been allowed for, shares still of
             the whole; empty without a strongest one.
-        clocked, branched: Whether the readings tell their order or time, and have both branches.
     """
 
     rms: float
@@ -183,8 +182,6 @@ class Localisation:
     own: tuple[OwnAtPoses, ...]
     suspects: tuple[Suspicion, ...]
     beside: tuple[Suspicion, ...]
-    clocked: bool
-    branched: bool
 
     @property
     def real(self) -> bool:

@@ -52,7 +52,6 @@ def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
     """
     look = look_at(fit, noise or yardstick(fit))
     test = lack_of_fit(fit)
-    load_cases = fit.problem.load_cases
     poses = _poses(look)
     suspects, beside = _suspicions(look)
     return Localisation(
@@ -70,8 +69,6 @@ def localise(fit: Fit, noise: Yardstick | None = None) -> Localisation:
         own=look.within.own,
         suspects=suspects,
         beside=beside,
-        clocked=load_cases.order is not None or load_cases.time is not None,
-        branched=len(np.unique(load_cases.branch)) > 1,
     )
 
 

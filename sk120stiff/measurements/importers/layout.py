@@ -48,7 +48,6 @@ class Layout:
         units: Unit of each as stated, or None, and `stated` in which place.
         first: Index of the first row below the headers.
         above: Lines above the table, as text with their numbers.
-        headed: Did the file name its columns?
     """
 
     headers: tuple[str, ...]
@@ -57,7 +56,6 @@ class Layout:
     stated: tuple[str, ...]
     first: int
     above: tuple[tuple[int, str], ...]
-    headed: bool = True
 
     def has(self, *meanings: str) -> bool:
         """Are all of these among the columns?"""
