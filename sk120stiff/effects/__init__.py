@@ -1,6 +1,5 @@
 """Physical causes by name: each says how it enters, what it is described by, where it can act."""
 
-from sk120stiff.effects.aliases import AliasClasses, alias_classes, generic_readings
 from sk120stiff.effects.base import (
     Alias,
     Effect,
@@ -19,19 +18,16 @@ from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effe
 from sk120stiff.effects.declared import declared_aliases
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.effects.words import EffectWords, catalogue_words, comment_lines, words_of
 
 __all__ = [
     "CATALOGUE",
     "Alias",
-    "AliasClasses",
     "Catalogue",
     "Effect",
     "EffectWords",
     "Elastic",
     "Elongation",
-    "FirstOrder",
     "Geometric",
     "Imposed",
     "LinearElastic",
@@ -42,13 +38,11 @@ __all__ = [
     "ReadingError",
     "Switching",
     "Viewpoint",
-    "alias_classes",
     "all_effects",
     "catalogue_words",
     "comment_lines",
     "declared_aliases",
     "effect",
-    "generic_readings",
     "load_case",
     "load_cases_of",
     "words_of",

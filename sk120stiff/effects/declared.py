@@ -19,7 +19,7 @@ def declared_aliases(robot: Robot, catalogue: Catalogue = CATALOGUE) -> tuple[Al
 
     Two compliances about one axis, or two errors along one slide, are one wherever they sit, if at
     every pose they move the tool alike. What effects know of themselves (`Effect.aliases`) comes on
-    top. `alias_classes` computes the same from readings.
+    top.
     """
     effects = all_effects(robot, catalogue=catalogue)
     found = [

@@ -7,7 +7,6 @@ from sk120stiff.measurements.joining import join_measurements
 from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.noise import NoiseModel, candidates, decided
 from sk120stiff.measurements.reading import read_measurements
-from sk120stiff.measurements.repeats import pure_error
 from sk120stiff.measurements.whitening import Whitener
 from sk120stiff.measurements.writing import write_measurements
 
@@ -24,7 +23,6 @@ __all__ = [
     "candidates",
     "decided",
     "join_measurements",
-    "pure_error",
     "read_measurements",
     "write_measurements",
 ]

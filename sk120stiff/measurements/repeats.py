@@ -40,8 +40,10 @@ class Repeated:
     freedom: int
 
 
-def pure_error(measurements: Measurements, zero: Zero | None = None) -> tuple[float, int] | None:
-    """Standard uncertainty of one reading per axis (m) from repeats, and its degrees of freedom.
+def repeated(
+    measurements: Measurements, zero: Zero | None = None, *, grows: bool = True
+) -> Repeated | None:
+    """Noise from repeats; None where nothing was repeated.
 
     The mean of each cell of repeats is free; what is left is weighed by the covariance of the zero
     readings (generalised least squares), so that rows with a common zero reading and rows with zero
@@ -50,21 +52,6 @@ def pure_error(measurements: Measurements, zero: Zero | None = None) -> tuple[fl
     Args:
         measurements: Readings with displacements.
         zero: How zero readings are shared; None takes the data's word, and "unknown" as shared.
-
-    Returns:
-        (sigma, dof), or None where nothing was repeated.
-    """
-    found = repeated(measurements, zero, grows=False)
-    return None if found is None else (found.sigma, found.freedom)
-
-
-def repeated(
-    measurements: Measurements, zero: Zero | None = None, *, grows: bool = True
-) -> Repeated | None:
-    """Noise from repeats; None where nothing was repeated.
-
-    Args:
-        measurements, zero: As for `pure_error`.
         grows: Look for a part that grows with the displacement too.
     """
     usable = measurements.masked()

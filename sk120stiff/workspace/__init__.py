@@ -21,7 +21,7 @@ from sk120stiff.workspace.finished import (
 )
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
-from sk120stiff.workspace.judge import PathTask, Placement, path_points
+from sk120stiff.workspace.judge import PathTask, Placement
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
 from sk120stiff.workspace.mapping import MapReport, write_map
 from sk120stiff.workspace.path import (
@@ -74,7 +74,6 @@ __all__ = [
     "lowest_floor",
     "open_map",
     "parse_axes",
-    "path_points",
     "posture_landscape",
     "read_path",
     "read_returned",

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.plan.feasible import Verdict
@@ -210,11 +209,3 @@ class Judge:
                 d = turn @ self.path.direction[point]
                 cost = np.abs((d * displaced).sum(-1))
         return np.where(found.stable, cost, np.inf), found.of("condition")
-
-
-def path_points(start: ArrayLike, end: ArrayLike, count: int) -> Array:
-    """(count, 3) points on a straight line [m]."""
-    fraction = np.linspace(0.0, 1.0, count)[:, None]
-    return (
-        np.asarray(start, dtype=float) * (1.0 - fraction) + np.asarray(end, dtype=float) * fraction
-    )

@@ -11,14 +11,10 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import (
-    AliasClasses,
-    FirstOrder,
     LinearElastic,
-    alias_classes,
     all_effects,
     declared_aliases,
     effect,
-    generic_readings,
 )
 from sk120stiff.effects.base import (
     LOADS_GROW,
@@ -29,7 +25,9 @@ from sk120stiff.effects.base import (
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import Robot, VirtualJoint, load_robot
+from tests.effects.alias_classes import AliasClasses, alias_classes, generic_readings
 from tests.effects.arms import FOLDER, arm
+from tests.effects.signatures import FirstOrder
 from tests.robot.loop_arms import sk120_loop
 
 BASE = ("joint_1_s", "joint_2_l", "joint_3_u")  # the SK120's springs; its wrist is rigid

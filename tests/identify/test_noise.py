@@ -16,7 +16,8 @@ from sk120stiff.identify import (
     yardstick,
 )
 from sk120stiff.identify.report import noise_sentence
-from sk120stiff.measurements import NoiseModel, NoiseStatement, pure_error
+from sk120stiff.measurements import NoiseModel, NoiseStatement
+from sk120stiff.measurements.repeats import repeated
 from sk120stiff.plan import Schedule
 from tests.identify.conftest import readings_of, without_statement
 
@@ -109,7 +110,7 @@ def test_up_and_down_are_no_repeats(springs, robot) -> None:
 def test_up_and_down_without_a_branch_are_no_repeats_either(springs, robot) -> None:
     readings = up_and_down(springs, robot)
     bare = replace(readings, branch=None)
-    assert pure_error(bare) == pure_error(readings) is None
+    assert repeated(bare) is repeated(readings) is None
     found = fit(springs, without_statement(bare))
     assert found.problem.noise.freedom == 0
     assert found.problem.noise.growth == 0.0

@@ -5,9 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sk120stiff.measurements import Measurements, candidates, pure_error
+from sk120stiff.measurements import Measurements, candidates
+from sk120stiff.measurements.repeats import repeated as noise_of_repeats
 
 SIGMA = 10e-6
+
+
+def pure_error(m: Measurements, zero: str | None = None) -> tuple[float, int] | None:
+    found = noise_of_repeats(m, zero, grows=False)
+    return None if found is None else (found.sigma, found.freedom)
 
 
 def repeated(

@@ -7,11 +7,11 @@ import pytest
 
 from sk120stiff.errors import InputError
 from sk120stiff.show.figures import posture_choice
-from sk120stiff.workspace import PathTask, best_posture, path_points, posture_landscape
+from sk120stiff.workspace import PathTask, best_posture, posture_landscape
 from tests.workspace.test_posture import DOWN, compliances, soft_wrist
 
 LOAD = np.array([0.0, 200.0, 500.0, 0.0, 0.0, 0.0])
-LINE = path_points([1.5, -0.1, 0.3], [1.5, 0.1, 0.3], 3)
+LINE = np.linspace([1.5, -0.1, 0.3], [1.5, 0.1, 0.3], 3)
 
 
 @pytest.mark.parametrize("axis", [DOWN, None])

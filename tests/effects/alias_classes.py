@@ -15,10 +15,10 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Effect, LinearElastic
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.load_cases import LoadCases, load_case
-from sk120stiff.effects.signatures import FirstOrder
 from sk120stiff.errors import listed
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length, sample_poses
+from tests.effects.signatures import FirstOrder
 
 TOLERANCE = 1e-7  # share of a signature that may differ; true aliases differ by 1e-13
 
