@@ -4,8 +4,8 @@ Nothing heavy is imported before a name is used. The parts:
 
 Figures (`sk120stiff.show.figures`)
     Functions of plain arrays that return a matplotlib `Figure`, in one style:
-    `force_deflection`, `surface_parts`, `relief_parts`, `curve_parts`, `stiffness_slice`,
-    `plane_ellipses`, `gap_per_pose`, `gap_waterfall`, `residual_suspects`, `parameter_forest`,
+    `force_deflection`, `surface_parts`, `relief_parts`, `stiffness_slice`,
+    `plane_ellipses`, `gap_per_pose`, `gap_waterfall`, `parameter_forest`,
     `definiteness_map`, `posture_choice`.
     ``save_figure(fig, path)`` writes SVG, PNG or PDF by the ending of the name;
     ``inline_svg(fig, alt)`` gives the `<svg>` text for a page.

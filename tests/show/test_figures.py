@@ -25,8 +25,6 @@ C = np.diag([1.0, 2.0, 3.0]) * 1e-6
 def every_figure() -> dict[str, Figure]:
     force = np.array([0.0, 100.0, 200.0])
     moved = np.outer(force, [1e-6, -2e-6, 3e-6])
-    generator = np.random.default_rng(3)
-    gap = generator.normal(size=30) * 1e-5
     return {
         "force_deflection": f.force_deflection(
             [f.LoadCurve("pose 1", force, moved, np.full((3, 3), 1e-5), models={"m": moved})]
@@ -36,9 +34,6 @@ def every_figure() -> dict[str, Figure]:
         ),
         "relief_parts": f.relief_parts(
             X, Y, np.stack([GRID, 0 * GRID, -GRID]), element="C22", x_label="q2", y_label="q3"
-        ),
-        "curve_parts": f.curve_parts(
-            np.degrees(X), {"a": np.stack([X, X, X])}, element="C11", x_label="joint_2_l"
         ),
         "stiffness_slice": f.stiffness_slice(
             X, Y, 1e6 * (3.0 + GRID), x_label="q2", y_label="q3", marks={"pose 1": (0.0, -1.0)}
@@ -54,9 +49,6 @@ def every_figure() -> dict[str, Figure]:
         ),
         "gap_waterfall": f.gap_waterfall(
             [f.GapStep("springs", 4e-5, 5e-5), f.GapStep("+ rocking", 1e-5)], noise_floor=1e-5
-        ),
-        "residual_suspects": f.residual_suspects(
-            gap, [f.Suspect("torque [N·m]", gap * 1e7), f.Suspect("q [deg]", gap[::-1] ** 2)]
         ),
         "posture_choice": f.posture_choice(
             np.array([1e-4, 2e-4]),
@@ -126,12 +118,6 @@ def test_ellipse_is_the_compliance_times_unit_forces() -> None:
     assert np.ptp(curve[:, 1]) / np.ptp(curve[:, 0]) == pytest.approx(3.0, rel=1e-3)
 
 
-def test_strongest_suspect_is_the_one_that_is_marked(drawn: dict[str, Figure]) -> None:
-    titles = [axes.get_title(loc="left") for axes in drawn["residual_suspects"].axes]
-    assert titles[0].startswith("strongest, 100 %")
-    assert not titles[1].startswith("strongest")
-
-
 def test_definiteness_uses_one_colour_for_each_class() -> None:
     figure = f.definiteness_map(X, Y, np.zeros((2, 7, 9), dtype=int), x_label="a", y_label="b")
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["positive definite"]
@@ -152,7 +138,9 @@ def test_other_endings_are_refused(drawn: dict[str, Figure], tmp_path) -> None:
 
 
 def test_inline_figures_share_no_ids_and_tell_what_they_show(drawn: dict[str, Figure]) -> None:
-    pages = [inline_svg(drawn[name], 'a "quoted" alt') for name in ("gap_per_pose", "curve_parts")]
+    pages = [
+        inline_svg(drawn[name], 'a "quoted" alt') for name in ("gap_per_pose", "surface_parts")
+    ]
     roots = [ET.fromstring(page) for page in pages]
     ids = [element.get("id") for root in roots for element in root.iter() if element.get("id")]
     assert len(ids) == len(set(ids))
@@ -177,7 +165,6 @@ def test_the_caller_keeps_its_own_style() -> None:
         lambda: f.gap_per_pose(["1"], {"m": [1.0, 2.0]}),
         lambda: f.LoadCurve("p", np.zeros(3), np.zeros((2, 3))),
         lambda: f.LoadCurve("p", np.zeros(3), models={"m": np.zeros((3, 2))}),
-        lambda: f.residual_suspects(np.zeros(3), [f.Suspect("s", np.zeros(2))]),
         lambda: f.plane_ellipses([], plane="xz"),
         lambda: f.gap_waterfall([]),
     ],

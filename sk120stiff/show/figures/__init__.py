@@ -5,10 +5,9 @@ from sk120stiff.show.figures.definite import definiteness_map
 from sk120stiff.show.figures.ellipses import PlaneEllipse, plane_ellipses
 from sk120stiff.show.figures.gaps import GapStep, gap_per_pose, gap_waterfall
 from sk120stiff.show.figures.parameters import Estimate, parameter_forest
-from sk120stiff.show.figures.parts import curve_parts, surface_parts
+from sk120stiff.show.figures.parts import surface_parts
 from sk120stiff.show.figures.postures import posture_choice
 from sk120stiff.show.figures.relief import relief_parts
-from sk120stiff.show.figures.residuals import Suspect, residual_suspects
 from sk120stiff.show.figures.slices import stiffness_slice
 
 __all__ = [
@@ -16,8 +15,6 @@ __all__ = [
     "GapStep",
     "LoadCurve",
     "PlaneEllipse",
-    "Suspect",
-    "curve_parts",
     "definiteness_map",
     "force_deflection",
     "gap_per_pose",
@@ -26,7 +23,6 @@ __all__ = [
     "plane_ellipses",
     "posture_choice",
     "relief_parts",
-    "residual_suspects",
     "stiffness_slice",
     "surface_parts",
 ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,35 +58,4 @@ def surface_parts(
             panel.set_xlabel(f"{x_label} [deg]")
         axes[0].set_ylabel(f"{y_label} [deg]")
         figure.colorbar(drawn[0], ax=axes, label="N·m/rad per N", shrink=0.9, pad=0.02)
-    return figure
-
-
-def curve_parts(
-    x: Array,
-    parts: Mapping[str, Array],
-    *,
-    element: str,
-    x_label: str,
-    x_unit: str = "deg",
-) -> Figure:
-    """The same along one joint: three panels, one line for each named case.
-
-    Args:
-        x: (k,) abscissa, already in `x_unit`.
-        parts: Name of the case → (3, k) contributions of a unit force along x, y, z [N·m/rad per
-            N].
-    """
-    cases: Sequence[str] = list(parts)
-    with styled():
-        figure, axes = subplots(3, 1, height=4.6, sharex=True)
-        for k, panel in enumerate(axes):
-            panel.axhline(0.0, color=palette.SOFT_INK, linewidth=0.7)
-            for case, colour in zip(cases, palette.SERIES * 9, strict=False):
-                panel.plot(x, np.asarray(parts[case])[k], color=colour, label=case)
-            panel.set_title(f"part {k + 1}: ∂{element}/∂{COMPONENTS[k]}")
-            panel.set_ylabel("N·m/rad per N")
-        axes[-1].set_xlabel(f"{x_label} [{x_unit}]")
-        if len(cases) > 1:
-            handles, labels = axes[0].get_legend_handles_labels()
-            figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(cases)))
     return figure
