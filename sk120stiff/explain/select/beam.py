@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -56,24 +56,15 @@ def largest(promised: list[Array]) -> Array:
     return np.array([float(each.max(initial=0.0)) for each in promised])
 
 
-def beam_search(
-    regression: Regression,
-    *,
-    sums: Sums | None = None,
-    width: int = BEAM,
-    max_effects: int = 4,
-    fixed: Iterable[int] = (),
-) -> list[Scored]:
+def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int = 4) -> list[Scored]:
     """The best models met, best first; the base model is always among them.
 
     Args:
         regression: Linearised readings.
-        sums: A choice of poses; all of them by default.
         width: Models kept at each size.
         max_effects: Largest number of effects.
-        fixed: Candidates that are part of every model.
     """
-    total = sums or regression.sums()
+    total = regression.sums()
     seen: dict[tuple[int, ...], Scored] = {}
 
     def scored(variants: Mapping[int, int]) -> Scored:
@@ -87,9 +78,9 @@ def beam_search(
         seen[model.effects] = score_set(regression, total, model.effects, start=model.by_variant)
         return seen[model.effects]
 
-    front = [score_set(regression, total, fixed)]
-    seen[front[0].effects] = front[0]
-    for _ in range(max_effects - len(front[0].effects)):
+    front = [score_set(regression, total, ())]
+    seen[()] = front[0]
+    for _ in range(max_effects):
         grown: dict[tuple[int, ...], Scored] = {}
         for model in front:
             promised = promises(regression, total, model.solved)
@@ -116,11 +107,10 @@ def beam_search(
             break
     for model in sorted(seen.values(), key=lambda m: m.score)[:width]:
         smaller = model
-        while len(smaller.effects) > len(set(fixed)):  # backward: what became superfluous
+        while smaller.effects:  # backward: what became superfluous
             less = [
                 scored({f: k for f, k in smaller.by_variant.items() if f != e})
                 for e in smaller.effects
-                if e not in set(fixed)
             ]
             before, smaller = smaller, min(less, key=lambda m: (not m.plausible, m.score))
             if smaller.score > before.score:
