@@ -168,21 +168,21 @@ class Campaign:
 
     def state(self, readings: Measurements | None) -> State:
         """What is known, what comes next, or why to stop."""
-        belief = self.belief(readings)
+        belief, stop = self.judged(readings)
         taken = self._taken(readings)
-        state = self._judged(belief, readings, taken)
-        if readings is not None and state.stop is not None and state.stop.names:
-            state = self._judged(self.held(belief, readings), readings, taken)
-        return state
-
-    def _judged(self, belief: Belief, readings: Measurements | None, taken: Mask) -> State:
-        count = 0 if readings is None else without_copies(readings)[0].masked().n_readings
-        springs = self._springs(belief)
-        row, found = best(belief, self.X, ~taken)
-        decides = self._decides(belief, row)
-        bare = belief.sums.count - len(belief.leader.columns) < SPARE
-        stop = None if bare else self._stop(belief, count, springs, found.names[~taken])
+        row = best(belief, self.X, ~taken)[0]
+        decides, springs = self._decides(belief, row), self._springs(belief)
+        count = _count(readings)
         return State(count, belief, springs, None if taken.all() else row, decides, stop)
+
+    def judged(self, readings: Measurements | None) -> tuple[Belief, Stop | None]:
+        """What is known, and why to stop: a name only if the exact laws say so too."""
+        belief = self.belief(readings)
+        stop = self._stop(belief, readings)
+        if readings is not None and stop is not None and stop.names:
+            belief = self.held(belief, readings)
+            stop = self._stop(belief, readings)
+        return belief, stop
 
     def load_cases(self, row: int) -> LoadCases:
         """A reading of the pool."""
@@ -227,10 +227,10 @@ class Campaign:
             )
         return f"sizes ({sizes:.2f} bit), names hardly ({names:.3f} bit)"
 
-    def _stop(
-        self, belief: Belief, count: int, springs: tuple[tuple[str, float, float, str], ...],
-        names: Array,
-    ) -> Stop | None:  # fmt: skip
+    def _stop(self, belief: Belief, readings: Measurements | None) -> Stop | None:
+        count = _count(readings)
+        if belief.sums.count - len(belief.leader.columns) < SPARE:
+            return None
         if belief.unexplained:
             return None if count < self.most else self._enough(count)
         probabilities = belief.probabilities
@@ -249,16 +249,18 @@ class Campaign:
             )  # fmt: skip
         if probabilities["none"] >= SURE:
             return Stop("none", (), "Nothing is missing that these readings could show.")
-        known = all(std <= (self.target or 0.0) * abs(value) for _, value, std, _ in springs)
-        if self.target is not None and known:
+        if self.target is not None and all(
+            std <= self.target * abs(value) for _, value, std, _ in self._springs(belief)
+        ):
             return Stop("target", (), f"Every spring is known to {100 * self.target:g} %.")
-        if not len(names) or float(names.max()) < LITTLE:
-            if probabilities["none"] >= QUIET and count >= ENOUGH:
+        if count >= ENOUGH:
+            names = expected(belief, self.X[~self._taken(readings)]).names
+            if probabilities["none"] >= QUIET and float(names.max(initial=0.0)) < LITTLE:
                 return Stop(
                     "none", (),
                     "Nothing missing shows, and no reading of this rig is expected to tell more.",
                 )  # fmt: skip
-            if count >= ENOUGH and float(np.sort(names)[-left:].sum()) < LITTLE:
+            if float(np.sort(names)[-left:].sum()) < LITTLE:
                 return Stop("hopeless", (), "No reading of this rig would tell more about names.")
         return None if count < self.most else self._enough(count)
 
@@ -281,6 +283,10 @@ class Campaign:
             if both > APART:
                 return []
         return [h for _, h in rows]
+
+
+def _count(readings: Measurements | None) -> int:
+    return 0 if readings is None else without_copies(readings)[0].masked().n_readings
 
 
 def _said(belief: Belief, members: tuple[int, ...]) -> str:

@@ -15,7 +15,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.data import NoiseStatement
 from sk120stiff.model import Model, typical_model
 from sk120stiff.model import base_model as springs_of
-from sk120stiff.pilot.campaign import Campaign, State, Stop
+from sk120stiff.pilot.campaign import Campaign, Stop
 from sk120stiff.pilot.confirming import confirmed
 from sk120stiff.plan import Cell, feasible_pool
 from sk120stiff.plan.design import best_choice, determinant_worth
@@ -206,8 +206,12 @@ def _until(
     rows: list[int] = []
     readings, asked, wait = None, 0, 0
     while True:
-        state: State = bench.campaign.state(readings)
-        stop = state.stop
+        row = None if order is None or len(rows) >= MOST else order[len(rows)]
+        if order is None:
+            state = bench.campaign.state(readings)
+            stop, row = state.stop, state.row
+        else:
+            stop = bench.campaign.judged(readings)[1]
         if stop is not None and stop.reason in ("named", "class") and judge is not None:
             if len(rows) < wait:
                 stop = None
@@ -217,7 +221,7 @@ def _until(
                     stop, wait = None, len(rows) + 2
         if stop is not None:
             return len(rows), stop, asked
-        if len(rows) >= MOST or state.row is None:
+        if len(rows) >= MOST or row is None:
             return len(rows), Stop("most", (), ""), asked
-        rows.append(state.row if order is None else order[len(rows)])
+        rows.append(row)
         readings = bench.read(exact, noise, rows)
