@@ -58,13 +58,11 @@ class Belief:
         linear: The candidates.
         sums: The readings.
         given: Probabilities that the user gave to effects beforehand.
-        own: The readings as linearised at the place of a hypothesis itself, by its members.
     """
 
     linear: LinearMap
     sums: Sums
     given: dict[str, float] = field(default_factory=dict)
-    own: dict[tuple[int, ...], Sums] = field(default_factory=dict)
 
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
@@ -157,7 +155,7 @@ class Belief:
 
     def _weighed(self, members: tuple[int, ...], prior: float) -> Hypothesis:
         columns, k = self._columns(members), len(self.linear.base)
-        sums = self.own.get(members, self.sums)
+        sums = self.sums
         gram, moment = sums.gram[np.ix_(columns, columns)], sums.moment[columns]
         bound = self.linear.positive[columns].copy()
         bound[:k] = False

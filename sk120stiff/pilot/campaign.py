@@ -5,7 +5,7 @@ Everything follows from the readings alone: a campaign can be left and taken up 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -29,7 +29,6 @@ APART = 3.3  # √λ at which two names are told apart
 LITTLE = 0.01  # nat: a reading that brings less about names tells next to nothing
 QUIET, ENOUGH = 0.7, 12  # probability of nothing, and readings, from which silence counts
 ROUNDS = 2  # of putting the linearisation where the readings are
-COUNTS, CHECKED = 1e-3, 6  # probability, and number, of names that are held against the exact law
 
 Reason = Literal["named", "class", "none", "target", "hopeless", "most"]
 
@@ -113,47 +112,31 @@ class Campaign:
         return cls(model, pool, sigma, linear, X, target, most, given or {})
 
     def belief(self, readings: Measurements | None) -> Belief:
-        """What readings say, the linearisation put where the most probable hypothesis is."""
-        found = Belief(self.linear, Sums.none(len(self.linear.scale)), self.given)
+        """What readings say, the linearisation put where the most probable hypothesis is.
+
+        Two rounds bring other names to what their exact laws say, most within a tenth of a nat.
+        """
+        linear = self.linear
+        size = len(linear.scale)
+        found = Belief(linear, Sums.none(size), self.given)
         if readings is None:
             return found
-        problem, v = self._problem(readings), np.zeros(len(self.linear.scale))
-        for _ in range(ROUNDS):
-            found = Belief(self.linear, self._sums(problem, v), self.given)
-            v = self._place(found.leader)
-        return found
-
-    def held(self, belief: Belief, readings: Measurements) -> Belief:
-        """The same with every name that counts at its own place, where its law is exact.
-
-        About the place of another one a name that turns or scales what springs do fits worse than
-        it does, by the product of both.
-        """
-        problem = self._problem(readings)
-        counts = [h for w, h in zip(belief.weights, belief.hypotheses, strict=True) if w > COUNTS]
-        own = {h.members: self._sums(problem, self._place(h)) for h in counts[:CHECKED]}
-        return replace(belief, own=own)
-
-    def _problem(self, readings: Measurements) -> Problem:
         used = without_copies(readings)[0].masked()
         zero: Literal["shared", "separate"] = "shared" if used.zero == "shared" else "separate"
-        return Problem(self.model, used, NoiseModel(self.sigma, zero=zero))
-
-    def _sums(self, problem: Problem, v: Array) -> Sums:
-        """Of readings, linearised at v (P,) typical sizes off the start."""
-        predicted, derivative = self.rows(problem.load_cases, v)
-        X = problem.whitener.apply(derivative)
-        y = problem.whitener.apply(problem.measured - predicted) + X @ v
-        return Sums.none(len(v)).plus(X, y)
-
-    def _place(self, h: Hypothesis) -> Array:
-        """(P,) where a hypothesis is, typical sizes off the start, within what can be."""
-        linear = self.linear
-        v = np.zeros(len(linear.scale))
-        v[h.columns] = h.mean
-        least = np.where(linear.positive, 0.0, -np.inf)
+        problem = Problem(self.model, used, NoiseModel(self.sigma, zero=zero))
         base = linear.model.values / linear.scale
-        return np.maximum(base + v, np.where(base > 0.0, 0.2 * base, least)) - base
+        least = np.where(linear.positive, 0.0, -np.inf)
+        v = np.zeros(size)
+        for _ in range(ROUNDS):
+            predicted, derivative = self.rows(problem.load_cases, v)
+            X = problem.whitener.apply(derivative)
+            y = problem.whitener.apply(problem.measured - predicted) + X @ v
+            found = Belief(linear, Sums.none(size).plus(X, y), self.given)
+            leader = found.leader
+            v = np.zeros(size)
+            v[leader.columns] = leader.mean
+            v = np.maximum(base + v, np.where(base > 0.0, 0.2 * base, least)) - base
+        return found
 
     def rows(self, load_cases: LoadCases, v: Array) -> tuple[Array, Array]:
         """(N, 3) predictions and (N, 3, P) changes per typical size [m], v of these off the start.
@@ -176,13 +159,9 @@ class Campaign:
         return State(count, belief, springs, None if taken.all() else row, decides, stop)
 
     def judged(self, readings: Measurements | None) -> tuple[Belief, Stop | None]:
-        """What is known, and why to stop: a name only if the exact laws say so too."""
+        """What is known, and why to stop."""
         belief = self.belief(readings)
-        stop = self._stop(belief, readings)
-        if readings is not None and stop is not None and stop.names:
-            belief = self.held(belief, readings)
-            stop = self._stop(belief, readings)
-        return belief, stop
+        return belief, self._stop(belief, readings)
 
     def load_cases(self, row: int) -> LoadCases:
         """A reading of the pool."""
