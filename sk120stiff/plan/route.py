@@ -233,13 +233,12 @@ def _around(
     near: Mask = np.zeros_like(times, dtype=bool)
     closest = np.argsort(times, axis=1)[:, 1 : NEIGHBOURS + 1]
     near[np.arange(len(nodes))[:, None], closest] = True
-    weight = np.where(near | near.T, times, 0.0)
-    weight[start, end] = weight[end, start] = 0.0
+    near |= near.T
+    near[start, end] = near[end, start] = False
+    weight = csr_matrix(np.where(near, times, 0.0))
     known: set[tuple[int, int]] = set()
     for _ in range(ATTEMPTS):
-        length, before = dijkstra(
-            csr_matrix(weight), indices=start, return_predecessors=True, directed=False
-        )
+        length, before = dijkstra(weight, indices=start, return_predecessors=True, directed=False)
         if not np.isfinite(length[end]):
             break
         way = [end]
@@ -250,7 +249,7 @@ def _around(
             if edge in known:
                 continue
             if not straight_is_free(robot, scene, nodes[p], nodes[q]):
-                weight[p, q] = weight[q, p] = 0.0
+                weight[p, q] = weight[q, p] = np.inf
                 break
             known.add(edge)
         else:

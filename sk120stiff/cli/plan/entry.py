@@ -185,10 +185,14 @@ def command(
         return checked(
             check, model or _file(robot), point, cell, lambda found: _stated(found, lowest, box)
         )
-    if (robot is None and model is None) or (count is None and places is None):
+    if robot is None and model is None:
         raise InputError(
-            "a plan needs a robot or --model, and --count or --places",
+            "nothing says for which arm to plan",
             remedy="Write plan model.yaml --count 12; --check plan.csv checks one there is.",
+        )
+    if count is None and places is None:
+        raise InputError(
+            "nothing says how many poses to plan", remedy="Write --count 12, or --places CSV."
         )
     if axis is not None and places is None:
         raise InputError("this says how the tool stands at --places", where="--tool-axis")
