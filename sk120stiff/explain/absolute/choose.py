@@ -313,8 +313,38 @@ def _rivals(
     scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
     prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
     weight = np.exp(scores - scores.max())
-    weight[-1] += _impostor(linear, chosen, rest) * weight[:-1].sum()
+    narrow = float(weight[:-1].sum() / weight.sum())
+    sure = _beside_what_every_arm_has(linear, chosen, (e, *rivals), narrow, len(others))
+    doubt = (1.0 - sure) / max(sure, 1e-300) + _impostor(linear, chosen, rest)
+    weight[-1] = doubt * weight[:-1].sum()
     return rivals, prior, weight
+
+
+def _beside_what_every_arm_has(
+    linear: Linear, chosen: tuple[int, ...], own: tuple[int, ...], narrow: float, others: int
+) -> float:
+    """Probability of a name, averaged over the chosen model and that with all frames and springs.
+
+    Where few numbers are left over, those that nothing asked for may bring as much; where many are,
+    they cost more than they explain, and do not count.
+
+    Args:
+        linear: The positions linearised.
+        chosen: The causes of the answer.
+        own: The name, and what explains as much in its place.
+        narrow: Its probability where nothing else is at work.
+        others: How many names were looked at in its place.
+    """
+    springs = (c for c, effect in enumerate(linear.candidates) if effect.joint_spring)
+    usual_ones = [c for c in (*_frames(linear), *springs) if c not in (*chosen, *own)]
+    if not usual_ones:
+        return narrow
+    wide = (*chosen, *usual_ones)
+    without = linear.less(wide, own[0])
+    scores = [linear.score(each, linear.noise(each)) for each in (chosen, wide, without)]
+    taken = 1.0 / (1.0 + np.exp(np.clip(scores[2] + np.log(others + 1.0) - scores[1], -50, 50)))
+    share = 1.0 / (1.0 + np.exp(np.clip(scores[0] - scores[1], -50.0, 50.0)))
+    return float((1.0 - share) * narrow + share * min(taken, narrow))
 
 
 def _impostor(linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]) -> float:

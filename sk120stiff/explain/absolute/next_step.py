@@ -10,6 +10,11 @@ if TYPE_CHECKING:
 
 def headline(answer: Explained) -> str:
     """The verdict as a sentence: how many names are settled, and which are open."""
+    if answer.verdict == "none" and answer.remainder is None:
+        return (
+            "No cause is named. The noise is not stated, so whether something is missing stays "
+            "open: what is left may be noise."
+        )
     if answer.verdict == "none":
         return "Model and data agree: nothing is missing that these positions show."
     if answer.verdict == "outside":
