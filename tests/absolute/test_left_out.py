@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import sk120stiff as sk
 from sk120stiff.explain import Options
@@ -14,7 +16,7 @@ from sk120stiff.explain.absolute.choose import choose
 from sk120stiff.identify.absolute.calibrate import calibrate
 from sk120stiff.identify.absolute.left_out import _with_left_out
 from sk120stiff.model import Model, Parameter
-from tests.absolute.arm import Arm, errors, poses, tracked, write
+from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
 
 SIGMA = 2e-6
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
@@ -100,3 +102,39 @@ def test_small_errors_of_all_frames_get_no_other_name(tmp_path: Path) -> None:
         named += [linear.candidates[e].name for e in found.order]
     assert named.count("joint_frame") > 12
     assert set(named) == {"joint_frame"}, named
+
+
+def test_waves_that_few_poses_cannot_show_are_in_the_errors_of_springs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """20 poses, gears with waves of 0.1 mrad: too few to let 24 unknowns in, enough to be misled.
+
+    Exact gears cost nothing at 60 poses: the readings exclude waves there.
+    """
+    off: dict[bool, list[float]] = {True: [], False: []}
+    for seed in (1, 3, 6):
+        arm, a = errors(seed), poses(20, 500 + seed)
+        arm.waves = 1e-4 * np.random.default_rng(seed).normal(size=(6, 2))
+        for told, own in off.items():
+            found = spring(tmp_path, arm, a, 900 + seed, told=told, patch=monkeypatch)
+            own.append((found.internal - 1 / 8e5) / found.internal_std)
+    size = {told: float(np.abs(own).max()) for told, own in off.items()}
+    assert size[True] < 2.0 and size[False] > 4.0, off
+    std = [
+        spring(tmp_path, errors(1), poses(60, 8), 1, told=told, patch=monkeypatch).internal_std
+        for told in off
+    ]
+    assert std[0] == pytest.approx(std[1], rel=0.05)
+
+
+def spring(
+    folder: Path, arm: Arm, a: Array, seed: int, *, told: bool, patch: pytest.MonkeyPatch
+) -> Parameter:
+    x = tracked(arm.stands(a)[0]) + 2e-5 * np.random.default_rng(seed).normal(size=a[:, :3].shape)
+    data = sk.read(write(folder, a, x, FIT + "noise: {sigma: 20, unit: um}\n"))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    with patch.context() as at:
+        if not told:
+            at.setattr(sys.modules[calibrate.__module__], "beside_waves", lambda fit, _: fit)
+        found = calibrate(sk.base_model(robot), data.with_joints(robot.actuated))
+    return found.fit.model.parameter("joint_springs:j2.stiffness")

@@ -19,6 +19,7 @@ from sk120stiff.identify.absolute.model_form import ModelForm, model_form, widen
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.selection import waves_that_show
 from sk120stiff.identify.absolute.start import in_gravity, loaded, started
+from sk120stiff.identify.absolute.waves_left_out import beside_waves
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -150,6 +151,7 @@ def calibrate(
     )  # fmt: skip
     notes = [*sizes, *(placed.notes if placed is not None else ()), *unloaded]
     found = doubted(found, catalogue)
+    found = beside_waves(found, catalogue) if waves else found
     return Calibration(found, placed, frozen, still, wild, chosen, tuple(notes))
 
 

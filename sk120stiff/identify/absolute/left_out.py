@@ -43,16 +43,16 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
     moving = ~found.at_bound
     left = found.residual / found.unit
     drawn = 1.0 / problem.prior[moving] ** 2
-    here, alone = _posterior(kept[:, moving], drawn, left)
+    here, alone = posterior(kept[:, moving], drawn, left)
     every = np.column_stack([kept[:, moving], more])
-    there, beside = _posterior(every, np.concatenate([drawn, np.ones(len(sizes))]), left)
+    there, beside = posterior(every, np.concatenate([drawn, np.ones(len(sizes))]), left)
     moved = there[: len(here)] - here
     error = np.zeros(len(found.x))
     error[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0) + moved**2)
     return with_values(replace(found, left_out=np.where(counted, 0.0, error)))
 
 
-def _posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
+def posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
     """(P,) step to the best values, and variance, from derivative (M, P), prior (P,) and gap (M,).
 
     The prior's own pull counts in neither: two steps are compared.

@@ -123,8 +123,8 @@ def _few(found: Calibration) -> list[str]:
         return []
     return [
         f"Only {fit.degrees_of_freedom} numbers are left over: waves over the joints' angles "
-        f"({waves} unknowns) could not show. If there are any, springs are farther off than their "
-        "intervals say. Measure more poses."
+        f"({waves} unknowns) could not show. That there may be such as gears usually have is in "
+        "the standard errors; larger ones are not. Measure more poses."
     ]
 
 

@@ -1,0 +1,80 @@
+"""Waves of gears that a calibration leaves out: how likely they are, and how far they move it.
+
+Every gear has some. Where they would show, the selection lets them in, or the readings exclude
+them; of few readings neither. So the standard errors are averaged over both models, without waves
+and with such of the usual size in every joint, by their evidence (Hoeting et al. 1999).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import logsumexp
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Catalogue
+from sk120stiff.effects.base import Options
+from sk120stiff.identify.absolute.left_out import COUNTED, posterior
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.fit import Fit, with_values
+
+NOISES = np.geomspace(0.1, 2.0, 30)  # times the gap that was left: what the noise may be
+LEAST = 1e-3  # probability of waves below which they are not looked at
+
+
+def beside_waves(found: Fit, catalogue: Catalogue) -> Fit:
+    """The fit with standard errors that know of waves which it leaves out."""
+    problem = found.problem
+    if not isinstance(problem, PoseProblem) or not np.isfinite(found.unit):
+        return found
+    model, kind = found.model, catalogue["transmission_error"]
+    present = {effect.id for effect in model.effects}
+    every = [kind.at(model.robot, where, Options()) for where in kind.places(model.robot)]
+    effects = [effect for effect in every if effect.id not in present]
+    counted = np.array([isinstance(p.effect, COUNTED) for p in found.parameters])
+    if not effects or counted.all():
+        return found
+    wider = model
+    for effect in effects:
+        wider = wider + effect
+    slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
+    more = slope[:, len(model.parameters) :] / problem.of_channels.sigma[:, None]
+    more *= [spec.typical for effect in effects for spec in effect.parameters]
+    moving = ~found.at_bound
+    kept, left = -found.jacobian[:, moving], found.residual
+    likely = _likely(kept, more, left, found.unit, stated=found.sigma_known and not found.exceeds)
+    if likely < LEAST:
+        return found
+    drawn = 1.0 / problem.prior[moving] ** 2
+    per = 1.0 / found.unit
+    here, alone = posterior(per * kept, drawn, per * left)
+    both = per * np.column_stack([kept, more])
+    there, beside = posterior(both, np.concatenate([drawn, np.ones(more.shape[1])]), per * left)
+    count = len(here)
+    widened = np.maximum(beside[:count] - alone, 0.0) + (there[:count] - here) ** 2
+    variance = np.zeros(len(found.x))
+    variance[moving] = likely * widened
+    known = np.zeros(len(found.x)) if found.left_out is None else found.left_out
+    left_out = np.sqrt(known**2 + np.where(counted, 0.0, variance))
+    return with_values(replace(found, left_out=left_out))
+
+
+def _likely(kept: Array, more: Array, left: Array, unit: float, *, stated: bool) -> float:
+    """Probability of waves of the usual size, beside what was estimated, at even odds before."""
+    Q = np.asarray(np.linalg.qr(kept)[0])
+    left, more = left - Q @ (Q.T @ left), more - Q @ (Q.T @ more)
+    ways, size, _ = np.linalg.svd(more, full_matrices=False)
+    along = (ways.T @ left) ** 2
+    rest = float(left @ left) - float(along.sum())
+    freedom = len(left) - Q.shape[1] - len(size)
+    noise = np.ones(1) if stated else (unit * NOISES) ** 2
+
+    def evidence(of_waves: Array) -> float:
+        total = noise[:, None] + of_waves
+        each = (np.log(total) + along / total).sum(axis=1)
+        each += freedom * np.log(noise) + max(rest, 0.0) / noise
+        return float(logsumexp(-0.5 * each))
+
+    odds = evidence(size**2) - evidence(0.0 * size)
+    return float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
