@@ -71,8 +71,8 @@ def test_exact_laws_leave_no_remainder(springs):
 def test_standard_errors_hold_the_roughness(springs):
     """Beside model-form error a spring is known less well than the noise alone would say."""
     tilt = JointTilt("joint_2_l", {"first": 4e-7, "second": 0.0})
-    rough = roughened(hidden(tilt), 0.04)
-    exact = explain(springs, hidden(tilt), options=KINDS).final
+    rough = roughened(hidden(tilt, poses=12, loads=4), 0.04)
+    exact = explain(springs, hidden(tilt, poses=12, loads=4), options=KINDS).final
     found = explain(springs, rough, options=KINDS).final
     ratio = np.array([p.internal_std for p in found.parameters[:3]]) / [
         p.internal_std for p in exact.parameters[:3]
