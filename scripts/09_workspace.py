@@ -29,7 +29,6 @@ from sk120stiff.workspace import (
     elastic_arm,
     open_map,
     parse_axes,
-    path_points,
     standing,
     write_map,
 )
@@ -73,7 +72,7 @@ def main() -> None:
     # The best posture for a line that is milled from above, and the best place for the part.
     middle = np.array([1.6, 0.0, 0.2])
     path = PathTask(
-        path_points(middle - [0.0, 0.25, 0.0], middle + [0.0, 0.25, 0.0], 11),
+        np.linspace(middle - [0.0, 0.25, 0.0], middle + [0.0, 0.25, 0.0], 11),
         axis=np.array([0.0, 0.0, -1.0]),
         wrench=LOAD,
     )
