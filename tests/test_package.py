@@ -1,6 +1,7 @@
 """What an installed copy carries, and what importing it costs."""
 
 import ast
+import importlib
 import re
 import subprocess
 import sys
@@ -148,3 +149,20 @@ def test_the_wheel_works_without_the_checkout(wheel: Path, tmp_path: Path) -> No
         str(tmp_path / "sk120stiff" / "_robots" / "motoman_sk120"),
         "6",
     ]
+
+
+@pytest.mark.parametrize("folder", ["scripts", "docs"])
+def test_what_scripts_and_pages_import_is_there(folder: str) -> None:
+    missing = []
+    for file in (ROOT / folder).rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("sk120stiff"):
+                module = importlib.import_module(node.module or "")
+                names = [alias.name for alias in node.names]
+                beside = Path(module.__file__ or "").parent
+                missing += [
+                    f"{file.name}: {node.module}.{name}"
+                    for name in names
+                    if not hasattr(module, name) and not list(beside.glob(f"{name}*"))
+                ]
+    assert not missing
