@@ -90,6 +90,7 @@ def test_a_notebook_shows_the_name_its_size_and_the_gap(springs):
     (row,) = (k for k, cell in enumerate(cells) if cell.endswith("stiffness_x"))
     assert "±" in cells[row + 1] and cells[row + 4].endswith("N·m/rad")
     assert f"{1e6 * answer.steps[-1].heldout_rms:#.3g}" in cells
+    assert all(text.count(said) <= 1 for said in answer.where)
 
 
 def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
