@@ -35,7 +35,7 @@ def test_the_command_writes_its_folder(run, tmp_path: Path) -> None:
     for name in ("report.html", "scene.html", "model.yaml", "gaps.csv"):
         assert (out / name).stat().st_size > 1000
     assert verdict["remainder"]["interval_95"][0] < 10.0  # beside a noise of 20 µm, which is stated
-    assert "Left beyond the stated noise" in outcome.stdout
+    assert "beyond the stated noise" in outcome.stdout
     assert "looks for" not in outcome.stdout
     assert "What to do now: Use model.yaml" in outcome.stdout
     assert "What to do now" in (out / "report.html").read_text()
