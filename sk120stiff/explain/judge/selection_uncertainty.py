@@ -19,6 +19,8 @@ from sk120stiff.effects import Effect, Elastic, LoadCases
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.attribution import unit
+from sk120stiff.explain.judge.foreign_cause import moved_by_a_foreign_cause
+from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.select.score import score_set
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
@@ -51,6 +53,8 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
             if parameter.name in place:
                 k = place[parameter.name]
                 moves[k] = max(moves[k], abs(value - here[k]))
+    if found.base.problem.noise.form:
+        moves = np.hypot(moves, moved_by_a_foreign_cause(final, remainder_of(final).rms))
     return with_values(replace(final, selection_uncertainty=moves))
 
 

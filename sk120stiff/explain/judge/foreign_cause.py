@@ -1,0 +1,54 @@
+"""How far a cause without a name may have moved what was estimated.
+
+Where something structured remains, the parameters have taken on what they could of it, and the
+scatter of the readings knows nothing of that: a tracker that stands on the robot's floor makes a
+spring too soft by many standard errors. Of all that `localise` suspects each may be the cause, at
+sizes that leave as much as remains. Beside each the parameters come out elsewhere; by how much, and
+how likely each is, is linear algebra of normal distributions, and the second moment over all of
+them (law of total variance: Hoeting et al. 1999, Bayesian model averaging) joins the errors.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.explain.localise.places import line_up, look_at
+from sk120stiff.identify import Fit, yardstick
+from sk120stiff.identify.checks.left_over import orthonormal
+
+
+def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
+    """(P_free,) root mean square of what a cause without a name may have done to the estimates.
+
+    Args:
+        fit: The fitted model beside model-form error.
+        remains: Size of its remainder, rms per axis [m].
+    """
+    moving = ~fit.at_bound
+    out = np.zeros(len(fit.x))
+    look = look_at(fit, yardstick(fit))
+    lineup = line_up(look)
+    unit = np.sqrt(look.noise.scale)
+    J = fit.jacobian[:, moving] / unit
+    inside, inverse = orthonormal(J), np.linalg.pinv(J)
+    gap = -fit.residual / unit
+    gap = gap - inside @ (inside.T @ gap)
+    evidence, squares = [0.0], [np.zeros(J.shape[1])]  # first: that there is no such cause
+    for part, columns in zip(lineup.parts, lineup.reading, strict=True):
+        length = np.sqrt((columns**2).mean(axis=(0, 1)))
+        seen = length > 0.0
+        if not seen.any():
+            continue
+        drawn = lineup.white[:, part][:, seen] / unit
+        drawn = drawn * remains / (length[seen] * np.sqrt(seen.sum()))
+        left, size, right = np.linalg.svd(drawn - inside @ (inside.T @ drawn), full_matrices=False)
+        along = left.T @ gap
+        told = size**2 / (1.0 + size**2)
+        evidence.append(float(told @ along**2 - np.log1p(size**2).sum()))
+        taken = inverse @ drawn @ right.T  # what the parameters take on of each
+        likeliest = taken @ (size / (1.0 + size**2) * along)
+        squares.append(likeliest**2 + taken**2 @ (1.0 / (1.0 + size**2)))
+    weights = np.exp(0.5 * (np.array(evidence) - max(evidence)))
+    out[moving] = np.sqrt(weights @ np.array(squares) / weights.sum())
+    return out

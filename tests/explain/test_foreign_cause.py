@@ -1,0 +1,34 @@
+"""Springs beside a cause that no effect in the model is: their errors hold what it did to them."""
+
+import numpy as np
+import pytest
+
+from sk120stiff import base_model, load_robot
+from sk120stiff.explain.judge.beside_form import with_model_form
+from sk120stiff.explain.judge.foreign_cause import moved_by_a_foreign_cause
+from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.identify import fit
+from tests.explain.readings import NOISE, hidden
+from tests.hidden.generator.causes_foreign import AxialLink, TrackerStand
+from tests.hidden.generator.sk120 import sk120
+
+
+@pytest.mark.parametrize(
+    "cause",
+    [
+        AxialLink("link_2_l", {"compliance": 3e-8}),
+        TrackerStand("tracker", {"compliance": 3e-8}, {"at": (2.0, -2.5, 0.5)}),
+    ],
+)
+def test_what_a_foreign_cause_did_to_springs_is_in_their_errors(cause):
+    springs = base_model(load_robot("motoman_sk120"))
+    readings = hidden(cause)
+    found = fit(springs, readings, noise=with_model_form(fit(springs, readings, noise=NOISE)))
+    remains = remainder_of(found).rms
+    moved = moved_by_a_foreign_cause(found, remains) * found.problem.scale
+    true = np.array([1.0 / sk120().typical.joint[p.effect.where] for p in found.parameters])
+    off = np.array([p.internal for p in found.parameters]) - true
+    std = np.array([p.internal_std for p in found.parameters])
+    assert np.abs(off / std).max() > 4.0
+    assert np.abs(off / np.hypot(std, moved)).max() < 2.5
+    assert not moved_by_a_foreign_cause(found, 0.0).any()
