@@ -104,6 +104,9 @@ def compare(m: Measurements, back: Measurements, rtol: float) -> None:
         if name in FROM_THE_FILE:
             continue
         here, there = getattr(m, name), getattr(back, name)
+        if name == "branch" and here is None and there is not None:  # told by the order of loads
+            assert "loading and unloading" in " ".join(back.notes).replace("\n", " ")
+            continue
         if name == "zero_group":
             here, there = ([list(g).index(k) for k in g] for g in (here, there))
         if isinstance(here, np.ndarray):
