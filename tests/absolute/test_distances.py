@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.words import ABOUT, unseen
 from tests.absolute.arm import Array, errors, poses, tracked, write
-from tests.absolute.test_forms import NOISE, SIGMA, agrees, calibrated, rows
+from tests.absolute.test_forms import FINE, FINELY, agrees, calibrated, rows
 
 A = poses(70, 2)
 POINTS = np.array([[2.0, 1, 0.5], [1.5, -2, 0], [0, 2.5, 1]])
@@ -25,11 +25,13 @@ def measured(folder: Path, points: Array, settings: str = UNKNOWN, *, a: Array =
     """Distances to the points (F, 3) in turn, points stated in the instrument's axes."""
     rng = np.random.default_rng(8)
     at = points[np.arange(len(a)) % len(points)]
-    far = np.linalg.norm(X[: len(a)] - at, axis=1) + SIGMA * rng.normal(size=len(a))
+    far = np.linalg.norm(X[: len(a)] - at, axis=1) + FINE * rng.normal(size=len(a))
     far[:wild] += 0.05
     cells = rows(np.column_stack([length * far, place * tracked(at)]))
     nothing = np.full((len(a), 3), np.nan)
-    return write(folder, a, nothing, settings + NOISE, more=",l[mm],ax[m],ay[m],az[m]", cells=cells)
+    return write(
+        folder, a, nothing, settings + FINELY, more=",l[mm],ax[m],ay[m],az[m]", cells=cells
+    )
 
 
 @pytest.mark.parametrize("count", [3, 1])

@@ -22,6 +22,8 @@ from tests.absolute.arm import NAMES, TURN, Arm, Array, G, errors, poses, tracke
 SIGMA = 2e-5
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 NOISE = "noise: {sigma: 20, unit: um}\n"
+FINE = 5e-6  # m; what a ball bar or an interferometer does
+FINELY = "noise: {sigma: 5, unit: um}\n"
 A = poses(80, 2)
 RNG = np.random.default_rng(3)
 
@@ -38,6 +40,7 @@ def agrees(found: Calibration, share: float = 0.05) -> None:
     spring = found.fit.model.parameter("joint_springs:j2.stiffness")
     assert abs(spring.internal - 1 / 8e5) < 3.5 * spring.internal_std
     assert spring.internal_std < share * spring.internal
+    assert abs(spring.internal * 8e5 - 1.0) < 0.05  # full readings give it to a third of a percent
 
 
 def noisy(x: Array) -> Array:
@@ -134,11 +137,11 @@ def test_payloads_bend_the_arm_where_they_hang(tmp_path: Path, doubted: bool) ->
 def test_distances_to_fixed_points_alone(tmp_path: Path) -> None:
     x = errors(1).stands(A)[0]
     anchors = np.array([[2.0, 1, 0.5], [1.5, -2, 0], [0, 2.5, 1], [-1, -2, 1.5]])[np.arange(80) % 4]
-    far = np.linalg.norm(x - anchors, axis=1) + SIGMA * RNG.normal(size=80)
+    far = np.linalg.norm(x - anchors, axis=1) + FINE * RNG.normal(size=80)
     found = calibrated(
         write(
             tmp_path, A, np.full_like(x, np.nan),
-            "point: {xyz: [50, -80, 120], unit: mm}\n" + NOISE,
+            "point: {xyz: [50, -80, 120], unit: mm}\n" + FINELY,
             more=",l[mm],ax[m],ay[m],az[m]", cells=rows(np.column_stack([1e3 * far, anchors])),
         )
     )  # fmt: skip

@@ -55,11 +55,12 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
 def posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
     """(P,) step to the best values, and variance, from derivative (M, P), prior (P,) and gap (M,).
 
-    The prior's own pull counts in neither: two steps are compared.
+    The prior's own pull counts in neither: two steps are compared. Of what the numbers cannot see
+    neither says anything.
     """
     information = jacobian.T @ jacobian + np.diag(prior)
     size = np.sqrt(np.diag(information))
-    inverse = linalg.inv(information / np.outer(size, size)) / np.outer(size, size)
+    inverse = linalg.pinvh(information / np.outer(size, size)) / np.outer(size, size)
     return np.asarray(inverse @ (jacobian.T @ left)), np.asarray(np.diag(inverse))
 
 
