@@ -136,13 +136,17 @@ def refuse_count(pool: Pool, count: int, loads: int | None) -> None:
     """Raise an `InputError` where so many cannot be chosen."""
     if loads is None:
         if not 1 <= count <= pool.count:
-            raise InputError(f"{count} readings cannot be chosen from {pool.count} candidates")
+            raise InputError(
+                f"{count} readings cannot be chosen from {pool.count} candidates",
+                remedy="Ask for fewer, or give the rig more directions or steps.",
+            )
         return
     sizes = np.sort(np.bincount(pool.pose))[::-1]
     if count < 1 or loads < 1 or count > len(sizes) or sizes[count - 1] < loads:
         raise InputError(
             f"{count} poses with {loads} loads each cannot be chosen from candidates at "
-            f"{len(sizes)} poses with up to {sizes[0]} loads"
+            f"{len(sizes)} poses with up to {sizes[0]} loads",
+            remedy="Ask for fewer, or give the rig more directions or steps.",
         )
 
 

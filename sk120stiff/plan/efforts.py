@@ -58,10 +58,11 @@ def held_loads_of(robot: Robot, cell: Cell, a: Array, wrench: Array, point: Arra
     rows = np.flatnonzero(~fallen & (kept > 0.0))
     scaled = wrench[rows] * (kept[rows] / size[rows])[:, None]
     remarks = []
-    if len(rows) and (share[rows] < 1.0).any():
-        sizes = kept[rows]
+    largest = rows[size[rows] == size[rows].max()] if len(rows) else rows
+    if (share[largest] < 1.0).any():
+        asked, sizes = size[largest].max(), kept[largest]
         remarks.append(
-            f"Of {size.max():.3g} N the motors hold {sizes.min():.3g} to {sizes.max():.3g} N, "
+            f"Of {asked:.3g} N the motors hold {sizes.min():.3g} to {sizes.max():.3g} N, "
             f"as the pose allows: no joint gives more than {100 * cell.effort_share:.0f} % of its "
             "effort in the URDF, the arm's weight included."
         )

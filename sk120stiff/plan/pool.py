@@ -66,11 +66,13 @@ def random_pool(
 ) -> Pool:
     """Random poses within the joint limits, each under loads in random directions.
 
+    Where the rig has fewer directions than are asked for, it brings smaller sizes in each too.
+
     Args:
         robot: The robot.
         poses, directions: Number of poses, or these themselves (K, n) [rad or m], and number of
             load directions at each.
-        force: Size of the loads [N].
+        force: Size of the largest loads [N].
         point, force_point: (3,) measured point and point of the force in the tool frame [m]; the
             force acts at the measured point unless said otherwise.
         seed: Of the draw.
@@ -87,10 +89,13 @@ def random_pool(
     else:
         a = poses_in(robot, int(poses), rng, cell, point)
     pushed = robot.screws(a, point=point if force_point is None else force_point).position
-    drawn = (cell or Cell()).rig.draw(pushed, directions, rng)
-    loads = np.zeros((drawn.shape[0] * drawn.shape[1], 6))
-    loads[:, :3] = force * drawn.reshape(-1, 3)
-    repeated = np.repeat(a, drawn.shape[1], axis=0)
+    rig = (cell or Cell()).rig
+    drawn = rig.draw(pushed, directions, rng)
+    sizes = rig.sizes(force, max(1, directions // drawn.shape[1]))
+    brought = (drawn[:, :, None] * sizes[:, None]).reshape(len(a), -1, 3)
+    loads = np.zeros((brought.shape[0] * brought.shape[1], 6))
+    loads[:, :3] = brought.reshape(-1, 3) + 0.0  # no -0.0 in a plan
+    repeated = np.repeat(a, brought.shape[1], axis=0)
     return Pool(load_case(robot, repeated, loads, point=point, force_point=force_point))
 
 
@@ -127,7 +132,10 @@ def feasible_pool(
             remedy="Give smaller steps, or a larger force.",
         )
     remarks = (*held.remarks, *assumptions(robot, within, point))
-    return Pool(replace(drawn.rows(held.rows), wrench=held.wrench), remarks)
+    # What is too much for the motors may come down to a size that is there already.
+    told = np.hstack([drawn.a[held.rows], held.wrench])
+    once = np.sort(np.unique(told, axis=0, return_index=True)[1])
+    return Pool(replace(drawn.rows(held.rows[once]), wrench=held.wrench[once]), remarks)
 
 
 def random_poses(robot: Robot, count: int, rng: np.random.Generator) -> Array:

@@ -86,6 +86,15 @@ class Rig:
         across = unit(drawn - (drawn @ self.axis)[..., None] * self.axis)
         return np.asarray(cosine * self.axis + np.sqrt(1.0 - cosine**2) * across)
 
+    def sizes(self, force: float, count: int) -> Array:
+        """(k,) sizes [N] up to `force` for one direction, at most `count`, largest first.
+
+        Its steps; halves where it has any size. `force` alone where every step is larger.
+        """
+        if self.steps:
+            return np.array([s for s in self.steps[::-1] if s <= force + 1e-9][:count] or [force])
+        return np.asarray(force / 2.0 ** np.arange(count))
+
     def has(self, size: Array) -> Mask:
         """(N,) sizes [N] that are among the steps."""
         if not self.steps:

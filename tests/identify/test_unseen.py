@@ -54,3 +54,27 @@ def test_a_point_off_the_axis_shows_it() -> None:
     assert not unseen_reasons(found)
     load_cases = found.problem.load_cases
     assert all(why_unseen(load_cases, p) is None for p in found.parameters)
+
+
+def test_hanging_weights_are_parallel_to_a_first_axis_that_stands_upright() -> None:
+    """Beside the axis such a load tells nothing either: another remedy than for one through it."""
+    robot = load_robot(example("panda.urdf"))
+    a = np.random.default_rng(1).uniform(-1.0, 1.0, (6, robot.n))
+    cases = load_case(robot, a, [0, 0, -40.0, 0, 0, 0], point=[0.1, 0.0, 0.05])
+    model = joint_spring_model(robot, SPRINGS)
+    why = [why_unseen(cases, p) for p in model.parameters]
+    assert why[0] == (
+        "every load is parallel to the axis of panda_joint1; push across it, or add a moment"
+    )
+    assert not any(why[1:])
+
+
+def test_loads_square_to_a_slide() -> None:
+    rail = load_robot(
+        """<robot name="r"><link name="a"/><link name="b"/><joint name="x" type="prismatic">
+        <parent link="a"/><child link="b"/><axis xyz="1 0 0"/>
+        <limit lower="0" upper="1" effort="0" velocity="0"/></joint></robot>"""
+    )
+    cases = load_case(rail, np.zeros((2, 1)), [0, 0, -40.0, 0, 0, 0], point=np.zeros(3))
+    (parameter,) = joint_spring_model(rail, [1e6]).parameters
+    assert why_unseen(cases, parameter) == "every load is square to the slide of x; push along it"

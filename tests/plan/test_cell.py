@@ -7,6 +7,7 @@ import pytest
 
 from sk120stiff.errors import InputError
 from sk120stiff.plan import Cell, Rig, cell_from_data, feasible, feasible_pool, read_cell
+from sk120stiff.plan.design import refuse_count
 from sk120stiff.robot import Robot, load_robot
 from sk120stiff.robot.collision import Scene
 from sk120stiff.robot.solids import Solid
@@ -97,6 +98,30 @@ def test_rigs(arm: Robot, rig: Rig, good, bad) -> None:
         assert feasible(arm, cell, [0.0, 0.0], [*force, 0, 0, 0]).ok[0] == ok
     pool = feasible_pool(arm, poses=15, directions=4, force=40.0, point=np.zeros(3), cell=cell)
     assert feasible(arm, cell, pool.load_cases.a, pool.load_cases.wrench).ok.all()
+
+
+def test_a_weight_hangs_in_several_sizes_and_the_motors_are_not_blamed_for_its_steps(
+    arm: Robot,
+) -> None:
+    """It has one direction: several loads at a pose are its steps, or halves where it has none."""
+    down = np.array([[0, 0, -1.0]])
+    for steps in ((5.0, 10.0, 20.0), ()):
+        cell = Cell(rig=Rig(directions=down, steps=steps))
+        pool = feasible_pool(arm, poses=12, directions=4, force=30.0, point=np.zeros(3), cell=cell)
+        cases = pool.load_cases
+        readings = np.hstack([cases.a, cases.wrench])
+        assert len(np.unique(readings, axis=0)) == len(readings)
+        assert feasible(arm, cell, cases.a, cases.wrench).ok.all()
+        at_most = np.bincount(pool.pose).max()
+        assert at_most >= 3
+        refuse_count(pool, 1, at_most)
+        with pytest.raises(InputError, match="more directions or steps"):
+            refuse_count(pool, 1, at_most + 1)
+        assert steps == () or set(-cases.wrench[:, 2]) <= set(steps)
+    up = Cell(rig=Rig(directions=np.array([[-0.0, -0.0, 1.0]]), steps=(1.0, 2.0)))
+    pool = feasible_pool(arm, poses=12, directions=4, force=400.0, point=np.zeros(3), cell=up)
+    assert not any("motors hold" in said for said in pool.remarks)  # two newtons: all of them
+    assert not np.signbit(pool.load_cases.wrench).any()
 
 
 def test_data_tell_floor_and_directions(arm: Robot) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.polish import FAINTEST
@@ -32,7 +31,7 @@ def why_unseen(load_cases: LoadCases, parameter: Parameter) -> str | None:
     """The geometric reason why no such reading can show a joint's spring; None: there is none.
 
     A spring turns the point about its joint's axis by c τ. Nothing of it shows where the point lies
-    on that axis in every pose, or where every load passes through it.
+    on that axis in every pose, or where no load has a torque about it.
 
     Args:
         load_cases: Poses (N, n), loads and points of the readings, taken or planned.
@@ -49,16 +48,14 @@ def why_unseen(load_cases: LoadCases, parameter: Parameter) -> str | None:
             f"the point lies on the axis of {joint}; give a point off the axis (--point of 'plan', "
             "point: in the YAML file of the readings)"
         )
-    if _torques(load_cases)[:, k].max() <= small * _largest_load(load_cases):
-        return f"every load passes through the axis of {joint}; push beside it, or add a moment"
-    return None
-
-
-def _torques(load_cases: LoadCases) -> Array:
-    """(N, n) size of the torque that each load puts on each actuated joint [N·m or N]."""
-    at_load = load_cases.robot.screws(load_cases.a, point=load_cases.force_point)
-    return np.asarray(np.abs(np.einsum("nij,ni->nj", at_load.jacobian, load_cases.wrench)))
-
-
-def _largest_load(load_cases: LoadCases) -> float:
-    return float(np.linalg.norm(load_cases.wrench, axis=1).max())
+    screw = robot.screws(load_cases.a, point=load_cases.force_point).jacobian[:, :, k]
+    load = load_cases.wrench
+    most = float(np.linalg.norm(load, axis=1).max())
+    if np.abs(np.einsum("ni,ni->n", screw, load)).max() > small * most:
+        return None
+    if robot.prismatic[k]:
+        return f"every load is square to the slide of {joint}; push along it"
+    across = np.linalg.norm(np.cross(screw[:, 3:], load[:, :3]), axis=1).max()
+    if across <= ON_AXIS * most:
+        return f"every load is parallel to the axis of {joint}; push across it, or add a moment"
+    return f"every load passes through the axis of {joint}; push beside it, or add a moment"
