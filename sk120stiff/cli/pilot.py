@@ -106,13 +106,20 @@ def command(
         campaign = settings.campaign(opened, around)
     if model is not None:
         at.begin(settings)  # now that nothing stands against it
+    grown = _grown(at, _changed(at))  # asked now: what comes while the first look lasts counts
     first = _looked(at, settings, campaign)
 
     def go_on() -> None:
         turn = first
-        grown = _grown(at)
         while _typed(at, campaign, turn) if typed else next(grown):
-            turn = _looked(at, settings, campaign)
+            try:
+                turn = _looked(at, settings, campaign)
+            except InputError as error:
+                if typed:
+                    raise
+                note(f"Error: {error}")
+                note("Correct the file; it is looked at again when it changes.")
+                continue
             emit(turn.answer, as_json=False)
             if turn.over:
                 return
@@ -264,16 +271,20 @@ def _asked(question: str) -> str:
     return sys.stdin.readline().strip()
 
 
-def _grown(at: Folder) -> Iterator[bool]:
-    """True each time that the file of readings has changed."""
-    before = at.readings_file.stat().st_mtime_ns
+def _changed(at: Folder) -> int:
+    """When the file of readings was last written [ns]; 0 where there is none."""
+    try:
+        return at.readings_file.stat().st_mtime_ns
+    except OSError:
+        return 0  # an editor is just replacing it
+
+
+def _grown(at: Folder, before: int) -> Iterator[bool]:
+    """True each time that the file of readings has changed since `before` [ns]."""
     while True:
         time.sleep(LOOK_AGAIN)
-        try:
-            now = at.readings_file.stat().st_mtime_ns
-        except OSError:
-            continue  # an editor is just replacing it
-        if now != before and _whole(at.readings_file):
+        now = _changed(at)
+        if now not in (0, before) and _whole(at.readings_file):
             before = now
             yield True
 

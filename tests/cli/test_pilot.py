@@ -1,12 +1,15 @@
 """`sk120stiff pilot`: a folder that is begun, left, taken up and ended."""
 
 import io
+import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from sk120stiff.cli import pilot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import read_model
@@ -130,3 +133,36 @@ def test_bad_settings(run, tmp_path: Path, words) -> None:
     folder = tmp_path / "campaign"
     assert run("pilot", str(folder), "--model", MODEL, *words).code == 2
     assert not folder.exists()
+
+
+def test_a_file_that_grows_with_a_bad_row_is_waited_for(run, tmp_path: Path, monkeypatch) -> None:
+    """A row that cannot be read is told and may be mended; what came before the wait counts too."""
+    folder = tmp_path / "campaign"
+    begin(run, folder)
+    file = folder / "readings.csv"
+    header = file.read_text(encoding="utf-8")
+    row = (folder / "next.csv").read_text(encoding="utf-8").splitlines()[1]
+    looked = pilot._looked
+
+    def written_meanwhile(*given: object) -> object:
+        state = looked(*given)  # type: ignore[arg-type]
+        if file.read_text(encoding="utf-8") == header:
+            file.write_text(f"{header}{row},0.1,oops,0.1\n", encoding="utf-8")
+            os.utime(file, ns=(1, 1))
+        return state
+
+    waits = iter([None, f"{header}{row},0.11,0.02,-0.31\n"])
+
+    def wait(_: float) -> None:
+        text = next(waits, "")
+        if text == "":
+            raise KeyboardInterrupt
+        if text:
+            file.write_text(text, encoding="utf-8")
+
+    monkeypatch.setattr(pilot, "_looked", written_meanwhile)
+    monkeypatch.setattr(pilot, "time", SimpleNamespace(sleep=wait))
+    outcome = run("pilot", str(folder), "--watch")
+    assert "line 2" in outcome.stderr and "oops" in outcome.stderr
+    assert "Correct the file" in outcome.stderr
+    assert "After 1 reading" in outcome.stdout
