@@ -170,12 +170,16 @@ class Linear:
         return Solved(pick, x, max(square, 1e-12), float(size))
 
     def score(self, chosen: tuple[int, ...], noise: float) -> float:
-        """Logarithm of the evidence, up to a constant of all models."""
+        """Logarithm of the evidence, up to a constant of all models.
+
+        Where noise is larger than stated, or not stated, it is at its likeliest size: models may be
+        compared each at its own noise.
+        """
         found = self.solved(chosen, noise)
         count = self.count
         if self.stated and noise <= 1.0:
             return -0.5 * (found.square + found.volume)
-        return float(-0.5 * (count * np.log(found.square / count) + found.volume))
+        return float(-0.5 * (count * (1.0 + np.log(found.square / count)) + found.volume))
 
     def noise(self, chosen: tuple[int, ...]) -> float:
         """Variance of what a model leaves, at least the stated one.
