@@ -49,6 +49,7 @@ from sk120stiff.cli.uncertainty import uncertainty_keys
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
 from sk120stiff.model import joint_spring_model
+from sk120stiff.plan import feasible
 from sk120stiff.programs import language_of
 from sk120stiff.programs.placing import TOOL_DOWN
 from sk120stiff.units import parse_size
@@ -114,7 +115,7 @@ def command(
             metavar="POSE",
             help="For positions: the pose near which the arm begins, as in --pose elsewhere; it "
             "stays in that branch.",
-            show_default="a branch above the floor, near the zero pose",
+            show_default="a branch above the floor that touches nothing, near the zero pose",
         ),
     ] = None,
     floor: Annotated[
@@ -255,6 +256,9 @@ def command(
     wanted = None if start is None else pose_of(robot, start, option="--start")
     ground = floor_of(robot, floor, opened.path)
     arm = elastic_arm(joint_spring_model(robot), frame=at)
+    around = at_work(opened_cell(robot, cell, path))
+    if floor is not None and not np.isfinite(around.floor):
+        around = replace(around, floor=ground)
     with progress_bar("Finding the joints") as report:
         opened, nominal = with_joints(
             opened,
@@ -264,6 +268,7 @@ def command(
                 arm,
                 wanted,
                 stays_above=lambda a: stays_above(robot, a, ground),
+                stands=lambda a: feasible(robot, around, a).ok,
                 progress=report,
             ),
         )
@@ -272,9 +277,6 @@ def command(
     if given.joints is not None and given.position is not None:
         facts = (*facts, "Its joints are driven; the positions beside them agree.")
     facts = (*facts, *(point_words(believed) if at in (None, robot.tool_frame) else ()))
-    around = at_work(opened_cell(robot, cell, path))
-    if floor is not None and not np.isfinite(around.floor):
-        around = replace(around, floor=ground)
     assumed = assumed_at_work(robot, around)
     held_at = given.wrench if at in (None, robot.tool_frame) else None
     wrong = infeasible(robot, around, nominal, given, held_at)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -156,6 +156,7 @@ def joints_along(
     start: Array | None = None,
     *,
     stays_above: Callable[[Array], Mask] | None = None,
+    stands: Callable[[Array], Mask] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Array:
     """(N, n) joint coordinates of a path, found by inverse kinematics where it gives positions.
@@ -163,13 +164,14 @@ def joints_along(
     The first point is sought from `start` and from poses all over the joints' ranges; every further
     one from one before it, so the arm stays in one branch. Of the branches that reach the first
     point the one nearest to `start` is taken if that was given; else those come first that stay
-    above the floor, and of these the one nearest to the pose with all joints at zero. A branch that
-    does not reach the whole path gives way to the next one.
+    above the floor, of these those that touch nothing there, and of these the one nearest to the
+    pose with all joints at zero. A branch that does not reach the whole path gives way to the next.
 
     Args:
         path, arm: Where to go, and with what.
         start: (n,) coordinates whose branch is wanted [rad or m].
-        stays_above: Tells of poses (M, n) which stay above the floor.
+        stays_above, stands: Tell of poses (M, n) which stay above the floor, and which can be
+            taken up.
         progress: Called with (points done, points in all).
 
     Raises:
@@ -183,7 +185,7 @@ def joints_along(
         raise ValueError("a path has joints or positions")
     task = Task(path.position, rotation=path.rotation)
     lost = 0
-    for first in _branches(arm, task.rows(np.array([0])), start, stays_above):
+    for first in _branches(arm, task.rows(np.array([0])), start, (stands, stays_above)):
         joints, end = _followed(arm, task, first, progress)
         if end == path.count:
             return without_turns(arm, joints)
@@ -228,9 +230,12 @@ def _branches(
     arm: ElasticArm,
     first: Task,
     start: Array | None,
-    stays_above: Callable[[Array], Mask] | None,
+    asked: Sequence[Callable[[Array], Mask] | None],
 ) -> Array:
-    """(M, n) different coordinates that reach the first point, the wanted one first."""
+    """(M, n) different coordinates that reach the first point, the wanted one first.
+
+    Without a `start` what is `asked` of them counts, the last question most.
+    """
     rest = np.clip(np.zeros(arm.n) if start is None else start, arm.lower, arm.upper)
     starts = starting_poses(arm, STARTS, rest)
     many = Task(
@@ -240,10 +245,8 @@ def _branches(
     reached = solve_inverse(arm, many, starts)
     found = different(reached.a[reached.found])
     distance = np.linalg.norm(found - rest, axis=1)
-    sinks = np.zeros(len(found), dtype=bool)
-    if start is None and stays_above is not None and len(found):
-        sinks = ~stays_above(found)
-    return np.asarray(found[np.lexsort((distance, sinks))])
+    faults = [~ask(found) for ask in asked if ask and start is None and len(found)]
+    return np.asarray(found[np.lexsort((distance, *faults))])
 
 
 def different(poses: Array) -> Array:

@@ -7,6 +7,7 @@ import pytest
 from sk120stiff.model import joint_spring_model, write_model
 from sk120stiff.robot import load_robot
 from tests.cli.conftest import Run
+from tests.corpus.robots import example
 from tests.oracles.mujoco_sk120 import deflect_sk120
 from tests.workspace.test_branch import SPRINGS, milling_path, other_elbow, ur10
 
@@ -173,6 +174,20 @@ def test_the_branch_is_printed_and_what_goes_below_is_warned_of(run: Run, tmp_pa
     refused = run("compensate", str(model), str(path), *out, "--start", "1,2 deg")
     assert refused.code == 2
     assert "--start" in refused.stderr
+
+
+def test_a_branch_that_touches_nothing_is_taken(run, tmp_path: Path) -> None:
+    """Near the zero pose the UR10's forearm comes too near to its wrist; other branches do not."""
+    path, out = tmp_path / "path.csv", tmp_path / "out.csv"
+    path.write_text(
+        "point,x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n1,600,-200,300,0,0,-60\n"
+        "2,600,-190,300,0,0,-60\n",
+        encoding="utf-8",
+    )
+    robot = example("ur10_robot.urdf")
+    found = run("compensate", str(robot), str(path), "--out", str(out), "--json")
+    assert found.code == 0, found.stderr
+    assert not found.document["infeasible"], found.document["infeasible"]
 
 
 def test_points_that_run_into_the_cell_are_told(run, tmp_path: Path) -> None:
