@@ -177,17 +177,28 @@ def test_the_branch_is_printed_and_what_goes_below_is_warned_of(run: Run, tmp_pa
 
 
 def test_a_branch_that_touches_nothing_is_taken(run, tmp_path: Path) -> None:
-    """Near the zero pose the UR10's forearm comes too near to its wrist; other branches do not."""
-    path, out = tmp_path / "path.csv", tmp_path / "out.csv"
+    """A ball where the elbow would be: the arm takes another branch, which leaves it alone."""
+    path, out, cell = (tmp_path / name for name in ("path.csv", "out.csv", "ball.yaml"))
     path.write_text(
         "point,x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n1,600,-200,300,0,0,-60\n"
         "2,600,-190,300,0,0,-60\n",
         encoding="utf-8",
     )
-    robot = example("ur10_robot.urdf")
-    found = run("compensate", str(robot), str(path), "--out", str(out), "--json")
+    file = example("ur10_robot.urdf")
+    words = ("compensate", str(file), str(path), "--out", str(out), "--json")
+    free = run(*words)
+    assert free.code == 0, free.stderr
+    robot = load_robot(file)
+    first = free.document["branch"]["first"]
+    x, y, z = robot.screws(np.array([[first[name] for name in robot.actuated]])).origins[0, 2]
+    cell.write_text(
+        f"obstacles:\n- {{name: ball, sphere: 0.05, xyz: [{x:.3f}, {y:.3f}, {z:.3f}]}}\n",
+        encoding="utf-8",
+    )
+    found = run(*words, "--cell", str(cell))
     assert found.code == 0, found.stderr
     assert not found.document["infeasible"], found.document["infeasible"]
+    assert found.document["branch"]["first"] != first
 
 
 def test_points_that_run_into_the_cell_are_told(run, tmp_path: Path) -> None:
