@@ -5,8 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 import sk120stiff as sk
+from sk120stiff.arrays import Array
 from sk120stiff.explain.absolute.choose import alternatives, gain
 from sk120stiff.explain.absolute.linear import Linear
+
+
+def seen(columns: Array, residual: Array, *, stated: bool) -> Linear:
+    """Two candidates of one column each, (M, 2), at three numbers a reading."""
+    count = np.arange(len(residual)) // 3
+    return Linear(
+        residual=residual,
+        base=np.zeros((len(residual), 0)),
+        columns=columns,
+        positive=np.zeros(2, dtype=bool),
+        candidates=sk.base_model(sk.load_robot("motoman_sk120")).effects[:2],
+        sizes=np.ones(2),
+        slices=(slice(0, 1), slice(1, 2)),
+        row=count,
+        fold=count % 5,
+        stated=stated,
+    )
 
 
 def test_what_stands_in_for_a_cause_beyond_usual_sizes_only_does_not_make_it_needless() -> None:
@@ -14,18 +32,7 @@ def test_what_stands_in_for_a_cause_beyond_usual_sizes_only_does_not_make_it_nee
     rng = np.random.default_rng(3)
     column = rng.normal(size=60)
     columns = np.column_stack([column, (column + 1e-4 * rng.normal(size=60)) / 100.0])
-    linear = Linear(
-        residual=column + 1e-3 * rng.normal(size=60),
-        base=np.zeros((60, 0)),
-        columns=columns,
-        positive=np.zeros(2, dtype=bool),
-        candidates=sk.base_model(sk.load_robot("motoman_sk120")).effects[:2],
-        sizes=np.ones(2),
-        slices=(slice(0, 1), slice(1, 2)),
-        row=np.arange(60) // 3,
-        fold=np.arange(60) // 3 % 5,
-        stated=False,
-    )
+    linear = seen(columns, column + 1e-3 * rng.normal(size=60), stated=False)
     assert gain(linear, (0, 1), 0).share > 0.9
 
 
@@ -33,18 +40,7 @@ def test_a_name_that_many_readings_show_is_sure_though_another_spring_may_be_the
     """Without it the noise comes out larger than stated: each model at a noise of its own."""
     rng = np.random.default_rng(4)
     columns = rng.normal(size=(6000, 2))
-    linear = Linear(
-        residual=0.4 * columns[:, 0] + rng.normal(size=6000),
-        base=np.zeros((6000, 0)),
-        columns=columns,
-        positive=np.zeros(2, dtype=bool),
-        candidates=sk.base_model(sk.load_robot("motoman_sk120")).effects[:2],
-        sizes=np.ones(2),
-        slices=(slice(0, 1), slice(1, 2)),
-        row=np.arange(6000) // 3,
-        fold=np.arange(6000) // 3 % 5,
-        stated=True,
-    )
+    linear = seen(columns, 0.4 * columns[:, 0] + rng.normal(size=6000), stated=True)
     assert linear.noise(()) > 1.1
     assert linear.score((0,), 1.0) - linear.score((), linear.noise(())) > 300.0
     assert alternatives(linear, (0,), 0) == ((), 1.0)
