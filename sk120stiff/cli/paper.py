@@ -104,8 +104,8 @@ def _printable(table: SideBySide) -> Table:
     for k, column in enumerate(table.brief):
         head = column.name + (f"\n{column.shown_unit}" if column.unit else "")
         made.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
-    for row in range(table.count):
-        made.add_row(*(column.text(row) for column in table.brief))
+    for row in zip(*(column.texts for column in table.brief), strict=True):
+        made.add_row(*row)
     return made
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import DIMENSIONS, FIXTURE
-from sk120stiff.paper.setting import Setting, random_poses
+from sk120stiff.paper.setting import Setting, random_poses, slopes, straight
 
 #: Every length that Appendix I names.
 LENGTHS = ("L1", "L2", "L3", "L4", "L5", "L6", "D1", "D3", "D4", "D5", "D6")
@@ -114,26 +114,19 @@ def slips(*, seed: int = 1) -> tuple[Slip, ...]:
     """Terms of eq. (17) that cannot belong to one arm which turns about a vertical axis.
 
     J11 = −y and J21 = x, and a quarter turn of joint 1 carries x to y: so J21(θ1) must be
-    −J11(θ1 + 90°), length by length. Where they differ, the one whose slope is not J13 or −J23
-    is wrong.
+    −J11(θ1 + 90°), length by length. Where they differ, the one whose slope by θ3 is not −J23 or
+    J13 is wrong.
     """
     angles = np.random.default_rng(seed).uniform(-np.pi, np.pi, (50, 6))
-    turned = angles + np.array([np.pi / 2, 0, 0, 0, 0, 0])
-    found = []
-    for length in LENGTHS:
-        unit = {length: 1.0}
-        apart = printed_jacobian(angles, unit)[:, 1, 0] + printed_jacobian(turned, unit)[:, 0, 0]
-        if np.max(np.abs(apart)) < 1e-12:
-            continue
-        wrong = "J11" if _slope_error(angles, unit, 0) > _slope_error(angles, unit, 1) else "J21"
-        found.append(Slip(wrong, length, float(np.max(np.abs(apart)))))
-    return tuple(found)
 
+    def slip_of(length: str) -> Slip:
+        def J(turn: Array) -> Array:
+            return printed_jacobian(angles + straight(turn), {length: 1.0})
 
-def _slope_error(angles: Array, lengths: Mapping[str, float], row: int) -> float:
-    """How far ∂J11/∂θ3 is from −J23, or ∂J21/∂θ3 from J13."""
-    step = np.array([0, 0, 1e-5, 0, 0, 0])
-    ahead, behind = (printed_jacobian(angles + s, lengths)[:, row, 0] for s in (step, -step))
-    J = printed_jacobian(angles, lengths)
-    expected = -J[:, 1, 2] if row == 0 else J[:, 0, 2]
-    return float(np.max(np.abs((ahead - behind) / 2e-5 - expected)))
+        here, turned = J(np.zeros(3)), J(np.array([np.pi / 2, 0.0, 0.0]))
+        slope = slopes(lambda turn: J(turn)[:, :2, 0], 1e-3)[..., 2]
+        off = np.max(np.abs(slope - here[:, [1, 0], 2] * [-1.0, 1.0]), axis=0)
+        apart = np.max(np.abs(here[:, 1, 0] + turned[:, 0, 0]))
+        return Slip("J11" if off[0] > off[1] else "J21", length, float(apart))
+
+    return tuple(slip for slip in map(slip_of, LENGTHS) if slip.size > 1e-12)

@@ -13,7 +13,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from sk120stiff.arrays import Array
 from sk120stiff.errors import listed
 from sk120stiff.paper import printed
-from sk120stiff.paper.findings import Findings
 from sk120stiff.paper.setting import rms
 
 _CLAIM = re.compile(r"\[(.*?)\] (.*?)\n= (?:(\w+), else )?([a-z ]+)\n(.*)", re.DOTALL)
@@ -37,24 +36,22 @@ class Claim:
     evidence: str
 
 
-def claims(found: Findings) -> tuple[Claim, ...]:
-    """All claims of `claims.md.j2`, section by section."""
-    made = []
-    for block in _rendered(found).strip().split("\n\n"):
-        match = _CLAIM.fullmatch(block)
-        if match is None:
-            raise ValueError(f"this claim cannot be read: {block}")
-        where, claim, holds, otherwise, evidence = match.groups()
-        verdict = Verdict.REPRODUCED if holds == "True" else Verdict(otherwise)
-        made.append(Claim(where, claim.replace("\n", " "), verdict, evidence.replace("\n", " ")))
-    return tuple(made)
-
-
-def _rendered(found: Findings) -> str:
+def claims(found: Mapping[str, object]) -> tuple[Claim, ...]:
+    """All claims of `claims.md.j2`, section by section, from the fields of a `Reproduction`."""
     loader = PackageLoader("sk120stiff.paper", "")
     page = Environment(loader=loader, undefined=StrictUndefined, autoescape=False)
     page.filters |= {"to": _to, "size": _size, "plusminus": _plus_minus, "listed": listed}
-    return page.get_template("claims.md.j2").render(vars(found), np=np, rms=rms, paper=printed)
+    text = page.get_template("claims.md.j2").render(found, np=np, rms=rms, paper=printed)
+    return tuple(map(_read, text.strip().split("\n\n")))
+
+
+def _read(block: str) -> Claim:
+    match = _CLAIM.fullmatch(block)
+    if match is None:
+        raise ValueError(f"this claim cannot be read: {block}")
+    where, claim, holds, otherwise, evidence = match.groups()
+    verdict = Verdict.REPRODUCED if holds == "True" else Verdict(otherwise)
+    return Claim(where, claim.replace("\n", " "), verdict, evidence.replace("\n", " "))
 
 
 def _to(value: float | Mapping[str, float], form: str, factor: float = 1.0) -> str:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict
 
+from sk120stiff.arrays import Index
 from sk120stiff.identify import Fit
 from sk120stiff.paper.reproduction import Reproduction
-from sk120stiff.paper.table2 import FORMULAS, Table2
+from sk120stiff.paper.table2 import FORMULAS
 from sk120stiff.paper.table3 import Table3
 from sk120stiff.paper.table4 import Table4
 from sk120stiff.stiffness import CLASSES
@@ -15,38 +15,32 @@ from sk120stiff.stiffness import CLASSES
 
 def as_document(found: Reproduction) -> dict[str, object]:
     """Keys ``table2 table3 table4 identified critical appendix formulation parts claims``."""
-    fitted, second = found.identified, _table2(found.table2)
-    second["measured_rms_um"] = {
-        "paper_springs": _micrometres(found.table2.measured_rms()),
-        "identified": _micrometres(found.table2.per_pose(fitted.fit.gap)),
-    }
+    fitted = found.identified
     return {
         "robot": found.setting.robot.name,
         "paper_springs": found.setting.arm_springs,
-        "table2": second,
+        "table2": _table2(found),
         "identified": {
             **_fit(fitted.fit),
             "equal_weights": _fit(fitted.equal_weights),
             "runs": fitted.runs,
             "relative_spread_of_runs": fitted.spread,
-            "by_pose": {
-                pose: {"springs": springs, "std": errors}
-                for pose, (springs, errors) in fitted.by_pose.items()
-            },
+            "by_pose": {pose: {"springs": k, "std": e} for pose, (k, e) in fitted.by_pose.items()},
             "common_springs": {"F": fitted.F, "probability": fitted.probability},
         },
         "table3": _table3(found.table3),
         "table4": _table4(found.table4),
-        "critical": asdict(found.critical),
-        "appendix": asdict(found.appendix),
-        "formulation": asdict(found.formulation),
-        "posture": asdict(found.posture),
+        "critical": vars(found.critical),
+        "appendix": vars(found.appendix),
+        "formulation": vars(found.formulation),
+        "posture": vars(found.posture),
         "parts": {"lowest": found.parts.lowest, "highest": found.parts.highest},
         "claims": found.claims,
     }
 
 
-def _table2(table: Table2) -> dict[str, object]:
+def _table2(found: Reproduction) -> dict[str, object]:
+    table = found.table2
     return {
         "negated_in_print": table.negated,
         "calculated_rms_um": {name: _micrometres(table.calculated_rms(name)) for name in FORMULAS},
@@ -60,6 +54,10 @@ def _table2(table: Table2) -> dict[str, object]:
             **{f"calculated_{name}": table.ours[name] for name in FORMULAS},
             measured=table.displacement,
         ),
+        "measured_rms_um": {
+            "paper_springs": _micrometres(table.measured_rms()),
+            "identified": _micrometres(table.per_pose(found.identified.fit.gap)),
+        },
     }
 
 
@@ -83,15 +81,13 @@ def _table3(table: Table3) -> dict[str, object]:
         "repeated_rows": [[i + 1, k + 1] for i, k in table.repeated],
         "identity_error": table.identity_error,
         "balance_error": table.balance_error,
-        "overcount": [float(table.overcount.min()), float(table.overcount.max())],
+        "overcount": [table.overcount.min(), table.overcount.max()],
         "rows": _rows(
             pose=table.printed.pose,
             force=table.printed.force,
             cartesian_theirs=table.printed_cartesian,
             joint_conventional_theirs=table.printed_conventional,
-            cartesian=table.works.cartesian,
-            joint_enhanced=table.works.joint_enhanced,
-            joint_conventional=table.works.joint_conventional,
+            **vars(table.works),
             work_along_path=table.work,
             energy=table.energy,
             largest_in_any_direction=table.largest,
@@ -100,32 +96,24 @@ def _table3(table: Table3) -> dict[str, object]:
 
 
 def _table4(table: Table4) -> dict[str, object]:
-    names = [c.short for c in CLASSES]
-    theirs, counts, determinant = (
-        [dict(zip(keys, row, strict=True)) for row in rows.tolist()]
-        for keys, rows in (
-            (names, table.printed),
-            (names, table.counts),
-            (("positive", "ND", "rest"), table.determinant_counts),
-        )
-    )
+    def mirrored(counts: Index) -> dict[str, bool]:
+        return {f"{i}/{k}": holds for (i, k), holds in table.mirrored(counts).items()}
+
+    classes = [c.short for c in CLASSES]
     return {
         "configurations": table.configurations,
         "cases_reproduced_by_determinant": table.reproduced,
         "pd_columns_reproduced_by_determinant": table.reproduced_determinant,
-        **{
-            name: {f"{i}/{k}": holds for (i, k), holds in table.mirrored(of).items()}
-            for name, of in (
-                ("printed_opposites_mirror", table.printed),
-                ("opposites_mirror", table.counts),
-            )
-        },
+        "printed_opposites_mirror": mirrored(table.printed),
+        "opposites_mirror": mirrored(table.counts),
         "cases": _rows(
-            case=range(1, len(counts) + 1),
+            case=range(1, len(table.signs) + 1),
             signs=table.signs,
-            theirs=theirs,
-            counts=counts,
-            determinant=determinant,
+            theirs=_rows(**dict(zip(classes, table.printed.T, strict=True))),
+            counts=_rows(**dict(zip(classes, table.counts.T, strict=True))),
+            determinant=_rows(
+                **dict(zip(("positive", "ND", "rest"), table.determinant_counts.T, strict=True))
+            ),
             K_theta_minus_K_C_PD=table.difference_positive,
         ),
     }

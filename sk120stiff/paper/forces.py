@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE, DIMENSIONS, LOWER, UPPER
-from sk120stiff.paper.setting import (
-    Setting,
-    even_directions,
-    motion_axes,
-    motion_grid,
-    straight,
-    wrench_of,
-)
+from sk120stiff.paper.setting import Setting, even_directions, motion_axes, motion_grid
 from sk120stiff.robot import Screws
-from sk120stiff.stiffness import complementary_stiffness, under_load
+from sk120stiff.stiffness import complementary_stiffness
 
-EXACT = "deflection_equilibrium"
 QUANTILES = (0.0, 0.01, 0.05, 0.25, 0.5)
 
 
@@ -117,39 +110,35 @@ def critical(setting: Setting, *, directions: int = 200) -> Critical:
 
     The arm turns about a vertical axis as a whole: joint 1 changes directions only, so it is held.
     """
-    _, second, third = motion_axes()
-    poses = np.stack(np.meshgrid([0.0], second, third, indexing="ij"), axis=-1).reshape(-1, 3)
-    screws, springs = setting.arm(poses), setting.arm_springs
+    poses = np.array(list(product([0.0], *motion_axes()[1:])))
     units = even_directions(directions)
-    arm, at = setting.elastic(), straight(poses)
-    forces = under_load(arm, at, wrench_of(units)[:, None], ("critical",)).of("critical").T
-    worst, direction = _worst(setting, screws, units[np.argmin(forces, axis=1)])
+    forces = setting.under_load(poses, units[:, None], "critical").of("critical")
+    worst, direction = _worst(setting, poses, units[np.argmin(forces, axis=0)])
     k = int(np.argmin(worst))
-    loads = wrench_of(CLAIMED_CRITICAL_FORCE * direction)
-    moved = under_load(arm, at, loads, (EXACT,)).of(EXACT)
+    moved = setting.deflection(poses, CLAIMED_CRITICAL_FORCE * direction)
     size = np.linalg.norm(parts_at(setting, motion_grid()), axis=-1)  # (G, 3) |∂C_ii/∂F|
     return Critical(
         smallest=float(worst[k]),
         everywhere=float(np.max(worst)),
-        column=float(springs[1]) / DIMENSIONS["L2"],
+        column=float(setting.arm_springs[1]) / DIMENSIONS["L2"],
         pose=poses[k],
         direction=direction[k],
         quantiles={q: float(np.quantile(forces, q, method="inverted_cdf")) for q in QUANTILES},
         without=float(np.mean(np.isinf(forces))),
-        by_diagonal=np.min(springs / size, axis=0),
+        by_diagonal=np.min(setting.arm_springs / size, axis=0),
         share=CLAIMED_CRITICAL_FORCE / float(worst[k]),
         deflection=float(np.max(np.linalg.norm(moved, axis=1))),
     )
 
 
-def _worst(setting: Setting, screws: Screws, start: Array) -> tuple[Array, Array]:
+def _worst(setting: Setting, poses: Array, start: Array) -> tuple[Array, Array]:
     """Smallest critical force of each pose over all directions (P,), and its direction (P, 3).
 
     For a joint motion x the best direction is known, and for a direction the best motion: taken in
     turns they climb to a maximum of xᵀ K_C(u) x over unit u and xᵀ K_θ x = 1.
     """
     root = 1.0 / np.sqrt(setting.arm_springs)
-    scaled = root[:, None] * unit_parts(screws) * root  # (P, 3 components, 3, 3) [1/N]
+    scaled = root[:, None] * unit_parts(setting.arm(poses)) * root  # (P, 3 components, 3, 3) [1/N]
     u = start
     for _ in range(200):
         motion = np.linalg.eigh(np.einsum("pk,pkij->pij", u, scaled))[1][..., -1]

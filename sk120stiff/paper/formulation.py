@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from sk120stiff.arrays import Array
 from sk120stiff.paper.setting import (
@@ -12,6 +14,7 @@ from sk120stiff.paper.setting import (
     even_directions,
     motion_grid,
     random_poses,
+    slopes,
     straight,
     wrench_of,
 )
@@ -20,8 +23,6 @@ from sk120stiff.stiffness import (
     cartesian_stiffness,
     complementary_stiffness,
     definiteness,
-    equilibrium,
-    linear_springs,
 )
 
 #: Load at which the formulas of K_X are told apart [N]: one that no SK120 carries.
@@ -76,31 +77,31 @@ def formulation(setting: Setting, *, seed: int = 0) -> Formulation:
     """Put the paper's formulas and corollaries to the test on the SK120."""
     rng = np.random.default_rng(seed)
     poses = random_poses(rng, 12)
-    enhanced, conventional = _loaded_compliance(setting, poses, rng)
-    unloaded = complementary_stiffness(setting.arm(poses), np.zeros(6))
+    enhanced, conventional = _compliance_errors(setting, poses, rng)
     force_asymmetry, moment_asymmetry = (_asymmetry(setting, rng, k) for k in (0, 3))
-    negative, failures, congruent, different, minors = _classes(setting)
+    load = wrench_of([300.0, -400.0, 500.0])
+    third = slopes(lambda turn: complementary_stiffness(setting.arm(poses + turn), load), 1e-3)
     rod, lever = (
         setting.robot.placement(straight(motion_grid()), frame)[:, :3, 3]
         for frame in ("rod_end", "forearm_lever_end")
     )
     return Formulation(
-        HEAVY,
-        enhanced,
-        conventional,
-        float(np.max(np.abs(unloaded))),
-        force_asymmetry,
-        moment_asymmetry,
-        _third_derivatives(setting, poses),
-        negative,
-        failures,
-        congruent,
-        different,
-        minors,
-        _cycle(setting, poses, enhanced=True),
-        _cycle(setting, poses, enhanced=False),
-        float(np.max(np.abs(rod - lever))),
+        load=HEAVY,
+        enhanced_error=enhanced,
+        conventional_error=conventional,
+        unloaded_difference=_largest(complementary_stiffness(setting.arm(poses), np.zeros(6))),
+        force_asymmetry=force_asymmetry,
+        moment_asymmetry=moment_asymmetry,
+        third_derivatives=_largest(third - np.swapaxes(third, -1, -2)) / _largest(third),
+        **_classes(setting),
+        enhanced_cycle=_cycle(setting, poses, enhanced=True),
+        conventional_cycle=_cycle(setting, poses, enhanced=False),
+        loop_error=_largest(rod - lever),
     )
+
+
+def _largest(values: Array) -> float:
+    return float(np.max(np.abs(values)))
 
 
 def printed_minors(K_theta: Array, K_C: Array) -> Array:
@@ -116,64 +117,44 @@ def printed_minors(K_theta: Array, K_C: Array) -> Array:
     return np.stack([K1 - C[0, 0], second, third], axis=-1)
 
 
-def _loaded_compliance(
+def _compliance_errors(
     setting: Setting, poses: Array, rng: np.random.Generator
 ) -> tuple[float, float]:
+    """Of eq. (10) and of eq. (8)."""
     force = rng.normal(size=(len(poses), 3))
     force *= HEAVY / np.linalg.norm(force, axis=1, keepdims=True)
-    start, law = straight(poses), linear_springs(setting.springs)
-
-    def position(extra: Array) -> Array:
-        load = wrench_of(force + extra)
-        return equilibrium(setting.mechanism, start, load, law).screws.position
-
-    step = 50.0  # N: large enough for rounding, small enough for a fourth-order difference
-    columns = []
-    for unit in step * np.eye(3):
-        near, far = position(unit) - position(-unit), position(2 * unit) - position(-2 * unit)
-        columns.append((8.0 * near - far) / (12.0 * step))
-    measured = np.stack(columns, axis=-1)  # (P, 3, 3) [m/N]
-    rest = equilibrium(setting.mechanism, start, wrench_of(force), law)
-    screws = setting.arm(rest.z)
+    # 50 N: large enough for rounding, small enough for a fourth-order difference.
+    true = slopes(lambda more: setting.deflection(poses, force + more), 50.0)  # (P, 3, 3) [m/N]
+    coordinates = "loaded_coordinates"
+    screws = setting.arm(setting.under_load(poses, force, coordinates).of(coordinates))
     K_C = complementary_stiffness(screws, wrench_of(force))
-    size = np.max(np.abs(measured), axis=(1, 2))
+    enhanced, conventional = (
+        cartesian_compliance(screws.linear_jacobian, K) - true
+        for K in (setting.K_theta - K_C, setting.K_theta)
+    )
+    size = np.max(np.abs(true), axis=(1, 2), keepdims=True)
+    return _largest(enhanced / size), _largest(conventional / size)
 
-    def off(stiffness: Array) -> float:
-        found = cartesian_compliance(screws.linear_jacobian, stiffness)
-        return float(np.max(np.max(np.abs(found - measured), axis=(1, 2)) / size))
 
-    return off(setting.K_theta - K_C), off(setting.K_theta)
+def _cycle(setting: Setting, poses: Array, *, enhanced: bool) -> float:
+    """∮ F · dX over the stored energy, for F on a circle through the x and z directions."""
+    coordinates, first = "loaded_coordinates", np.array([HEAVY, 0.0, 0.0])
+    start = setting.under_load(poses, first, coordinates).of(coordinates)[:, :3]
+    energy = 0.5 * (setting.arm_springs * (start - poses) ** 2).sum(axis=1)
 
+    def rates(angle: float, state: Array) -> Array:
+        x, z = HEAVY * np.cos(angle), HEAVY * np.sin(angle)
+        force, change = np.array([x, 0.0, z]), np.array([-z, 0.0, x])
+        screws = setting.arm(state.reshape(-1, 4)[:, :3])
+        J, K = screws.linear_jacobian, np.broadcast_to(setting.K_theta, (len(poses), 3, 3))
+        if enhanced:
+            K = K - complementary_stiffness(screws, wrench_of(force))
+        turning = np.linalg.solve(K, (np.swapaxes(J, -1, -2) @ change)[..., None])
+        return np.concatenate([turning[..., 0], force @ (J @ turning)], axis=1).ravel()
 
-def _cycle(setting: Setting, poses: Array, *, enhanced: bool, steps: int = 60) -> float:
-    """∮ F · dX over the stored energy, for F on a circle through the x and z directions.
-
-    Joint angles and work are carried along the circle by Runge and Kutta's fourth-order steps.
-    """
-    start, law = straight(poses), linear_springs(setting.springs)
-    theta = equilibrium(setting.mechanism, start, wrench_of([HEAVY, 0.0, 0.0]), law).z[:, :3]
-    energy = 0.5 * (setting.arm_springs * (theta - poses) ** 2).sum(axis=1)
-
-    def rates(at: Array, angle: float) -> tuple[Array, Array]:
-        force = HEAVY * np.array([np.cos(angle), 0.0, np.sin(angle)])
-        change = HEAVY * np.array([-np.sin(angle), 0.0, np.cos(angle)])
-        screws = setting.arm(at)
-        J = screws.linear_jacobian
-        K = setting.K_theta - (complementary_stiffness(screws, wrench_of(force)) if enhanced else 0)
-        turned = (np.swapaxes(J, -1, -2) @ change)[..., None]
-        turning = np.linalg.solve(np.broadcast_to(K, J.shape), turned)[..., 0]
-        power = np.einsum("k,pkj,pj->p", force, J, turning)
-        return np.asarray(turning, dtype=float), np.asarray(power, dtype=float)
-
-    work, h = np.zeros(len(poses)), 2 * np.pi / steps
-    for k in range(steps):
-        d1, w1 = rates(theta, k * h)
-        d2, w2 = rates(theta + h / 2 * d1, (k + 0.5) * h)
-        d3, w3 = rates(theta + h / 2 * d2, (k + 0.5) * h)
-        d4, w4 = rates(theta + h * d3, (k + 1) * h)
-        theta = theta + h / 6 * (d1 + 2 * d2 + 2 * d3 + d4)
-        work = work + h / 6 * (w1 + 2 * w2 + 2 * w3 + w4)
-    return float(np.max(np.abs(work / energy)))
+    state = np.concatenate([start, np.zeros((len(poses), 1))], axis=1).ravel()
+    end = solve_ivp(rates, (0.0, 2 * np.pi), state, method="DOP853", rtol=1e-10, atol=1e-12)
+    return _largest(end.y[3::4, -1] / energy)
 
 
 def _asymmetry(setting: Setting, rng: np.random.Generator, first: int) -> float:
@@ -186,35 +167,22 @@ def _asymmetry(setting: Setting, rng: np.random.Generator, first: int) -> float:
     return float(np.max(skew / np.linalg.norm(K_C, axis=(1, 2))))
 
 
-def _third_derivatives(setting: Setting, poses: Array) -> float:
-    load, step = wrench_of([300.0, -400.0, 500.0]), 1e-4
-    slopes = []
-    for unit in step * np.eye(3):
-        ahead, behind = (
-            complementary_stiffness(setting.arm(poses + sign * unit), load) for sign in (1, -1)
-        )
-        slopes.append((ahead - behind) / (2 * step))
-    third = np.stack(slopes, axis=1)  # (P, k, i, j)
-    return float(np.max(np.abs(third - np.swapaxes(third, 1, 2))) / np.max(np.abs(third)))
-
-
-def _classes(setting: Setting) -> tuple[int, int, int, int, bool]:
+def _classes(setting: Setting) -> dict[str, Any]:
     """Corollary 1, Appendix II and the printed minors, over the grid and many loads."""
     screws = setting.arm(motion_grid()[::7])
     J = screws.linear_jacobian
+    loads = wrench_of(np.concatenate([size * even_directions(12) for size in SIZES]))[:, None]
+    K_C = complementary_stiffness(screws, loads)  # (loads, poses, 3, 3)
+    K = setting.K_theta - K_C
+    negative, of_K = np.isin(definiteness(K_C), (2, 3)), definiteness(K)
     # Close to a singular pose rounding blurs the eigenvalues of K_X.
     regular = np.linalg.svd(J, compute_uv=False)[:, -1] > 0.05
-    negative = failures = congruent = different = 0
-    minors = True
-    for load in (wrench_of(size * unit) for size in SIZES for unit in even_directions(12)):
-        K_C = complementary_stiffness(screws, load)
-        K = setting.K_theta - K_C
-        of_K_C, of_K = definiteness(K_C), definiteness(K)
-        below = (of_K_C == 2) | (of_K_C == 3)
-        negative += int(below.sum())
-        failures += int((below & (of_K != 0)).sum())
-        signs = (printed_minors(setting.K_theta, K_C) > 0).all(axis=-1)
-        minors &= bool(np.array_equal(signs, of_K == 0))
-        congruent += int(regular.sum())
-        different += int((definiteness(cartesian_stiffness(J, K)[regular]) != of_K[regular]).sum())
-    return negative, failures, congruent, different, minors
+    of_K_X = definiteness(cartesian_stiffness(J[regular], K[:, regular]))
+    signs = (printed_minors(setting.K_theta, K_C) > 0).all(axis=-1)
+    return {
+        "negative_cases": int(negative.sum()),
+        "negative_failures": int((negative & (of_K != 0)).sum()),
+        "congruent_cases": of_K_X.size,
+        "congruence_failures": int((of_K_X != of_K[:, regular]).sum()),
+        "minors_agree": bool(np.array_equal(signs, of_K == 0)),
+    }

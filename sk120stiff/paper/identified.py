@@ -13,7 +13,6 @@ from scipy import stats
 from sk120stiff.arrays import Array
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.model import Model
 from sk120stiff.paper.setting import Setting
 
 Method = Literal["trf", "lm"]
@@ -80,33 +79,35 @@ def identify_springs(
 ) -> Identified:
     """Identify the three springs from the measured rows; `step` is called after each fit."""
 
-    def one(model: Model, data: Measurements, noise: NoiseModel | None, method: Method) -> Fit:
+    def one(
+        data: Measurements = measured,
+        noise: NoiseModel | None = SHARED_ZERO,
+        method: Method = "trf",
+        start: float | None = None,
+    ) -> Fit:
+        model = setting.model
+        if start is not None:
+            model = model.with_public(dict.fromkeys(model.names, start))
         found = fit(model, data, noise=noise, method=method)
         step()
         return found
 
-    model = setting.model
-    common = one(model, measured, SHARED_ZERO, "trf")
-    runs = []
-    for method in METHODS:
-        for start in STARTS:
-            far = model.with_public(**dict.fromkeys(model.names, start))
-            found = one(far, measured, SHARED_ZERO, method)
-            runs.append(Run(method, start, springs_of(found)))
-    labels = np.array(measured.pose)
-    alone = {
-        pose: one(model, measured.select(np.flatnonzero(labels == pose)), SHARED_ZERO, "trf")
-        for pose in measured.poses
-    }
+    common, labels = one(), np.array(measured.pose)
+    runs = tuple(
+        Run(method, start, springs_of(one(method=method, start=start)))
+        for method in METHODS
+        for start in STARTS
+    )
+    alone = {pose: one(measured.select(np.flatnonzero(labels == pose))) for pose in measured.poses}
     # Fits of parts and of the whole have the same noise model up to its scale: their χ² compare.
     apart = sum(found.chi_square for found in alone.values())
     more = (len(alone) - 1) * len(common.parameters)
     left = common.degrees_of_freedom - more
     F = (common.chi_square - apart) / more / (apart / left)
     return Identified(
-        fit=one(model, measured, None, "trf"),
-        equal_weights=one(model, measured, EQUAL_WEIGHTS, "trf"),
-        runs=tuple(runs),
+        fit=one(noise=None),
+        equal_weights=one(noise=EQUAL_WEIGHTS),
+        runs=runs,
         by_pose={pose: (springs_of(f), errors_of(f)) for pose, f in alone.items()},
         F=float(F),
         probability=float(stats.f.sf(F, more, left)),
@@ -120,5 +121,4 @@ def springs_of(found: Fit) -> Array:
 
 def errors_of(found: Fit) -> Array:
     """(P,) standard errors [N·m/rad]; NaN where an estimate lies on a bound."""
-    errors = [parameter.std for parameter in found.parameters]
-    return np.array([np.nan if error is None else error for error in errors])
+    return np.array([parameter.std for parameter in found.parameters], dtype=float)

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.paper.printed import DEADWEIGHTS, FIGURE_POSES, PrintedLoads
-from sk120stiff.paper.setting import Setting, motion_grid, straight, wrench_of
+from sk120stiff.paper.printed import DEADWEIGHTS, FIGURE_POSES, LOADINGS, PrintedLoads
+from sk120stiff.paper.setting import Setting, motion_grid
 from sk120stiff.robot import STANDARD_GRAVITY
-from sk120stiff.stiffness import cartesian_compliance, principal_stiffness, under_load
+from sk120stiff.stiffness import cartesian_compliance, principal_stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +42,8 @@ def posture(setting: Setting, tables: tuple[PrintedLoads, ...]) -> Posture:
     figures = np.array([*FIGURE_POSES.values()])
     joints = np.concatenate([*(table.joints for table in tables), figures])
     down = -setting.robot.placement(joints)[:, 2, 2]
-    share = []
-    for table in tables:
-        for pose in table.poses:
-            size = np.linalg.norm(table.force[table.rows(pose)], axis=1)
-            share.append(size / (STANDARD_GRAVITY * DEADWEIGHTS[1 : len(size) + 1]))
+    size = np.concatenate([np.linalg.norm(table.force, axis=1) for table in tables])
+    share = size.reshape(-1, LOADINGS) / (STANDARD_GRAVITY * DEADWEIGHTS[1:])
     softest = dict(zip(FIGURE_POSES, _softest(setting, figures[:, :3]).tolist(), strict=True))
     return Posture(
         tool_error=float(np.max(np.arccos(np.clip(down, -1.0, 1.0)))),
@@ -76,17 +73,17 @@ class Pull:
 
 def pulls(setting: Setting, springs: dict[str, Array]) -> tuple[Pull, ...]:
     """Curves of each printed configuration and axis, for each model's (3,) springs [N·m/rad]."""
-    force, rigid = STANDARD_GRAVITY * DEADWEIGHTS, np.full(3, np.inf)
-    found = []
-    for figure, joints in FIGURE_POSES.items():
-        pose, exact = straight(joints[:3]), "deflection_equilibrium"
-        for axis, along in zip("xyz", np.eye(3), strict=True):
-            wrench = wrench_of(force[:, None] * along)
-            moved = {
-                name: under_load(
-                    setting.elastic(springs=np.append(values, rigid)), pose, wrench, (exact,)
-                ).of(exact)
-                for name, values in springs.items()
-            }
-            found.append(Pull(figure, axis, force, moved))
-    return tuple(found)
+    force = STANDARD_GRAVITY * DEADWEIGHTS
+
+    def moved(joints: Array, along: Array) -> dict[str, Array]:
+        loads = np.outer(force, along)
+        return {
+            name: setting.deflection(joints[:3], loads, springs=values)
+            for name, values in springs.items()
+        }
+
+    return tuple(
+        Pull(figure, axis, force, moved(joints, along))
+        for figure, joints in FIGURE_POSES.items()
+        for axis, along in zip("xyz", np.eye(3), strict=True)
+    )

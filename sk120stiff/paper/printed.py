@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.errors import InputError
 from sk120stiff.files import read_text
 from sk120stiff.robot.bundled import bundled_robots
 from sk120stiff.units import split_header, to_si
@@ -49,7 +48,7 @@ _KINDS = {"joint": "angle", "f": "force", "d": "length", "calc": "length"}
 
 @dataclass(frozen=True, eq=False)
 class PrintedLoads:
-    """N rows of Table II or III: labels, (N, 6) joints [rad], (N, 3) force [N], other columns.
+    """N rows of Table II or III: labels, (N, 6) joints [rad], (N, 3) force [N], and all columns.
 
     `columns` holds (N,) values by the printed name, in SI where they have a unit.
     """
@@ -70,13 +69,8 @@ class PrintedLoads:
 
 
 def data_folder() -> Path:
-    """The bundled data of the SK120; `InputError` where the installation lacks the robot."""
-    robots = bundled_robots()
-    if "motoman_sk120" not in robots:
-        raise InputError(
-            "the bundled robot motoman_sk120 is not installed", remedy="Reinstall the package."
-        )
-    return robots["motoman_sk120"] / "data"
+    """The bundled data of the SK120."""
+    return bundled_robots()["motoman_sk120"] / "data"
 
 
 def printed_loads(table: int) -> PrintedLoads:
@@ -88,13 +82,9 @@ def printed_loads(table: int) -> PrintedLoads:
         kind = _KINDS.get(name.split("_")[0].rstrip("xyz"))
         numbers = np.array([float(row[header]) for row in rows])
         values[name] = to_si(numbers, unit, kind) if unit and kind else numbers
-    joints = [name for name in values if name.startswith("joint_")]
-    return PrintedLoads(
-        pose=tuple(row["pose"] for row in rows),
-        joints=np.stack([values.pop(name) for name in joints], axis=1),
-        force=np.stack([values.pop(name) for name in ("fx", "fy", "fz")], axis=1),
-        columns=values,
-    )
+    first = list(values.values())  # six joints and three forces stand before the others
+    pose = tuple(row["pose"] for row in rows)
+    return PrintedLoads(pose, np.stack(first[:6], axis=1), np.stack(first[6:9], axis=1), values)
 
 
 def printed_counts() -> tuple[Array, Index]:

@@ -3,31 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
 
-from sk120stiff.paper.appendix import appendix
+from sk120stiff.paper.appendix import Appendix, appendix
 from sk120stiff.paper.claims import Claim, claims
-from sk120stiff.paper.findings import Findings
-from sk120stiff.paper.forces import critical, diagonal_parts
-from sk120stiff.paper.formulation import formulation
-from sk120stiff.paper.identified import FITS, identify_springs
-from sk120stiff.paper.posture import posture, pulls
-from sk120stiff.paper.setting import setting
-from sk120stiff.paper.table2 import table2
-from sk120stiff.paper.table3 import table3
-from sk120stiff.paper.table4 import table4
+from sk120stiff.paper.forces import Critical, DiagonalParts, critical, diagonal_parts
+from sk120stiff.paper.formulation import Formulation, formulation
+from sk120stiff.paper.identified import FITS, Identified, identify_springs
+from sk120stiff.paper.posture import Posture, Pull, posture, pulls
+from sk120stiff.paper.setting import Setting, setting
+from sk120stiff.paper.table2 import Table2, table2
+from sk120stiff.paper.table3 import Table3, table3
+from sk120stiff.paper.table4 import Table4, table4
 
 T = TypeVar("T")
 
 
-class Reproduction(Findings):
+@dataclass(frozen=True, eq=False)
+class Reproduction:
     """Every table, figure and claim of the paper beside ours; made by `reproduce`."""
+
+    setting: Setting
+    table2: Table2
+    identified: Identified
+    table3: Table3
+    table4: Table4
+    critical: Critical
+    appendix: Appendix
+    formulation: Formulation
+    posture: Posture
+    parts: DiagonalParts
+    pulls: tuple[Pull, ...]
 
     @cached_property
     def claims(self) -> tuple[Claim, ...]:
         """Every claim of the paper with its verdict."""
-        return claims(self)
+        return claims(vars(self))
 
 
 def reproduce(report: Callable[[int, int], None] = lambda _done, _total: None) -> Reproduction:
@@ -52,15 +65,15 @@ def reproduce(report: Callable[[int, int], None] = lambda _done, _total: None) -
     third = after(table3(arm))
     springs = {"springs of the paper": arm.arm_springs, "springs identified here": found.springs}
     return Reproduction(
-        setting=arm,
-        table2=second,
-        identified=found,
-        table3=third,
-        table4=after(table4(arm)),
-        critical=after(critical(arm)),
-        appendix=after(appendix(arm)),
-        formulation=after(formulation(arm)),
-        posture=after(posture(arm, (second.printed, third.printed))),
-        parts=after(diagonal_parts(arm)),
-        pulls=after(pulls(arm, springs)),
+        arm,
+        second,
+        found,
+        third,
+        after(table4(arm)),
+        after(critical(arm)),
+        after(appendix(arm)),
+        after(formulation(arm)),
+        after(posture(arm, (second.printed, third.printed))),
+        after(diagonal_parts(arm)),
+        after(pulls(arm, springs)),
     )

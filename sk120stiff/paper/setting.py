@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -12,8 +13,8 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array
 from sk120stiff.model import Model, base_model
 from sk120stiff.paper.printed import LOWER, STEP, UPPER
-from sk120stiff.robot import Mechanism, Robot, Screws, load_robot
-from sk120stiff.stiffness import ConstantCompliance, spring_matrix
+from sk120stiff.robot import Robot, Screws, load_robot
+from sk120stiff.stiffness import ConstantCompliance, UnderLoad, spring_matrix, under_load
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,11 +23,6 @@ class Setting:
 
     robot: Robot
     model: Model
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """Base to flange."""
-        return self.robot.mechanism()
 
     @cached_property
     def springs(self) -> Array:
@@ -43,17 +39,40 @@ class Setting:
         """(3, 3) joint stiffness [N·m/rad]."""
         return spring_matrix(self.arm_springs)
 
-    def elastic(
-        self, frame: str | None = None, point: Array | None = None, springs: Array | None = None
-    ) -> ConstantCompliance:
-        """The arm with springs (6,) [N·m/rad], the paper's by default, at a point of a frame."""
-        values = self.springs if springs is None else springs
-        return ConstantCompliance.of_springs(self.robot, values, frame=frame, point=point)
-
     def arm(self, joints: Array, frame: str | None = None) -> Screws:
         """Kinematics by the first three joints alone, at (..., 3 or 6) joint readings [rad]."""
         screws = self.robot.screws(straight(joints), frame)
         return replace(screws, first=screws.first[..., :3])
+
+    def under_load(
+        self,
+        joints: Array,
+        force: Array,
+        *wanted: str,
+        frame: str | None = None,
+        point: Array | None = None,
+        springs: Array | None = None,
+    ) -> UnderLoad:
+        """What is wanted at (..., 3 or 6) readings [rad] under forces (..., 3) [N].
+
+        The force acts at a point of a frame, the flange by default; `springs` (3,) replace the
+        paper's [N·m/rad].
+        """
+        values = self.springs if springs is None else np.append(springs, self.springs[3:])
+        arm = ConstantCompliance.of_springs(self.robot, values, frame=frame, point=point)
+        return under_load(arm, straight(joints), wrench_of(force), wanted)
+
+    def deflection(
+        self,
+        joints: Array,
+        force: Array,
+        *,
+        frame: str | None = None,
+        springs: Array | None = None,
+    ) -> Array:
+        """(..., 3) at exact equilibrium [m]; the arguments are those of `under_load`."""
+        exact = "deflection_equilibrium"
+        return self.under_load(joints, force, exact, frame=frame, springs=springs).of(exact)
 
 
 def setting() -> Setting:
@@ -71,7 +90,7 @@ def straight(joints: Array) -> Array:
 def motion_axes() -> tuple[Array, ...]:
     """Values of joints 1, 2, 3 that section VI steps through, each from its lower limit [rad]."""
     ends = zip(LOWER, UPPER, strict=True)
-    return tuple(low + STEP * np.arange(int((high - low) / STEP + 1e-9) + 1) for low, high in ends)
+    return tuple(np.arange(low, high + 1e-9, STEP) for low, high in ends)
 
 
 def motion_grid() -> Array:
@@ -91,6 +110,15 @@ def even_directions(count: int) -> Array:
     angle = np.pi * (1.0 + 5.0**0.5) * k
     across = np.sqrt(1.0 - z**2)
     return np.stack([across * np.cos(angle), across * np.sin(angle), z], axis=1)
+
+
+def slopes(of: Callable[[Array], Array], step: float) -> Array:
+    """(..., 3) slopes along three axes at the origin, by differences of fourth order."""
+    found = []
+    for unit in step * np.eye(3):
+        near, far = of(unit) - of(-unit), of(2.0 * unit) - of(-2.0 * unit)
+        found.append((8.0 * near - far) / (12.0 * step))
+    return np.stack(found, axis=-1)
 
 
 def wrench_of(force: ArrayLike) -> Array:

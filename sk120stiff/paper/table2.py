@@ -17,7 +17,6 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements, read_measurements
 from sk120stiff.paper.printed import PrintedLoads, data_folder, printed_loads
 from sk120stiff.paper.setting import Setting, rms
-from sk120stiff.stiffness import under_load
 
 #: The formulas of `UnderLoad`, from crude to exact.
 FORMULAS = ("conventional", "enhanced", "second_order", "equilibrium")
@@ -99,26 +98,14 @@ def table2(setting: Setting) -> Table2:
     )
     if measured.displacement is None or calculated.displacement is None:
         raise InputError("Table II lacks displacements", remedy="Reinstall the package.")
-    variants, exact = [], "deflection_equilibrium"
-    for wrist, joints in (("straight", measured.joints), ("as printed", printed.joints)):
-        for frame, point in (("tool0", "flange"), ("reflector", "reflector on the fixture")):
-            arm = setting.elastic(frame)
-            moved = under_load(arm, joints, measured.wrench, (exact,)).of(exact)
-            variants.append(
-                Variant(
-                    f"wrist {wrist}, load at the {point}",
-                    1e6 * rms(moved - calculated.displacement),
-                    1e6 * rms(moved - measured.displacement),
-                )
-            )
-    wanted = [f"deflection_{name}" for name in FORMULAS]
-    arm = setting.elastic(point=measured.point)
-    found = under_load(arm, measured.joints, measured.wrench, wanted)
-    return Table2(
-        printed,
-        measured,
-        calculated.displacement,
-        measured.displacement,
-        {name: found.of(f"deflection_{name}") for name in FORMULAS},
-        tuple(variants),
+    force, theirs = measured.wrench[:, :3], (calculated.displacement, measured.displacement)
+    variants = tuple(
+        Variant(f"wrist {wrist}, load at the {point}", *(1e6 * rms(moved - d) for d in theirs))
+        for wrist, joints in (("straight", measured.joints), ("as printed", printed.joints))
+        for frame, point in (("tool0", "flange"), ("reflector", "reflector on the fixture"))
+        for moved in [setting.deflection(joints, force, frame=frame)]
     )
+    quantity = {name: f"deflection_{name}" for name in FORMULAS}
+    found = setting.under_load(measured.joints, force, *quantity.values(), point=measured.point)
+    ours = {name: found.of(wanted) for name, wanted in quantity.items()}
+    return Table2(printed, measured, *theirs, ours, variants)

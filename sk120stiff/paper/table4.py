@@ -10,8 +10,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.paper.printed import COMPONENT, printed_counts
-from sk120stiff.paper.setting import Setting, motion_grid, wrench_of
-from sk120stiff.stiffness import CLASSES, complementary_stiffness, definiteness
+from sk120stiff.paper.setting import Setting, motion_grid
+from sk120stiff.stiffness import CLASSES
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,12 +85,12 @@ class Table4:
 def table4(setting: Setting) -> Table4:
     """Classes of K_C at the flange on the grid of section VI, for forces of ±100 N per axis."""
     signs, printed = printed_counts()
-    screws = setting.arm(motion_grid())
-    K_C = [complementary_stiffness(screws, wrench_of(COMPONENT * row)) for row in signs]
+    wanted = ("K_C", "complementary_class", "stiffness_class")
+    found = setting.under_load(motion_grid(), COMPONENT * signs[:, None], *wanted)
     return Table4(
         signs,
         printed,
-        np.array([definiteness(K) for K in K_C]),
-        np.array([(np.linalg.det(K) > 0.0).sum() for K in K_C], dtype=np.intp),
-        np.array([(definiteness(setting.K_theta - K) == 0).sum() for K in K_C], dtype=np.intp),
+        classes=found.of("complementary_class"),
+        determinant=(np.linalg.det(found.of("K_C")) > 0.0).sum(axis=1),
+        difference_positive=(found.of("stiffness_class") == 0).sum(axis=1),
     )

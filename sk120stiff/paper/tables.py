@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
+from sk120stiff.files import csv_text
 from sk120stiff.paper.identified import springs_of
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE
 from sk120stiff.paper.reproduction import Reproduction
@@ -32,43 +31,26 @@ class Column:
     brief: bool = True
 
     @property
-    def width(self) -> int:
-        """How many numbers stand in a row."""
-        return int(np.shape(self.values)[1]) if np.ndim(self.values) == 2 else 1
-
-    @property
-    def is_number(self) -> bool:
-        """Numbers rather than words?"""
-        return isinstance(self.values, np.ndarray)
-
-    @property
     def shown_unit(self) -> str:
         """The unit as people write it."""
         return self.unit.replace("*", "·").replace("um", "µm").replace("uJ", "µJ")
 
-    @property
-    def names(self) -> list[str]:
-        """One name per number, with the axis where there are three."""
-        return [self.name] if self.width == 1 else [f"{self.name} {axis}" for axis in "xyz"]
-
-    def cells(self, row: int, *, more: int = 0) -> list[str]:
-        """The numbers of a row as text, with `more` decimals than people need."""
-        given = [self.values[row]] if self.width == 1 else list(self.values[row])
-        if self.decimals is None:
-            return [str(value) for value in given]
-        return [f"{float(value):z.{self.decimals + more}f}" for value in given]
-
-    def text(self, row: int) -> str:
-        """The numbers of a row side by side, each as wide as the widest of its kind."""
-        pairs = zip(self.cells(row), self._widths, strict=True)
-        return " ".join(cell.rjust(width) for cell, width in pairs)
+    def cells(self, *, more: int = 0) -> dict[str, list[str]]:
+        """Header with axis and unit → its numbers as text, `more` decimals than people need."""
+        unit = f"[{self.unit}]" if self.unit else ""
+        form = "" if self.decimals is None else f"z.{self.decimals + more}f"
+        axes = (" x", " y", " z") if np.ndim(self.values) == 2 else ("",)
+        parts = zip(axes, np.atleast_2d(np.transpose(self.values)), strict=True)
+        return {f"{self.name}{axis}{unit}": [format(v, form) for v in part] for axis, part in parts}
 
     @cached_property
-    def _widths(self) -> list[int]:
-        if self.width == 1:
-            return [0]
-        rows = [self.cells(row) for row in range(len(self.values))]
-        return [max(map(len, cells)) for cells in zip(*rows, strict=True)]
+    def texts(self) -> list[str]:
+        """A text per row; three numbers side by side, each as wide as the widest of its kind."""
+        single, *others = self.cells().values()
+        if not others:
+            return single
+        wide = ([cell.rjust(max(map(len, of))) for cell in of] for of in (single, *others))
+        return [" ".join(row) for row in zip(*wide, strict=True)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,224 +63,176 @@ class SideBySide:
     note: str = ""
 
     @property
-    def count(self) -> int:
-        """Number of rows."""
-        return len(self.columns[0].values)
-
-    @property
     def brief(self) -> tuple[Column, ...]:
         """The columns that are shown where room is short."""
         return tuple(column for column in self.columns if column.brief)
 
-    @property
-    def header(self) -> list[str]:
-        """Names of single columns with their units."""
-        units = {column.name: f"[{column.unit}]" if column.unit else "" for column in self.columns}
-        return [name + units[column.name] for column in self.columns for name in column.names]
-
-    def rows(self, *, more: int = 0) -> list[list[str]]:
-        """Single cells as text, numbers with `more` decimals than people need."""
-        return [
-            [cell for column in self.columns for cell in column.cells(k, more=more)]
-            for k in range(self.count)
-        ]
-
     def csv(self) -> str:
         """The table as CSV text, three decimals more than shown elsewhere."""
-        stream = io.StringIO()
-        csv.writer(stream, lineterminator="\n").writerows([self.header, *self.rows(more=3)])
-        return stream.getvalue()
+        return csv_text(pair for column in self.columns for pair in column.cells(more=3).items())
 
 
 def side_by_side(found: Reproduction) -> tuple[SideBySide, ...]:
     """Every table, in the order of the paper."""
-    made = (_gaps, _table2, _springs, _table3, _table4, _critical, _appendix, _parts, _claims)
-    return tuple(table(found) for table in made)
-
-
-def _gaps(found: Reproduction) -> SideBySide:
-    table = found.table2
-    poses = table.printed.poses
-    signs = [" ".join(table.negated[p]) for p in poses]
-    told = "; ".join(f"pose {p} {names}" for p, names in zip(poses, signs, strict=True))
-
-    def column(name: str, values: Mapping[str, float], decimals: int = 2) -> Column:
-        return Column(name, 1e6 * np.array([values[p] for p in poses]), "um", decimals)
-
-    return SideBySide(
-        "table2_gaps",
-        "Table II, root-mean-square gaps per pose",
-        (
-            Column("pose", poses),
-            Column("negated in print", signs, brief=False),
-            column("calc., eq. (8)", table.calculated_rms("conventional")),
-            column("calc., eq. (11)", table.calculated_rms("enhanced")),
-            column("calc., exact", table.calculated_rms("equilibrium")),
-            column("K_C on/off", table.effect_of_K_C),
-            column("meas., paper's springs", table.measured_rms(), 1),
-            column("meas., identified", table.per_pose(found.identified.fit.gap), 1),
-        ),
-        "Ours against the printed calculated column by three formulas, and the measured column "
-        "against the paper's springs and against springs identified from these rows. Printed with "
-        f"the opposite sign: {told}.",
+    names = ("where", "claim", "verdict", "evidence")
+    claims = (Column(n, [str(getattr(claim, n)) for claim in found.claims]) for n in names)
+    return (
+        *_deflections(found),
+        *_springs_and_works(found),
+        _classes(found),
+        *_forces(found),
+        SideBySide("claims", "Claims", tuple(claims)),
     )
 
 
-def _table2(found: Reproduction) -> SideBySide:
-    table = found.table2
+def _deflections(found: Reproduction) -> tuple[SideBySide, SideBySide]:
+    table, gap = found.table2, found.identified.fit.gap
+    signs = [" ".join(names) for names in table.negated.values()]
+    told = "; ".join(f"pose {p} {names}" for p, names in zip(table.negated, signs, strict=True))
 
-    def column(name: str, values: Array, *, brief: bool = True) -> Column:
+    def rms(name: str, values: dict[str, float], decimals: int = 2) -> Column:
+        return Column(name, 1e6 * np.array([*values.values()]), "um", decimals)
+
+    def moved(name: str, values: Array, *, brief: bool = True) -> Column:
         return Column(name, 1e6 * values, "um", 1, brief)
 
-    return SideBySide(
-        "table2",
-        "Table II, deflections in base_link",
-        (
-            Column("pose", table.printed.pose),
-            Column("force", table.measured.wrench[:, :3], "N", 1, brief=False),
-            column("calculated, theirs", table.calculated),
-            column("ours, eq. (11)", table.ours["enhanced"], brief=False),
-            column("ours, exact", table.ours["equilibrium"]),
-            column("measured", table.displacement),
-            column("gap", table.gap, brief=False),
-            column("gap, identified", found.identified.fit.gap, brief=False),
-        ),
-        "Printed signs converted to one frame; load at the flange, wrist straight. A gap is "
-        "measured minus predicted at exact equilibrium.",
+    gaps = (
+        Column("pose", table.printed.poses),
+        Column("negated in print", signs, brief=False),
+        rms("calc., eq. (8)", table.calculated_rms("conventional")),
+        rms("calc., eq. (11)", table.calculated_rms("enhanced")),
+        rms("calc., exact", table.calculated_rms("equilibrium")),
+        rms("K_C on/off", table.effect_of_K_C),
+        rms("meas., paper's springs", table.measured_rms(), 1),
+        rms("meas., identified", table.per_pose(gap), 1),
     )
-
-
-def _springs(found: Reproduction) -> SideBySide:
-    fitted = found.identified
-
-    def column(name: str, values: Array, *, brief: bool = True) -> Column:
-        return Column(name, 1e-6 * values, "MN*m/rad", 4, brief)
-
-    return SideBySide(
-        "identified",
-        "Springs identified from Table II",
-        (
-            Column("joint", [p.effect.where for p in fitted.fit.parameters]),
-            column("paper", found.setting.arm_springs),
-            column("identified", fitted.springs),
-            column("std. error", fitted.errors),
-            column("equal weights", springs_of(fitted.equal_weights)),
-            *(column(f"pose {p} alone", k, brief=False) for p, (k, _) in fitted.by_pose.items()),
-        ),
-        f"Three of the paper's twenty poses. {len(fitted.runs)} runs of both algorithms from "
-        f"far starts agree to {fitted.spread:.0e}. Equal weights is the paper's eq. (12).",
+    rows = (
+        Column("pose", table.printed.pose),
+        Column("force", table.measured.wrench[:, :3], "N", 1, brief=False),
+        moved("calculated, theirs", table.calculated),
+        moved("ours, eq. (11)", table.ours["enhanced"], brief=False),
+        moved("ours, exact", table.ours["equilibrium"]),
+        moved("measured", table.displacement),
+        moved("gap", table.gap, brief=False),
+        moved("gap, identified", gap, brief=False),
     )
+    return (
+        SideBySide(
+            "table2_gaps", "Table II, root-mean-square gaps per pose", gaps,
+            "Ours against the printed calculated column by three formulas, and the measured column "
+            "against the paper's springs and against springs identified from these rows. Printed "
+            f"with the opposite sign: {told}.",
+        ),
+        SideBySide(
+            "table2", "Table II, deflections in base_link", rows,
+            "Printed signs converted to one frame; load at the flange, wrist straight. A gap is "
+            "measured minus predicted at exact equilibrium.",
+        ),
+    )  # fmt: skip
 
 
-def _table3(found: Reproduction) -> SideBySide:
-    table = found.table3
+def _springs_and_works(found: Reproduction) -> tuple[SideBySide, SideBySide]:
+    fitted, table = found.identified, found.table3
     theirs, ours = table.differences
 
-    def column(name: str, values: Array, *, brief: bool = True) -> Column:
+    def spring(name: str, values: Array, *, brief: bool = True) -> Column:
+        return Column(name, 1e-6 * values, "MN*m/rad", 4, brief)
+
+    def work(name: str, values: Array, *, brief: bool = True) -> Column:
         return Column(name, 1e3 * values, "mJ", 3, brief)  # 1 N·mm is 1 mJ
 
-    return SideBySide(
-        "table3",
-        "Table III, works",
-        (
-            Column("pose", table.printed.pose),
-            Column("force", table.printed.force, "N", 1, brief=False),
-            column("Cartesian, theirs", table.printed_cartesian),
-            column("eq. (14), ours", table.works.cartesian),
-            column("eq. (15) with K_C, ours", table.works.joint_enhanced),
-            Column("without - with, theirs", 1e6 * theirs, "uJ", 1),
-            Column("without - with, ours", 1e6 * ours, "uJ", 1),
-            column("work along the path", table.work),
-            column("energy in the springs", table.energy, brief=False),
-        ),
-        "Theirs printed as joule, read as N·mm; the deflections behind them are not printed, ours "
-        "are those predicted. Eq. (14) counts three times the work along the path.",
+    springs = (
+        Column("joint", [p.effect.where for p in fitted.fit.parameters]),
+        spring("paper", found.setting.arm_springs),
+        spring("identified", fitted.springs),
+        spring("std. error", fitted.errors),
+        spring("equal weights", springs_of(fitted.equal_weights)),
+        *(spring(f"pose {p} alone", k, brief=False) for p, (k, _) in fitted.by_pose.items()),
     )
-
-
-def _table4(found: Reproduction) -> SideBySide:
-    table = found.table4
-    signs = ["".join("+" if x > 0 else "-" for x in row) for row in table.signs]
-    theirs = [Column(f"paper {name}", table.printed[:, k]) for name, k in _COUNTED.items()]
-    counted = [
-        Column(name, column, brief=name != "ND")
-        for name, column in zip(("det > 0", "ND", "rest"), table.determinant_counts.T, strict=True)
-    ]
-    true = [
-        Column(f"true {c.short}", column, brief=bool(column.any()))
-        for c, column in zip(CLASSES, table.counts.T, strict=True)
-    ]
-    return SideBySide(
-        "table4",
-        f"Table IV, classes of K_C over {table.configurations} configurations",
-        (
-            Column("case", [str(k + 1) for k in range(len(signs))]),
-            Column("force", signs),
-            *theirs,
-            *counted,
-            *true,
-            Column("K_theta - K_C PD", table.difference_positive, brief=False),
+    works = (
+        Column("pose", table.printed.pose),
+        Column("force", table.printed.force, "N", 1, brief=False),
+        work("Cartesian, theirs", table.printed_cartesian),
+        work("eq. (14), ours", table.works.cartesian),
+        work("eq. (15) with K_C, ours", table.works.joint_enhanced),
+        Column("without - with, theirs", 1e6 * theirs, "uJ", 1),
+        Column("without - with, ours", 1e6 * ours, "uJ", 1),
+        work("work along the path", table.work),
+        work("energy in the springs", table.energy, brief=False),
+    )
+    return (
+        SideBySide(
+            "identified", "Springs identified from Table II", springs,
+            f"Three of the paper's twenty poses. {len(fitted.runs)} runs of both algorithms from "
+            f"far starts agree to {fitted.spread:.0e}. Equal weights is the paper's eq. (12).",
         ),
+        SideBySide(
+            "table3", "Table III, works", works,
+            "Theirs printed as joule, read as N·mm; the deflections behind them are not printed, "
+            "ours are those predicted. Eq. (14) counts three times the work along the path.",
+        ),
+    )  # fmt: skip
+
+
+def _classes(found: Reproduction) -> SideBySide:
+    table = found.table4
+    theirs = {"PD": 0, "ND": 2, "ID": 4}  # classes that the paper found, by their place
+    counted = zip(("det > 0", "ND", "rest"), table.determinant_counts.T, strict=True)
+    true = zip(CLASSES, table.counts.T, strict=True)
+    columns = (
+        Column("case", [str(k + 1) for k in range(len(table.signs))]),
+        Column("force", ["".join("+" if x > 0 else "-" for x in row) for row in table.signs]),
+        *(Column(f"paper {name}", table.printed[:, k]) for name, k in theirs.items()),
+        *(Column(name, column, brief=name != "ND") for name, column in counted),
+        *(Column(f"true {c.short}", column, brief=bool(column.any())) for c, column in true),
+        Column("K_theta - K_C PD", table.difference_positive, brief=False),
+    )
+    return SideBySide(
+        "table4", f"Table IV, classes of K_C over {table.configurations} configurations", columns,
         "Theirs beside signs of the determinant, beside the classes by definition. PD(F) = ND(−F) "
         "must hold for cases 1/2, 3/6, 4/7 and 5/8. K_θ − K_C is positive definite at "
         f"{table.difference_positive.min()} of {table.configurations} configurations in every "
         "case.",
-    )
+    )  # fmt: skip
 
 
-_COUNTED = {"PD": 0, "ND": 2, "ID": 4}  # classes that the paper found, by their place
-
-
-def _critical(found: Reproduction) -> SideBySide:
-    forces = found.critical
-    rows = {
+def _forces(found: Reproduction) -> tuple[SideBySide, ...]:
+    forces, errors, parts = found.critical, found.appendix, found.parts
+    sizes = {
         "the paper, about": CLAIMED_CRITICAL_FORCE,
         "smallest, all poses and directions": forces.smallest,
         "upper arm as a column, K2 / L2": forces.column,
         **{f"quantile {q:g}": value for q, value in forces.quantiles.items() if q > 0},
         **{f"C{k}{k} reaches K{k}": v for k, v in enumerate(forces.by_diagonal, start=1)},
     }
-    return SideBySide(
-        "critical",
-        "Forces at which K_θ − K_C loses definiteness",
-        (
-            Column("force", list(rows)),
-            Column("size", 1e-3 * np.array([*rows.values()]), "kN", 1),
-        ),
-        f"For {100 * forces.without:.0f} % of poses and directions no force is critical.",
-    )
-
-
-def _appendix(found: Reproduction) -> SideBySide:
-    errors = found.appendix
+    size = Column("size", 1e-3 * np.array([*sizes.values()]), "kN", 1)
     elements = [f"J{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)]
-    slips = {slip.element: slip.length for slip in errors.slips if slip.length == "D4"}
-    return SideBySide(
-        "appendix",
-        "Appendix I against our Jacobian at the reflector",
-        (
-            Column("element", elements),
-            Column("as printed", [f"{x:.1e}" for x in errors.printed_error.ravel()], "m/rad"),
-            Column("mended", [f"{x:.1e}" for x in errors.mended_error.ravel()], "m/rad"),
-            Column("misprint", [f"sign of {slips[e]}" if e in slips else "" for e in elements]),
-        ),
-        "Largest difference over random poses of all six joints.",
+    wrong = [slip.element for slip in errors.slips if slip.length == "D4"]
+    jacobian = (
+        Column("element", elements),
+        Column("as printed", [f"{x:.1e}" for x in errors.printed_error.ravel()], "m/rad"),
+        Column("mended", [f"{x:.1e}" for x in errors.mended_error.ravel()], "m/rad"),
+        Column("misprint", ["sign of D4" if e in wrong else "" for e in elements]),
     )
-
-
-def _parts(found: Reproduction) -> SideBySide:
-    return SideBySide(
-        "diagonal_parts",
-        "Figs. 7 to 9, range of each part over the motion range",
-        (
-            Column("element", [s.element for s in found.parts.surfaces]),
-            Column("lowest, force along", found.parts.lowest, "N*m/rad/N", 3),
-            Column("highest, force along", found.parts.highest, "N*m/rad/N", 3),
+    ranges = (
+        Column("element", [s.element for s in parts.surfaces]),
+        Column("lowest, force along", parts.lowest, "N*m/rad/N", 3),
+        Column("highest, force along", parts.highest, "N*m/rad/N", 3),
+    )
+    return (
+        SideBySide(
+            "critical",
+            "Forces at which K_θ − K_C loses definiteness",
+            (Column("force", list(sizes)), size),
+            f"For {100 * forces.without:.0f} % of poses and directions no force is critical.",
+        ),
+        SideBySide(
+            "appendix",
+            "Appendix I against our Jacobian at the reflector",
+            jacobian,
+            "Largest difference over random poses of all six joints.",
+        ),
+        SideBySide(
+            "diagonal_parts", "Figs. 7 to 9, range of each part over the motion range", ranges
         ),
     )
-
-
-def _claims(found: Reproduction) -> SideBySide:
-    names = ("where", "claim", "verdict", "evidence")
-    columns = (Column(n, [str(getattr(claim, n)) for claim in found.claims]) for n in names)
-    return SideBySide("claims", "Claims", tuple(columns))

@@ -23,7 +23,7 @@ def test_csv_has_units_and_every_row(found):
     for name, table in tables.items():
         header, *rows = csv.reader(io.StringIO(table.csv()))
         assert {len(row) for row in rows} == {len(header)}
-        assert len(rows) == table.count == sizes.get(name, table.count)
+        assert len(rows) == sizes.get(name, len(rows)) > 2
     header, first, *_ = csv.reader(io.StringIO(tables["table2"].csv()))
     row = dict(zip(header, first, strict=True))
     assert float(row["force y[N]"]) == 72.922
@@ -34,11 +34,12 @@ def test_csv_has_units_and_every_row(found):
 def test_columns():
     column = Column("d", np.array([[-0.04, 12.5, 3.0], [100.0, -7.25, 0.0]]), "um", 1)
     table = SideBySide("t", "T", (Column("pose", ["a", "b"]), column))
-    assert table.header == ["pose", "d x[um]", "d y[um]", "d z[um]"]
-    assert table.rows() == [["a", "0.0", "12.5", "3.0"], ["b", "100.0", "-7.2", "0.0"]]
-    assert column.text(0) == "  0.0 12.5 3.0" and column.text(1) == "100.0 -7.2 0.0"
+    assert column.texts == ["  0.0 12.5 3.0", "100.0 -7.2 0.0"]
+    assert table.columns[0].texts == ["a", "b"]
     assert column.shown_unit == "µm"
-    assert table.csv().splitlines()[1] == "a,-0.0400,12.5000,3.0000"
+    assert table.csv().splitlines() == [
+        "pose,d x[um],d y[um],d z[um]", "a,-0.0400,12.5000,3.0000", "b,100.0000,-7.2500,0.0000",
+    ]  # fmt: skip
 
 
 def test_document_is_json_with_the_promised_keys(found):

@@ -136,21 +136,21 @@ def _table(table: SideBySide) -> Table:
     """A page is narrower than a CSV file: some columns stay there, and some share a cell."""
     return Table(
         header=[column.name for column in table.brief],
-        rows=[[_cell(column, row) for column in table.brief] for row in range(table.count)],
+        rows=[*zip(*map(_cells, table.brief), strict=True)],
         caption=table.title,
         units=[column.shown_unit for column in table.brief],
         digits=6,
     )
 
 
-def _cell(column: Column, row: int) -> object:
-    """A number, so that it is aligned as one; words and groups of numbers as text."""
-    text = column.text(row)
-    if column.width > 1:
-        return text.replace("-", "\N{MINUS SIGN}").replace(" ", "\N{FIGURE SPACE}")
-    if not column.is_number:
-        return text
-    return int(text) if column.decimals is None else float(text)
+def _cells(column: Column) -> Sequence[object]:
+    """Numbers, so that they are aligned as such; words and groups of numbers as text."""
+    if np.ndim(column.values) > 1:
+        signs = str.maketrans({"-": "\N{MINUS SIGN}", " ": "\N{FIGURE SPACE}"})
+        return [text.translate(signs) for text in column.texts]
+    if not isinstance(column.values, np.ndarray):
+        return column.texts
+    return [*map(int if column.decimals is None else float, column.texts)]
 
 
 def _table2(found: Reproduction) -> tuple[PaperFigure, ...]:
