@@ -10,7 +10,7 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.findings import NAMED, Confirmation, Evidence, Finding
 from sk120stiff.explain.judge import attribution, beside_form
 from sk120stiff.explain.judge import confirm as confirming
-from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.posterior import NONE, doubted, posterior
 from sk120stiff.explain.judge.remainder import Remainder
@@ -18,6 +18,7 @@ from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.score import score_set
 from sk120stiff.measurements import ModelForm
 from sk120stiff.robot import load_robot
+from tests.explain.readings import base_fit, hidden
 from tests.explain.test_regression import POSES, regression
 
 SEEN = Confirmation(5, 5, 1.0, 0.1, 1.0, 0.0)
@@ -104,6 +105,14 @@ def test_adequacy_is_lacking_by_its_smallest_probability_alone():
     assert not fine.lacking
     assert Adequacy(0.0009, 1.0, 5.0, {}).lacking
     assert fine.chance is None
+
+
+def test_each_look_at_what_is_left_counts_in_its_probability():
+    """Noise alone: of five tests one is at 0.05, as one of five is every fourth time."""
+    left = adequacy(base_fit(hidden(seed=1)), ())
+    rarest = min(left.tests.values())
+    assert len(left.tests) == 5 and 0.02 < rarest < 0.1
+    assert left.probability == pytest.approx(5 * rarest)
 
 
 def test_what_is_left_is_significant_where_structure_alone_says_so():
