@@ -16,7 +16,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
 from sk120stiff.robot.rotations import crossed
@@ -24,27 +24,27 @@ from sk120stiff.robot.rotations import crossed
 AXES = "xyz"
 
 
+class _SensorError(LoadError):
+    place: ClassVar[str] = "sensor"
+    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
+
+
 @dataclass(frozen=True)
-class ForceScale(LoadError):
+class ForceScale(_SensorError):
     """Each force axis reads too much or too little by a share of its own."""
 
     name: ClassVar[str] = "force_scale"
     former: ClassVar[Mapping[str, str]] = {f"gain_{axis}": f"scale_{axis}" for axis in AXES}
-    place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_reported - F_true = s * F_reported, axis by axis"
     says: ClassVar[str] = "The force sensor's axes read too much or too little in proportion."
-    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Relative errors of the three force axes."""
-        return tuple(
-            ParameterSpec(
-                f"scale_{axis}", "1", "1", plausible=0.12, typical=0.01,
-                meaning=f"(reported - true) / reported force along {axis} of the tool frame; "
-                "positive: the sensor reads too much",
-            )
-            for axis in AXES
+        return of_axes(
+            "scale_{}", "1", plausible=0.12, typical=0.01,
+            meaning="(reported - true) / reported force along {} of the tool frame; positive: the "
+            "sensor reads too much",
         )  # fmt: skip
 
     def aliases(self, robot: Robot) -> tuple[Alias, ...]:
@@ -74,27 +74,22 @@ class ForceScale(LoadError):
 
 
 @dataclass(frozen=True)
-class ForceBias(LoadError):
+class ForceBias(_SensorError):
     """The sensor adds a constant force that the unloaded reading did not have."""
 
     name: ClassVar[str] = "force_bias"
     former: ClassVar[Mapping[str, str]] = {f"force_{axis}": f"offset_{axis}" for axis in AXES}
-    place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_reported - F_true = b, under load alone"
     says: ClassVar[str] = "The force sensor has a constant offset under load."
-    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """What the sensor adds to the true force."""
         size = self.scale**2
-        return tuple(
-            ParameterSpec(
-                f"offset_{axis}", "N", "N", plausible=50.0 * size, typical=5.0 * size,
-                meaning=f"reported minus true force along {axis} of the tool frame; positive: the "
-                "sensor reads too much",
-            )
-            for axis in AXES
+        return of_axes(
+            "offset_{}", "N", plausible=50.0 * size, typical=5.0 * size,
+            meaning="reported minus true force along {} of the tool frame; positive: the sensor "
+            "reads too much",
         )  # fmt: skip
 
     @cached_property
@@ -108,27 +103,22 @@ class ForceBias(LoadError):
 
 
 @dataclass(frozen=True)
-class ForceRotation(LoadError):
+class ForceRotation(_SensorError):
     """The sensor is mounted turned by a small angle: W_true = W + φ × W."""
 
     name: ClassVar[str] = "force_rotation"
-    place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_true = F_reported + a x F_reported, and moments alike"
     says: ClassVar[str] = (
         "The force sensor is mounted turned, so it sees the load in a wrong direction."
     )
-    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Mounting angles about the sensor axes."""
-        return tuple(
-            ParameterSpec(
-                f"angle_{axis}", "rad", "rad", plausible=0.15, typical=0.0175,
-                meaning=f"angle about {axis} of the tool frame by which the sensor is mounted "
-                "turned, right-handed",
-            )
-            for axis in AXES
+        return of_axes(
+            "angle_{}", "rad", plausible=0.15, typical=0.0175,
+            meaning="angle about {} of the tool frame by which the sensor is mounted turned, "
+            "right-handed",
         )  # fmt: skip
 
     @cached_property
@@ -141,17 +131,15 @@ class ForceRotation(LoadError):
 
 
 @dataclass(frozen=True)
-class ForceCrosstalk(LoadError):
+class ForceCrosstalk(_SensorError):
     """A force along one sensor axis shows on another."""
 
     name: ClassVar[str] = "force_crosstalk"
     former: ClassVar[Mapping[str, str]] = {
         f"{source}_to_{target}": f"{source}_on_{target}" for source, target in permutations(AXES, 2)
     }
-    place: ClassVar[str] = "sensor"
     equation: ClassVar[str] = "F_reported - F_true on one axis = c * F_reported along another"
     says: ClassVar[str] = "The force sensor's axes talk to each other."
-    axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

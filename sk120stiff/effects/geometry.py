@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.effects.base import Geometric, Options, scale_of
-from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint
 
@@ -20,6 +20,14 @@ def length_error(name: str, *, typical: float, scale: float, meaning: str) -> Pa
     return ParameterSpec(
         name, "m", "m", plausible=0.02 * scale, typical=typical * scale, meaning=meaning
     )
+
+
+def length_errors(
+    name: str, *, typical: float, scale: float, meaning: str
+) -> tuple[ParameterSpec, ...]:
+    """The same along three axes, ``{}`` in name and meaning."""
+    size = {"plausible": 0.02 * scale, "typical": typical * scale}
+    return of_axes(name, "m", meaning=meaning, **size)
 
 
 def tool_slides(robot: Robot, name: str) -> tuple[VirtualJoint, ...]:
@@ -77,15 +85,8 @@ class ToolOffset(Geometric):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True position minus stated position of the point, tool axes."""
-        return tuple(
-            length_error(
-                f"offset_{axis}",
-                typical=2e-3,
-                scale=self.scale,
-                meaning=f"true minus stated place along {axis} of the tool frame",
-            )
-            for axis in "xyz"
-        )
+        meaning = "true minus stated place along {} of the tool frame"
+        return length_errors("offset_{}", typical=2e-3, scale=self.scale, meaning=meaning)
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Three rigid slides at the tool frame."""
@@ -105,23 +106,12 @@ class LinkLength(Geometric):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True length minus stated length."""
-        return (
-            length_error(
-                "offset", typical=2e-3, scale=self.scale, meaning="true minus stated length"
-            ),
-        )
+        meaning = "true minus stated length"
+        return (length_error("offset", typical=2e-3, scale=self.scale, meaning=meaning),)
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """A rigid slide along the link, at its far end."""
         link = arm_joint(robot, self.where)
-        placement = np.eye(4)
-        placement[:3, 3] = link.along
-        return (
-            VirtualJoint(
-                f"{self.id}.length",
-                link.index,
-                placement,
-                link.directions()[0],
-                revolute=False,
-            ),
-        )
+        end, along = np.eye(4), link.directions()[0]
+        end[:3, 3] = link.along
+        return (VirtualJoint(f"{self.id}.length", link.index, end, along, revolute=False),)

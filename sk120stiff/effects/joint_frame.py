@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.effects.base import Geometric
-from sk120stiff.effects.geometry import length_error
-from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.geometry import length_errors
+from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, free_joints
 
@@ -33,21 +33,12 @@ class JointFrame(Geometric):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Shift along and turn about the three axes of the joint's frame."""
-        shifts = (
-            length_error(
-                axis, typical=3e-4, scale=self.scale,
-                meaning=f"true minus stated origin of the joint's frame along its {axis}",
-            )
-            for axis in "xyz"
-        )  # fmt: skip
-        turns = (
-            ParameterSpec(
-                f"r{axis}", "rad", "rad", plausible=0.05, typical=3e-4,
-                meaning=f"turn of the joint's frame about its {axis}, true minus stated",
-            )
-            for axis in "xyz"
-        )  # fmt: skip
-        return (*shifts, *turns)
+        shift = "true minus stated origin of the joint's frame along its {}"
+        turn = "turn of the joint's frame about its {}, true minus stated"
+        return (
+            *length_errors("{}", typical=3e-4, scale=self.scale, meaning=shift),
+            *of_axes("r{}", "rad", plausible=0.05, typical=3e-4, meaning=turn),
+        )
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:

@@ -56,6 +56,18 @@ class ParameterSpec:
         return float(np.inf) if internal == 0.0 else std / internal**2
 
 
+def of_axes(
+    name: str, unit: str, *, plausible: float, typical: float, meaning: str
+) -> tuple[ParameterSpec, ...]:
+    """Three like parameters; ``{}`` in name and meaning stands for x, y and z."""
+    return tuple(
+        ParameterSpec(
+            name.format(axis), unit, unit, plausible, typical, meaning=meaning.format(axis)
+        )
+        for axis in "xyz"
+    )
+
+
 #: public unit → internal unit, and the power of an arm's length with which a stiffness grows when
 #: the whole arm is drawn larger in the same material
 _STIFFNESS = {

@@ -12,11 +12,9 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import SPRINGS, Alias, Options, ReadingError, scale_of
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import crossed
-
-AXES = "xyz"
 
 
 @dataclass(frozen=True)
@@ -32,13 +30,10 @@ class ReadingRotation(ReadingError):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Misalignment about the base axes."""
-        return tuple(
-            ParameterSpec(
-                f"angle_{axis}", "rad", "rad", plausible=0.06, typical=0.003,
-                meaning=f"angle about {axis} of the base by which displacements are read turned, "
-                "right-handed",
-            )
-            for axis in AXES
+        return of_axes(
+            "angle_{}", "rad", plausible=0.06, typical=0.003,
+            meaning="angle about {} of the base by which displacements are read turned, "
+            "right-handed",
         )  # fmt: skip
 
     @cached_property
@@ -104,12 +99,9 @@ class ReadingDrift(ReadingError):
         """Drift rates along the base axes."""
         unit, typical = ("m/s", 1e-8) if self.per_second else ("m", 1e-6)
         step = "for each second" if self.per_second else "for each reading"
-        return tuple(
-            ParameterSpec(
-                f"rate_{axis}", unit, unit, plausible=100 * typical, typical=typical,
-                meaning=f"read minus true along {axis} of the base, {step} since the zero reading",
-            )
-            for axis in AXES
+        return of_axes(
+            "rate_{}", unit, plausible=100 * typical, typical=typical,
+            meaning=f"read minus true along {{}} of the base, {step} since the zero reading",
         )  # fmt: skip
 
     def applies_to(self, load_cases: LoadCases) -> bool:
@@ -169,7 +161,7 @@ class ZeroOffset(ReadingError):
                 f"{pose}",
             )
             for pose in self.poses
-            for axis in AXES
+            for axis in "xyz"
         )  # fmt: skip
 
     def applies_to(self, load_cases: LoadCases) -> bool:

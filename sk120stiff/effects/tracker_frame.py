@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Viewpoint
-from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot.rotations import left_jacobian, rotation_of
 
 
@@ -28,21 +28,12 @@ class TrackerFrame(Viewpoint):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Origin of the base frame and rotation vector of its axes, as the tracker sees them."""
-        shifts = (
-            ParameterSpec(
-                axis, "m", "m", plausible=200.0, typical=1e-3,
-                meaning=f"origin of the base frame along {axis} of the tracker",
-            )
-            for axis in "xyz"
-        )  # fmt: skip
-        turns = (
-            ParameterSpec(
-                f"r{axis}", "rad", "rad", plausible=6.3, typical=1e-3,
-                meaning=f"turn of the base frame: component {axis} of the rotation vector",
-            )
-            for axis in "xyz"
-        )  # fmt: skip
-        return (*shifts, *turns)
+        origin = "origin of the base frame along {} of the tracker"
+        turn = "turn of the base frame: component {} of the rotation vector"
+        return (
+            *of_axes("{}", "m", plausible=200.0, typical=1e-3, meaning=origin),
+            *of_axes("r{}", "rad", plausible=6.3, typical=1e-3, meaning=turn),
+        )
 
     def frame(self, values: Array) -> tuple[Array, Array]:
         """See `Viewpoint.frame`."""
