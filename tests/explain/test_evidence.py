@@ -10,7 +10,7 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.findings import NAMED, Confirmation, Evidence, Finding
 from sk120stiff.explain.judge import attribution, beside_form
 from sk120stiff.explain.judge import confirm as confirming
-from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
+from sk120stiff.explain.judge.adequacy import Adequacy, adequacy, explained
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.posterior import NONE, doubted, posterior
 from sk120stiff.explain.judge.remainder import Remainder
@@ -62,6 +62,26 @@ def test_a_true_effect_wins_on_all_drawings_and_noise_on_none():
     chance = score_set(reg, reg.sums(), (0, 1))
     noise = confirming.confirm(reg, chance, 1, ())
     assert not noise.holds
+
+
+def test_a_rival_that_wins_on_some_drawings_counts_against_the_name():
+    reg = regression()
+    X = reg.X.copy()
+    X[:, 3] = X[:, 2] + 0.1 * np.random.default_rng(1).normal(size=len(X))
+    reg = replace(reg, X=X)
+    found = confirming.confirm(reg, score_set(reg, reg.sums(), (0,)), 0, ())
+    rival = reg.candidates[1].id
+    assert 0.0 < found.others[rival] == found.rival_frequency < found.frequency
+    assert found.frequency + found.rival_frequency == pytest.approx(1.0)
+
+
+def test_named_effects_explain_what_the_base_model_cannot_imitate():
+    """Of a signature (2, 2) the base model makes the first part alone."""
+    J = np.array([[1.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
+    named = [SimpleNamespace(effect=SimpleNamespace(id=name)) for name in ("base", "cause")]
+    made = SimpleNamespace(parameters=named, jacobian=J, x=np.array([5.0, 2.0]))
+    assert explained(made, {"cause"}) == pytest.approx(2.0)
+    assert explained(made, ()) == 0.0
 
 
 def test_probabilities_are_shares_of_the_evidence():

@@ -137,6 +137,19 @@ def test_a_column_stands_up_to_its_critical_load_and_not_beyond():
             column_at_rest(weight, 0.0)
 
 
+def test_springs_between_whose_lengths_no_balance_lies_are_refused():
+    """A law that jumps over the balance sends Newton's method back and forth for ever."""
+    mechanism, top = load_robot(COLUMN).mechanism(), np.array([0.0, 0.0, 2.0])
+    load = np.array([100.0, 0, 0, 0, 0, 0])
+
+    def law(torques):
+        long = torques > 200.0 * np.cos(0.1)  # of the side force, whose lever is 2 m cos θ
+        return np.where(long, 0.2, 0.0), np.zeros((*torques.shape, 1))
+
+    with pytest.raises(Refusal, match=r"gives way at 0\.995"):
+        equilibrium(mechanism, np.zeros(1), load, law, point=top)
+
+
 @pytest.mark.parametrize("push", [-1e-3, 1e-3, 1e-5, 0.3])
 @pytest.mark.parametrize("weight", [450.0, 500.0, 510.0, 600.0, 900.0, 1200.0])
 def test_a_column_that_leans_follows_its_load_to_its_own_side(weight, push):
