@@ -138,7 +138,7 @@ class Effect(ABC):
     only_absolute: ClassVar[bool] = False
 
     @classmethod
-    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
         """The effect at one place of a robot."""
         return cls(where, scale_of(robot))
 

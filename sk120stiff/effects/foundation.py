@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import ONE_WAY, Alias, LinearElastic, Options, scale_of
+from sk120stiff.effects.base import ONE_WAY, Alias, Effect, LinearElastic, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.nonlinear import Nonlinear, nonlinear_laws, shape_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 
@@ -37,18 +38,23 @@ class BaseRocking(LinearElastic):
     one_axis_each: ClassVar[bool] = True
 
     @classmethod
-    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
         """The foundation, askew where names of parameters tell of a cross term."""
-        return cls(where, scale_of(robot), CROSS in options.shape)
+        scale = scale_of(robot)
+        bent = NonlinearRocking.told_by(options.shape, where, scale)
+        return bent or cls(where, scale, CROSS in options.shape)
 
     @classmethod
     def options_of(cls, parameters: Mapping[str, str]) -> Options:
         """The law that the names of the parameters tell."""
-        return Options(shape=tuple(parameters))
+        return shape_of(parameters)
 
-    def other_laws(self, load_cases: LoadCases) -> tuple[BaseRocking, ...]:
-        """With a cross term or without."""
-        return (replace(self, askew=not self.askew),)
+    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """With a cross term or without, and out of proportion."""
+        return (
+            replace(self, askew=not self.askew),
+            *nonlinear_laws(NonlinearRocking, self, load_cases),
+        )
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -97,6 +103,17 @@ class BaseRocking(LinearElastic):
         """Each axis has a compliance of its own; the cross term couples them."""
         own = [np.diag(row) for row in np.eye(2)]
         return np.array([*own, 1.0 - np.eye(2)] if self.askew else own)
+
+
+class NonlinearRocking(Nonlinear):
+    """The foundation gives way more and more, one way only, or stiffens as it is loaded."""
+
+    name: ClassVar[str] = BaseRocking.name
+    place: ClassVar[str] = BaseRocking.place
+    equation: ClassVar[str] = BaseRocking.equation + ", K going with the moment"
+    says: ClassVar[str] = "The base rocks on its foundation, not in proportion to the moment."
+    axes: ClassVar[str] = BaseRocking.axes
+    straight: ClassVar[type[LinearElastic]] = BaseRocking
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Integers, Mask
-from sk120stiff.robot import Robot, Screws
+from sk120stiff.robot import Robot, Screws, VirtualJoint
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Absolute, Measurements
@@ -81,6 +81,35 @@ class LoadCases:
             return np.zeros_like(self.a)
         unique, inverse = np.unique(self.a, axis=0, return_inverse=True)
         return self.robot.gravity_torque(unique)[inverse.reshape(-1)]
+
+    def weight_torques(self, virtual: tuple[VirtualJoint, ...]) -> Array:
+        """(N, k) torques of the arm's own weight on joints that an effect adds [N·m or N]."""
+        if self.robot.total_mass == 0.0:
+            return np.zeros((self.count, len(virtual)))
+        return self._on(virtual)[0]
+
+    def torques_on(self, virtual: tuple[VirtualJoint, ...]) -> Array:
+        """(N, k) torques of load and weight on them at the unloaded pose [N·m or N]."""
+        weight, load = self._on(virtual)
+        return weight + load
+
+    def _on(self, virtual: tuple[VirtualJoint, ...]) -> tuple[Array, Array]:
+        """(N, k) torques of the weight and of the load on virtual joints, worked out once."""
+        names = tuple(joint.name for joint in virtual)
+        if names not in self._on_virtual:
+            mechanism = self.robot.mechanism().with_virtual_joints(virtual)
+            z = np.concatenate([self.a, np.zeros((self.count, len(virtual)))], axis=1)
+            screws = mechanism.screws(z, self.force_point)
+            own = slice(self.robot.n, None)
+            self._on_virtual[names] = (
+                screws.gravity_torques(self.robot.gravity_in_base)[:, own],
+                screws.torques(self.wrench)[:, own],
+            )
+        return self._on_virtual[names]
+
+    @cached_property
+    def _on_virtual(self) -> dict[tuple[str, ...], tuple[Array, Array]]:
+        return {}
 
     @cached_property
     def pose_column(self) -> Index:

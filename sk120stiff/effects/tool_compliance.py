@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import LinearElastic
+from sk120stiff.effects.base import Effect, LinearElastic, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.nonlinear import Nonlinear, nonlinear_laws, shape_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 
@@ -27,6 +29,21 @@ class ToolCompliance(LinearElastic):
     says: ClassVar[str] = "The fixture at {where} yields between flange and measured point."
     axes: ClassVar[str] = "axes of the tool frame, at its origin"
     one_axis_each: ClassVar[bool] = True
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
+        """The fixture, out of proportion where names of parameters tell so."""
+        scale = scale_of(robot)
+        return NonlinearTool.told_by(options.shape, where, scale) or cls(where, scale)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The law that the names of the parameters tell."""
+        return shape_of(parameters)
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """Out of proportion."""
+        return nonlinear_laws(NonlinearTool, self, load_cases)
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -74,3 +91,16 @@ class ToolCompliance(LinearElastic):
     def patterns(self, load_cases: LoadCases) -> Array:
         """Each axis has a compliance of its own."""
         return np.array([np.diag(row) for row in np.eye(6)])
+
+
+class NonlinearTool(Nonlinear):
+    """The fixture stiffens as it is pressed, or gives way one way only."""
+
+    name: ClassVar[str] = ToolCompliance.name
+    place: ClassVar[str] = ToolCompliance.place
+    equation: ClassVar[str] = ToolCompliance.equation + ", K going with the load"
+    says: ClassVar[str] = (
+        "The fixture at {where} yields between flange and measured point, not in proportion."
+    )
+    axes: ClassVar[str] = ToolCompliance.axes
+    straight: ClassVar[type[LinearElastic]] = ToolCompliance

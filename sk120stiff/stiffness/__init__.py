@@ -8,7 +8,6 @@ from sk120stiff.stiffness.cartesian import (
 from sk120stiff.stiffness.complementary import (
     complementary_stiffness,
     gravity_stiffness,
-    gravity_torques,
     symmetric_part,
 )
 from sk120stiff.stiffness.elastic import Compliant, ConstantCompliance
@@ -56,7 +55,6 @@ __all__ = [
     "definiteness_of",
     "equilibrium",
     "gravity_stiffness",
-    "gravity_torques",
     "linear_springs",
     "loading_balance",
     "paper_work",

@@ -52,18 +52,6 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
     return np.asarray(K_Cz)
 
 
-def gravity_torques(screws: Screws, gravity: Array) -> Array:
-    """(..., n) torques of the arm's own weight on the coordinates [N·m or N].
-
-    Args:
-        screws: Kinematics of a chain that weighs.
-        gravity: (3,) acceleration in base axes [m/s²].
-    """
-    if screws.carried is None:
-        return np.zeros((*screws.position.shape[:-1], screws.first.shape[-1]))
-    return np.asarray(((screws.carried @ gravity)[..., None, :] @ screws.first)[..., 0, :])
-
-
 def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
     """∂τ_g/∂z (..., n, n) [N·m/rad]: K_C of the arm's own weight, spread over its links.
 

@@ -14,7 +14,6 @@ from sk120stiff.robot import Mechanism, Screws
 from sk120stiff.stiffness.complementary import (
     complementary_stiffness,
     gravity_stiffness,
-    gravity_torques,
 )
 
 #: torques (..., n) → elongations (..., n) and their derivative by the torques (..., n, n)
@@ -172,7 +171,7 @@ class _Statics:
         weights = np.zeros_like(torques)
         if self.weight is not None:
             sag, gravity = self.weight.compliance, self.weight.gravity
-            weights = gravity_torques(screws, gravity) * heavy
+            weights = screws.gravity_torques(gravity) * heavy
             elongation = elongation + (sag @ weights[..., None])[..., 0]
             hanging = gravity_stiffness(screws, gravity) * heavy[..., None]
             feedback = feedback + sag @ hanging

@@ -13,7 +13,6 @@ from sk120stiff.stiffness import (
     Weight,
     equilibrium,
     gravity_stiffness,
-    gravity_torques,
     linear_springs,
 )
 
@@ -31,7 +30,7 @@ def heavy(request):
 
 def test_torques_are_pinocchios(heavy):
     robot, a = heavy
-    found = gravity_torques(robot.screws(a), robot.gravity_in_base)
+    found = robot.screws(a).gravity_torques(robot.gravity_in_base)
     assert np.abs(found).max() > 10.0
     assert np.allclose(found, robot.gravity_torque(a), rtol=0, atol=1e-10)
 

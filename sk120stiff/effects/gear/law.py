@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Elastic, Elongation
+from sk120stiff.effects.base import Elastic, Elongation, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
@@ -20,6 +20,11 @@ class GearEffect(Elastic):
     """A law of the total torque of one turning actuated joint, its weight's share included."""
 
     of_gear: ClassVar[bool] = True
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The gear of one joint."""
+        return cls(where, scale_of(robot))
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:

@@ -80,6 +80,16 @@ class Screws:
         per_joint = self.joint_torques(wrench)
         return (per_joint[..., None, :] @ self.first)[..., 0, :]
 
+    def gravity_torques(self, gravity: Array) -> Array:
+        """(..., n) torques of the arm's own weight on the coordinates [N·m or N].
+
+        Args:
+            gravity: (3,) acceleration in base axes [m/s²].
+        """
+        if self.carried is None:
+            return np.zeros((*self.position.shape[:-1], self.first.shape[-1]))
+        return np.asarray(((self.carried @ gravity)[..., None, :] @ self.first)[..., 0, :])
+
     def at(self, point: Array) -> Screws:
         """The same pose seen from another point of the end frame, (3,) or (..., 3) [m]."""
         return replace(self, point=np.asarray(point, dtype=float))

@@ -16,7 +16,6 @@ from sk120stiff.effects.gear.friction import FrictionHysteresis
 from sk120stiff.effects.gear.hardening import GearHardening
 from sk120stiff.effects.gear.lost_motion import SIDES, LostMotion
 from sk120stiff.model import ModelCompliance, probing_poses
-from sk120stiff.stiffness.complementary import gravity_torques
 
 Term = dict[str, Any]
 SAME = 1e-9  # share by which the weight's torques on the chain may differ from the whole robot's
@@ -79,5 +78,5 @@ def _weighs_alike(arm: ModelCompliance) -> bool:
     whole = robot.gravity_torque(poses)
     virtual = np.zeros((len(poses), len(arm.mechanism.virtual)))
     screws = arm.mechanism.screws(np.concatenate([poses, virtual], axis=1), arm.point)
-    own = gravity_torques(screws, robot.gravity_in_base)[:, : robot.n]
+    own = screws.gravity_torques(robot.gravity_in_base)[:, : robot.n]
     return bool(np.abs(own - whole).max() <= SAME * np.abs(whole).max())

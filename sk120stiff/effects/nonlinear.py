@@ -1,0 +1,191 @@
+"""Parts that yield, but not in proportion: bearings stiffen as more of their rollers carry, rubber
+stiffens as it is pressed, anchors give way more and more, or one way only.
+
+A straight law has one compliance for each axis. Here the compliance goes in a straight line from
+c₀ without load to c₁ under the largest load T that was measured, and stays there beyond::
+
+    e = c₀ τ (1 − |τ| / 2T) + c₁ τ |τ| / 2T   for |τ| ≤ T
+
+Contact stiffens with a root of its load (Hertz: balls with the cube root), of which this is the
+best straight line. Where T is not told there is one compliance for either sign of the load::
+
+    e = c₊ max(τ, 0) + c₋ min(τ, 0)
+
+In both e rises with τ wherever no compliance is negative.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Alias, Effect, Elastic, Elongation, LinearElastic, Options
+from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.errors import InputError
+from sk120stiff.robot import Robot, VirtualJoint
+
+AT = "_at_"  # stiffness_x_at_0 and stiffness_x_at_3000: without load, and from 3000 N·m on
+POSITIVE, NEGATIVE = "_positive", "_negative"
+
+
+@dataclass(frozen=True)
+class Nonlinear(Elastic):
+    """A part whose compliance goes with its load, the weight's share included.
+
+    Attributes:
+        straight: The law that is in proportion, one compliance for every coordinate (class
+            attribute).
+        full: Load T [N·m or N] of every coordinate, up to which the compliance changes; empty: it
+            goes with the sign alone.
+    """
+
+    full: tuple[float, ...] = ()
+    straight: ClassVar[type[LinearElastic]]
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
+        """The law that the options tell, this one or the straight one."""
+        return cls.straight.at(robot, where, options)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The law that the names of the parameters tell."""
+        return shape_of(parameters)
+
+    @property
+    def _part(self) -> LinearElastic:
+        return self.straight(self.where, self.scale)
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Two of each that the straight law has: all of the first kind, then the second kind."""
+        straight = self._part.parameters
+        if not self.full:
+            return (
+                *(_named(spec, POSITIVE, "under positive load") for spec in straight),
+                *(_named(spec, NEGATIVE, "under negative load") for spec in straight),
+            )
+        return (
+            *(_named(spec, f"{AT}0", "without load") for spec in straight),
+            *(
+                _named(spec, f"{AT}{T:g}", f"for further load from {T:g} {_load_unit(spec)} on")
+                for spec, T in zip(straight, self.full, strict=True)
+            ),
+        )
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Those of the straight law."""
+        return self._part.virtual_joints(robot)
+
+    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
+        """Those of the straight law, of its first kind of parameters."""
+        end = f"{AT}0" if self.full else POSITIVE
+        return tuple(replace(each, name=each.name + end) for each in self._part.aliases(robot))
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """The straight law, and the other one of these."""
+        part = self._part
+        laws = (part, *nonlinear_laws(type(self), part, load_cases))
+        return tuple(law for law in laws if law != self)
+
+    def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
+        """See `Elastic.elongation`. A position has no zero reading to be subtracted."""
+        weight = load_cases.weight_torques(self._part.virtual_joints(load_cases.robot))
+        by_parameter = self._shapes(torques + weight)
+        if not load_cases.absolute:
+            by_parameter = by_parameter - self._shapes(weight)
+        slopes = self._slopes(torques + weight) @ values
+        return Elongation(
+            value=by_parameter @ values,
+            by_torque=slopes[..., None] * np.eye(slopes.shape[-1]),
+            by_parameter=by_parameter,
+        )
+
+    def _shapes(self, torque: Array) -> Array:
+        """(N, k, 2k) elongation per unit of each parameter at torques (N, k)."""
+        if not self.full:
+            return _axis_by_axis(np.maximum(torque, 0.0), np.minimum(torque, 0.0))
+        T = np.array(self.full)
+        inside = np.clip(torque, -T, T)
+        later = inside * np.abs(inside) / (2.0 * T)
+        return _axis_by_axis(inside - later, later + torque - inside)
+
+    def _slopes(self, torque: Array) -> Array:
+        """(N, k, 2k) derivative of `_shapes` by the torque."""
+        if not self.full:
+            positive = 0.5 * (1.0 + np.sign(torque))
+            return _axis_by_axis(positive, 1.0 - positive)
+        share = np.minimum(np.abs(torque) / np.array(self.full), 1.0)
+        return _axis_by_axis(1.0 - share, share)
+
+    @classmethod
+    def told_by(cls, names: Collection[str], where: str, scale: float) -> Nonlinear | None:
+        """The law that names of parameters tell; None where they tell none of this kind.
+
+        Raises:
+            InputError: A name ends in no positive load, or the loads of some are missing.
+        """
+        straight = cls.straight(where, scale).parameters
+        if any(name.endswith((POSITIVE, NEGATIVE)) for name in names):
+            return cls(where, scale)
+        if not any(AT in name for name in names):
+            return None
+        return cls(where, scale, tuple(_told(spec, names) for spec in straight))
+
+
+def nonlinear_laws(
+    law: type[Nonlinear], part: LinearElastic, load_cases: LoadCases
+) -> tuple[Nonlinear, ...]:
+    """The laws out of proportion of a part with a straight one, over the loads of some readings."""
+    virtual = part.virtual_joints(load_cases.robot)
+    loads = np.abs(load_cases.torques_on(virtual)).max(axis=0, initial=0.0)
+    turns = np.array([joint.revolute for joint in virtual])
+    full = np.array([loads[turns == kind].max(initial=0.0) for kind in turns])
+    if not (full > 0.0).all():
+        return ()
+    measured = tuple(float(f"{T:.3g}") for T in full)
+    return (law(part.where, part.scale, measured), law(part.where, part.scale))
+
+
+def shape_of(parameters: Mapping[str, str]) -> Options:
+    """The law that names of parameters tell, where an effect knows a `Nonlinear` one too."""
+    return Options(shape=tuple(parameters))
+
+
+def _named(spec: ParameterSpec, end: str, words: str) -> ParameterSpec:
+    return replace(spec, name=spec.name + end, meaning=f"{spec.meaning}, {words}")
+
+
+def _told(spec: ParameterSpec, names: Collection[str]) -> float:
+    """The load up to which the compliance of one coordinate changes."""
+    head = f"{spec.name}{AT}"
+    loads = {name.removeprefix(head) for name in names if name.startswith(head)} - {"0"}
+    if len(loads) == 1 and _is_load(load := loads.pop()):
+        return float(load)
+    raise InputError(
+        f"the names of the parameters do not tell up to which load {spec.name} changes",
+        remedy=f"Write {head}0 and {head}150 for 150 {_load_unit(spec)}.",
+    )
+
+
+def _load_unit(spec: ParameterSpec) -> str:
+    return "N*m" if spec.unit == "N*m/rad" else "N"
+
+
+def _is_load(text: str) -> bool:
+    try:
+        load = float(text)
+    except ValueError:
+        return False
+    return bool(np.isfinite(load) and load > 0.0 and f"{load:g}" == text)
+
+
+def _axis_by_axis(first: Array, second: Array) -> Array:
+    """(N, k, 2k) two shapes (N, k) of every coordinate, all of the first before the second."""
+    eye = np.eye(first.shape[-1])
+    return np.concatenate([first[..., None] * eye, second[..., None] * eye], axis=-1)
