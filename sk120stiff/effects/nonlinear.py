@@ -88,9 +88,8 @@ class Nonlinear(Elastic):
         return tuple(replace(each, name=each.name + end) for each in self._part.aliases(robot))
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
-        """The straight law, and the other one of these."""
-        part = self._part
-        laws = (part, *nonlinear_laws(type(self), part, load_cases))
+        """The straight law, and all others that it leads to."""
+        laws = (self._part, *self._part.other_laws(load_cases))
         return tuple(law for law in laws if law != self)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:

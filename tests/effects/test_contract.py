@@ -12,6 +12,7 @@ import pint
 import pytest
 
 from sk120stiff.effects import Elastic, LinearElastic, LoadCases, Switching, effect
+from sk120stiff.effects.nonlinear import Nonlinear
 from sk120stiff.model import Model, joint_spring_model, model_from_text, model_text
 from sk120stiff.units import is_kind, is_unit, to_si
 from tests.effects.arms import (
@@ -35,6 +36,13 @@ CASES = [
     for found in every_effect(arm(name))
 ]
 ELASTIC = [case for case in CASES if isinstance(case.values[1], Elastic)]
+BENT = [
+    pytest.param(name, law, id=f"{name}-{law.id}-{law.parameters[-1].name}")
+    for name in ("sk120", "scara", "loop")
+    for usual in {found.name: found for found in every_effect(arm(name))}.values()
+    for law in usual.other_laws(readings(arm(name), 6, seed=2))
+    if isinstance(law, Nonlinear)
+]
 LINEAR = [case for case in CASES if isinstance(case.values[1], LinearElastic)]
 
 
@@ -92,7 +100,7 @@ def test_sensitivities_of_all_effects_together(name):
         assert np.allclose(exact @ direction, slope, rtol=0, atol=1e-7 * np.abs(slope).max())
 
 
-@pytest.mark.parametrize(("name", "found"), CASES)
+@pytest.mark.parametrize(("name", "found"), [*CASES, *BENT])
 def test_sensitivities_of_one_effect(name, found):
     model, load_cases = alone(name, found), readings(arm(name), 6, seed=2)
     exact = model.predict_with_sensitivities(load_cases)[1]
@@ -135,7 +143,7 @@ def test_every_kind_of_effect_shows_somewhere(name):
     assert seen == all_kinds
 
 
-@pytest.mark.parametrize(("name", "found"), ELASTIC)
+@pytest.mark.parametrize(("name", "found"), [*ELASTIC, *BENT])
 def test_tangent_compliance_is_the_slope_of_the_elongation(name, found):
     load_cases = readings(arm(name), seed=5)
     rng = np.random.default_rng(6)
@@ -201,7 +209,7 @@ def test_work_of_the_load_is_the_energy_in_the_springs(name):
     assert np.allclose(work, energy, rtol=1e-10)
 
 
-@pytest.mark.parametrize(("name", "found"), CASES)
+@pytest.mark.parametrize(("name", "found"), [*CASES, *BENT])
 def test_parameters_are_fit_for_use(name, found):
     names = [spec.name for spec in found.parameters]
     assert len(set(names)) == len(names) > 0
@@ -225,7 +233,7 @@ def test_parameters_are_fit_for_use(name, found):
         assert len({found.parameters[k].unit for k in group}) == 1
 
 
-@pytest.mark.parametrize(("name", "found"), CASES)
+@pytest.mark.parametrize(("name", "found"), [*CASES, *BENT])
 def test_units_mean_what_they_say(name, found):
     """Units parse, are SI, and the internal one is the reciprocal where the value is."""
     for spec in found.parameters:

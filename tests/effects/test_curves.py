@@ -6,9 +6,11 @@ import pytest
 from sk120stiff import load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.effects.base import Options
-from sk120stiff.effects.foundation import BaseRocking
+from sk120stiff.effects.foundation import BaseRocking, NonlinearRocking
 from sk120stiff.effects.gear import FrictionHysteresis, LostMotion
+from sk120stiff.effects.joint_tilt import NonlinearTilt
 from sk120stiff.effects.link_beam import LinkBending
+from sk120stiff.effects.tool_compliance import NonlinearTool
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import base_model, model_from_text, model_text
 from tests.hidden.generator.causes_curves import MaxwellSlip
@@ -90,6 +92,10 @@ def test_between_repeats_the_load_is_off(robot):
         LinkBending("link_3_u", taper=-0.5, roll=True, planes=True),
         LinkBending("link_3_u", taper=0.6),
         BaseRocking("base_link", askew=True),
+        NonlinearRocking("base_link", full=(1500.0, 2000.0)),
+        NonlinearRocking("base_link"),
+        NonlinearTilt(JOINT, full=(900.0, 900.0)),
+        NonlinearTool("tool0"),
     ],
     ids=repr,
 )
