@@ -145,8 +145,9 @@ def nonlinear_laws(
     loads = np.abs(load_cases.torques_on(virtual)).max(axis=0, initial=0.0)
     turns = np.array([joint.revolute for joint in virtual])
     full = np.array([loads[turns == kind].max(initial=0.0) for kind in turns])
-    if not (full > 0.0).all():
+    if not full.any():
         return ()
+    full[full == 0.0] = full.max()  # nothing turns it, or nothing shifts it: any load will do
     measured = tuple(float(f"{T:.3g}") for T in full)
     return (law(part.where, part.scale, measured), law(part.where, part.scale))
 

@@ -18,7 +18,7 @@ from sk120stiff.explain.select.score import price_of_sizes
 from sk120stiff.identify import fit
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, LinkBending
-from tests.hidden.generator.causes_foreign import QuadraticMount
+from tests.hidden.generator.causes_foreign import QuadraticMount, RubberMount
 from tests.hidden.generator.causes_joint import GearHardening
 from tests.hidden.generator.causes_sensor import ForceBias
 
@@ -49,14 +49,36 @@ def test_strong_parameters_cost_what_the_information_criterion_asks():
 
 def test_a_floor_that_yields_with_the_square_is_not_called_noise_that_grows(springs):
     mount = QuadraticMount("base_link", {"x": 1.0e-7, "y": 1.4e-7}, {"full": 1500.0})
-    answer = explain(springs, hidden(mount, poses=12, loads=4))
+    unnamed = Options(exclude=("base_rocking",))
+    answer = explain(springs, hidden(mount, poses=12, loads=4), options=unnamed)
     told = "the moment that tips the base, not in proportion to it"
-    # Rocking is right in kind and place; that it is not in proportion is told as what is left.
-    assert {finding.effect.id for finding in answer.findings} <= {"base_rocking:base_link"}
+    assert answer.verdict == "outside"
     assert answer.remainder.significant
     assert told in answer.remainder.where[0]
     tests = answer.adequacy.tests
     assert tests[f"together with {told}"] == min(tests.values())
+
+
+@pytest.mark.parametrize(
+    ("cause", "name", "end"),
+    [
+        (QuadraticMount("base_link", {"x": 2e-7, "y": 2.8e-7}, {"full": 1500.0}), "rock", "_at_"),
+        (
+            QuadraticMount("base_link", {"x": 2e-7, "y": 2.8e-7}, {"full": 1500.0, "gap": True}),
+            "rock",
+            "_positive",
+        ),
+        (RubberMount("tool0", {"compliance": 3e-7}, {"full": 300.0}), "tool", "_at_"),
+    ],
+    ids=["more and more", "one way", "less and less"],
+)
+def test_what_yields_out_of_proportion_is_named_by_its_law(springs, cause, name, end):
+    answer = explain(springs, hidden(cause))
+    assert answer.verdict == "named"
+    (finding,) = answer.findings
+    assert finding.effect.name == {"rock": "base_rocking", "tool": "tool_compliance"}[name]
+    assert any(end in spec.name for spec in finding.effect.parameters)
+    assert not answer.remainder.significant
 
 
 def test_a_bias_that_the_catalogue_lacks_does_not_hide_behind_zero_offsets(springs):

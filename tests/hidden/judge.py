@@ -155,7 +155,8 @@ def _curve(name: str) -> frozenset[str]:
 def _beside(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     """The known cause named, and beside it a significant remainder whose interval holds.
 
-    Where the foreign one is named by its kind too, what is left is less than its remainder.
+    Where the foreign one is named by its kind too, what is left is less than its remainder; where
+    both are of one kind at one place, one name says both.
     """
     known = set(true_names(truth))
     strange = [g for g in answer.effects if g & of_its_kind(truth) and not g & known]
@@ -167,6 +168,8 @@ def _beside(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     named = f"{_spell(answer)} named, remainder"
     if strange and told is not None and told.low <= true:
         return share / max(map(len, strange)), 0, f"the foreign one by kind: {_spell(answer)}"
+    if known & of_its_kind(truth) and (told is None or told.low <= true):
+        return share, 0, f"one name for both: {_spell(answer)}"
     if told is None:
         return 0.0, 0, f"{named} missing (true {true:.1f} um)"
     if not told.significant:

@@ -99,6 +99,17 @@ def test_a_foreign_cause_may_be_named_by_its_kind(
     assert not at_work({**case, "foreign": "foreign_hose:base_link"}, frozenset({"base_rocking"}))
 
 
+@pytest.mark.parametrize(
+    ("rest", "share"),
+    [(None, 1.0), ({**REST, "significant": False}, 1.0), ({**REST, "interval_95": [14, 15]}, 0.0)],
+)
+def test_one_name_says_two_causes_of_one_kind(tmp_path: Path, rest, share: float) -> None:  # type: ignore[no-untyped-def]
+    mount = {"remainder_um": 13.0, "foreign": "foreign_quadratic_mount:base_link"}
+    told = {} if rest is None else {"remainder": rest}
+    answer = answered(tmp_path, "named", ROCKS, **told)
+    assert mark({**truth("L12", ROCK), **mount}, answer)[:2] == (share, 0)
+
+
 def test_what_the_catalogue_lacks_may_be_named_by_its_kind_alone(tmp_path: Path) -> None:
     mount = {**ROCK, "name": "foreign_quadratic_mount", "where": "base_link"}
     assert mark(truth("L7", mount), answered(tmp_path, "named", ROCKS))[:2] == (1.0, 0)

@@ -13,9 +13,12 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import Effect, Elongation, effect
+from sk120stiff.effects.foundation import NonlinearRocking
 from sk120stiff.effects.gear.friction import FrictionHysteresis
 from sk120stiff.effects.gear.hardening import GearHardening
 from sk120stiff.effects.gear.lost_motion import LostMotion
+from sk120stiff.effects.joint_tilt import NonlinearTilt
+from sk120stiff.effects.tool_compliance import NonlinearTool
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model import Model, base_model, joint_spring_model
 from sk120stiff.robot import load_robot
@@ -107,6 +110,15 @@ MODELS = {
         LostMotion("j3", 1.0, flanks=(90.0,)),
         "friction_hysteresis:j2",
         "joint_tilt:j1",
+    ),
+    "out of proportion": lambda: with_effects(
+        SK120,
+        NonlinearRocking("base_link", full=(900.0, 1500.0)),
+        NonlinearTilt("joint_3_u"),
+        NonlinearTool("tool0", full=(60.0, 60.0, 60.0, 500.0, 500.0, 500.0)),
+    ),
+    "heavy and out of proportion": lambda: with_effects(
+        six_axis_arm(), NonlinearRocking("base", full=(300.0, 300.0)), NonlinearTilt("j2")
     ),
     "heavy": lambda: soft(six_axis_arm(seed=5), 5e4),
     "heavy and bending": lambda: with_effects(

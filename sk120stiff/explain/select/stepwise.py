@@ -157,7 +157,7 @@ def _settle(
     """Linearise, search, refit exactly, until the search confirms the model it was made at."""
     final = base
     effects: list[Effect] = []
-    for _ in range(ROUNDS):
+    for number in range(ROUNDS):
         ranked = beam_search(regression, max_effects=max_effects)
         if set(laws_of(regression, ranked[0])) == set(effects):
             break
@@ -165,7 +165,7 @@ def _settle(
         regression = regression_at(
             final, candidates, ids, alpha=regression.alpha, prior=regression.prior
         )
-        if len(effects) >= max_effects and final.exceeds:
+        if number and len(effects) >= max_effects and final.exceeds:
             break  # no set is enough: another will be looked for beside model-form error
     return final, regression, positions(regression, effects)
 

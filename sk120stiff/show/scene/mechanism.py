@@ -12,8 +12,8 @@ from sk120stiff.effects import LinearElastic, load_case
 from sk120stiff.errors import InputError
 from sk120stiff.model import ModelCompliance, probing_poses
 from sk120stiff.robot import LinearCoupling
-from sk120stiff.show.scene.gears import gear_terms
 from sk120stiff.show.scene.scene import Scene
+from sk120stiff.show.scene.torque_laws import law_terms
 from sk120stiff.stiffness import ConstantCompliance
 
 HELD = "one effect is held as it is at the first pose, unloaded: this page cannot follow it"
@@ -43,8 +43,8 @@ def serialised(scene: Scene) -> dict[str, Any]:
     nodes = scene.tree.riding(chain)
     first = scene.first_pose[None]
     weight = arm.weight_at(first)
-    gears = None if isinstance(arm, ConstantCompliance) else gear_terms(arm)
-    constant, terms = _compliance(arm, first, without_gears=gears is not None)
+    laws = None if isinstance(arm, ConstantCompliance) else law_terms(arm)
+    constant, terms = _compliance(arm, first, without_laws=laws is not None)
     shift = arm.start(first)[0]
     shift[: robot.n] -= first[0]
     return {
@@ -54,7 +54,7 @@ def serialised(scene: Scene) -> dict[str, Any]:
         "shift": shift.tolist(),
         "compliance": constant.tolist(),
         "terms": terms,
-        "gears": gears or [],
+        "laws": laws or [],
         "gravity": None if weight is None else weight.gravity.tolist(),
         "chain": {
             "nodes": [nodes.joints.index(name) for name in chain.names],
@@ -79,15 +79,15 @@ def follows_pose_and_load(arm: ConstantCompliance | ModelCompliance) -> bool:
     """Does the serialised mechanism hold all that the arm does?"""
     if isinstance(arm, ConstantCompliance):
         return True
-    return gear_terms(arm) is not None and _series(arm) is not None
+    return law_terms(arm) is not None and _series(arm) is not None
 
 
 def _compliance(
-    arm: ConstantCompliance | ModelCompliance, first: Array, *, without_gears: bool
+    arm: ConstantCompliance | ModelCompliance, first: Array, *, without_laws: bool
 ) -> tuple[Array, list[Term]]:
     """(n, n) at the first pose less what changes, and the terms that bring it back."""
     n = arm.mechanism.n
-    if without_gears and isinstance(arm, ModelCompliance):
+    if without_laws and isinstance(arm, ModelCompliance):
         held = arm.linear_at(first).reshape(-1, n, n)[0]
     else:
         held = arm.compliance_at(first).reshape(-1, n, n)[0]

@@ -3,7 +3,7 @@
 "use strict";
 SK.makeEngine = (mechanism, onState = () => {}) => {
   const m = SK.algebra;
-  const { drives, A, b, shift, gravity, chain, tree, gears } = mechanism;
+  const { drives, A, b, shift, gravity, chain, tree, laws } = mechanism;
   const n = shift.length, count = chain.nodes.length, none = [0, 0, 0];
   const rate = chain.nodes.map((node) => A[tree.coordinates[node]]); // of a chain joint's value, by z
 
@@ -23,36 +23,38 @@ SK.makeEngine = (mechanism, onState = () => {}) => {
     return C;
   }
 
-  // A gear's law by its torque: twist and slope. Its own weight stands on it before the load comes.
+  // A law by its torque: what yields, and its slope. The arm's weight stands on it before the load comes.
   function shape({ kind, torque: T, side }, torque) {
     const size = Math.abs(torque);
     const [value, slope] = {
       square: [torque * size, 2 * size], cube: [torque ** 3, 3 * size ** 2], sign: [Math.sign(torque), 0],
       clip: [Math.min(Math.max(torque, -T), T), size < T ? 1 : 0], tanh: [Math.tanh(torque / T), 0],
+      line: [torque, 1], size: [size, Math.sign(torque)],
+      rising: size < T ? [torque * size / (2 * T), size / T] : [torque - Math.sign(torque) * T / 2, 1],
     }[kind];
     return [side ? side * Math.max(side * value, 0) : value, slope];
   }
-  const ungeared = { tangent: (C) => C, add: (elongations) => elongations };
+  const straight = { tangent: (C) => C, add: (elongations) => elongations };
   const hardly = 1e-9 * chain.masses.reduce((sum, mass) => sum + mass, 0);
-  function gearsAt(a, start, wrench, point) {
-    if (!gears.length) return ungeared;
+  function lawsAt(a, start, wrench, point) {
+    if (!laws.length) return straight;
     const zero = [...none, ...none], onset = stateAt(start, wrench, point).torques;
     const hanging = stateAt(a.concat(new Array(n - drives).fill(0)), zero, point).hanging;
-    const terms = gears.map((gear) => {
-      const weight = gear.weight && Math.abs(hanging[gear.at]) > hardly ? hanging[gear.at] : 0;
-      return { gear, weight, before: shape(gear, weight)[0] };
+    const terms = laws.map((law) => {
+      const weight = law.weight && Math.abs(hanging[law.at]) > hardly ? hanging[law.at] : 0;
+      return { law, weight, before: shape(law, weight)[0] };
     });
     return {
-      // Compliance with what gears yield to a little more torque.
+      // Compliance with what these laws yield to a little more torque.
       tangent(C, torques) {
         const whole = C.map((row) => row.slice());
-        for (const { gear, weight } of terms)
-          if (!gear.switch) whole[gear.at][gear.at] += gear.size * shape(gear, (torques ? torques[gear.at] : 0) + weight)[1];
+        for (const { law, weight } of terms)
+          if (!law.switch) whole[law.at][law.at] += law.size * shape(law, (torques ? torques[law.at] : 0) + weight)[1];
         return whole;
       },
       add(elongations, torques) {
-        for (const { gear, weight, before } of terms)
-          elongations[gear.at] += gear.size * (shape(gear, (gear.switch ? onset : torques)[gear.at] + weight)[0] - before);
+        for (const { law, weight, before } of terms)
+          elongations[law.at] += law.size * (shape(law, (law.switch ? onset : torques)[law.at] + weight)[0] - before);
         return elongations;
       },
     };
@@ -113,7 +115,7 @@ SK.makeEngine = (mechanism, onState = () => {}) => {
     };
   }
 
-  // Exact equilibrium z = start + C (torques of load and weight) + gears, by Newton; null: none holds.
+  // Exact equilibrium z = start + C (torques of load and weight) + laws, by Newton; null: none holds.
   function equilibrium(start, C, wrench, point, law) {
     let z = start.slice();
     for (let step = 0; step < 60; step++) {
@@ -172,9 +174,9 @@ SK.makeEngine = (mechanism, onState = () => {}) => {
 
   function compute({ a, wrench, point, exaggeration }) {
     const springs = complianceAt(a), start = m.add(a.concat(new Array(n - drives).fill(0)), shift);
-    const still = gravity ? equilibrium(start, springs, [...none, ...none], point, ungeared) : { z: start };
+    const still = gravity ? equilibrium(start, springs, [...none, ...none], point, straight) : { z: start };
     if (!still) return null;
-    const law = gearsAt(a, start, wrench, point), C = law.tangent(springs); // under small loads
+    const law = lawsAt(a, start, wrench, point), C = law.tangent(springs); // under small loads
     const { z } = still, { T, end, position, J, K_C, K_g, torques } = stateAt(z, wrench, point);
     const loaded = m.solve(m.difference(m.identity(n), m.times(C, plus(K_C, K_g))), C); // K⁻¹
     if (!loaded) return null;

@@ -1,10 +1,11 @@
-"""Laws of gears as terms that a page without a server can follow: e = Σ size · shape(τ).
+"""Laws of torques as terms that a page without a server can follow: e = Σ size · shape(τ).
 
 `page/engine.js` holds the same shapes; a test holds the two together.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import chain
 from typing import Any
 
@@ -15,20 +16,22 @@ from sk120stiff.effects import Elastic, LinearElastic
 from sk120stiff.effects.gear.friction import FrictionHysteresis
 from sk120stiff.effects.gear.hardening import GearHardening
 from sk120stiff.effects.gear.lost_motion import SIDES, LostMotion
+from sk120stiff.effects.nonlinear import Nonlinear
 from sk120stiff.model import ModelCompliance, probing_poses
 
 Term = dict[str, Any]
 SAME = 1e-9  # share by which the weight's torques on the chain may differ from the whole robot's
 
 
-def gear_terms(arm: ModelCompliance) -> list[Term] | None:
-    """Terms of every gear; None where a law is none of them.
+def law_terms(arm: ModelCompliance) -> list[Term] | None:
+    """Terms of every gear and of all that yields out of proportion; None where a law is neither.
 
     Each has the coordinate `at`, its `kind` of shape with the torque where that one bends
     [N·m], the `side` on which it acts (0: both) and its size. Terms that `switch` take the torque
     of the load on the unloaded arm; those with `weight` stand under the arm's own weight first.
     """
     robot, assembly = arm.model.robot, arm.model.assembly
+    names = [*robot.actuated, *(joint.name for joint in arm.mechanism.virtual)]
     found: list[list[Term]] = []
     for effect, part in zip(arm.model.effects, assembly.slices, strict=True):
         if not isinstance(effect, Elastic) or isinstance(effect, LinearElastic):
@@ -36,12 +39,14 @@ def gear_terms(arm: ModelCompliance) -> list[Term] | None:
         terms = _terms(effect, arm.model.values[part])
         if terms is None or not _weighs_alike(arm):
             return None
-        at = robot.actuated.index(effect.where)
-        found.append([{"at": at, **term} for term in terms if term["size"]])
+        coordinates = [names.index(name) for name in effect.coordinates(robot)]
+        found.append([term | {"at": coordinates[term["at"]]} for term in terms if term["size"]])
     return list(chain.from_iterable(found))
 
 
 def _terms(effect: Elastic, values: Array) -> list[Term] | None:
+    if isinstance(effect, Nonlinear):
+        return list(chain.from_iterable(_out_of_proportion(effect, values)))
     if type(effect) is GearHardening:  # a law built on it is another law
         sizes = values if effect.breaks else -values
         shapes = [("clip", T) for T in effect.breaks] or [("square", 0.0), ("cube", 0.0)]
@@ -61,11 +66,20 @@ def _terms(effect: Elastic, values: Array) -> list[Term] | None:
     return None
 
 
+def _out_of_proportion(effect: Nonlinear, values: Array) -> Iterator[tuple[Term, Term]]:
+    first, second = values.reshape(2, -1)
+    for k, (c, d) in enumerate(zip(first, second, strict=True)):
+        if effect.full:
+            yield _term("line", 0.0, c, at=k), _term("rising", effect.full[k], d - c, at=k)
+        else:
+            yield _term("line", 0.0, (c + d) / 2, at=k), _term("size", 0.0, (c - d) / 2, at=k)
+
+
 def _term(
     kind: str, torque: float, size: float, side: int = 0, *, switch: bool = False,
-    weight: bool = True,
+    weight: bool = True, at: int = 0,
 ) -> Term:  # fmt: skip
-    return {"kind": kind, "torque": float(torque), "size": float(size), "side": side,
+    return {"at": at, "kind": kind, "torque": float(torque), "size": float(size), "side": side,
             "switch": switch, "weight": weight}  # fmt: skip
 
 
