@@ -198,17 +198,7 @@ def command(
         notes[given.table.headers[name]] = [f"{value:.10g}" for value in values]
     write_joints(out, given, robot, found.a, notes)
     if picture is not None:
-        turned = None
-        if task.rotation is None:
-            turned = posture_landscape(
-                arm,
-                task,
-                found,
-                minimise=minimise.value,
-                placement=freedom,
-                limit_margin=float(margin),
-                singularity_margin=singularity_margin,
-            )
+        turned = posture_landscape(found) if task.rotation is None else None
         _draw(picture, found, turned, minimise)
     if page is not None:
         _write_page(

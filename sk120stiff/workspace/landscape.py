@@ -7,15 +7,13 @@ starts find. It follows the path as the search for the best posture does; the wo
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
-from sk120stiff.workspace.judge import Judge, PathTask, Placement
 from sk120stiff.workspace.posture import BestPosture
 
 
@@ -39,49 +37,28 @@ class Landscape:
     chosen: tuple[float, float]
 
 
-def posture_landscape(
-    arm: ElasticArm,
-    path: PathTask,
-    found: BestPosture,
-    *,
-    minimise: str = "compliance",
-    placement: Placement | None = None,
-    limit_margin: float = 0.0,
-    singularity_margin: float = 0.02,
-    largest_step: float = 0.5,
-    angles: int = 120,
-    starts: int = 16,
-) -> Landscape:
+def posture_landscape(found: BestPosture, *, angles: int = 120, starts: int = 16) -> Landscape:
     """Judge postures over the orientations that a path leaves free, the part where `found` puts it.
 
     Args:
-        arm, path, minimise, placement, limit_margin, singularity_margin, largest_step: As they were
-            given to `best_posture`.
-        found: What it answered.
+        found: What `best_posture` answered.
         angles, starts: Angles over a whole turn (four times as many orientations where all are
             free), and starts of the inverse kinematics at each.
 
     Raises:
         InputError: The task fixes the tool's orientation: there is nothing to turn.
     """
-    if path.rotation is not None:
+    judge = found.judge
+    if judge.path.rotation is not None:
         raise InputError(
             "the path fixes the orientation of the tool, so there is no turn to look at",
             remedy="Give a tool axis instead of an orientation.",
         )
-    judge = Judge(
-        replace(arm, lower=arm.lower + limit_margin, upper=arm.upper - limit_margin),
-        path.each(),
-        minimise,
-        placement,
-        singularity_margin,
-        largest_step,
-    )
-    tool = arm.kinematics(found.a[:1])
+    tool = judge.arm.kinematics(found.a[:1])
     z, x = tool.rotation[0, :, 2], tool.rotation[0, :, 0]
     across = _across(z)
     own = float(np.arctan2(x @ np.cross(z, across), x @ across))
-    tilt = path.axis is None
+    tilt = judge.path.axis is None
     if tilt:
         rotation = np.concatenate([_orientations(4 * angles), tool.rotation[:1]])
         grid = np.arccos(np.clip(-rotation[:, 2, 2], -1.0, 1.0))

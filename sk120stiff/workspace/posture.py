@@ -43,6 +43,7 @@ class BestPosture:
         admissible: (k,) objectives of the postures that were met at random in the beginning: what
             choosing blindly would give.
         usual: (N, n) the one of these in the middle: as many are better as are worse.
+        judge: By what all of them were judged: the arm within its margins, and the path.
     """
 
     a: Array
@@ -53,6 +54,7 @@ class BestPosture:
     limit_margin: float
     admissible: Array
     usual: Array
+    judge: Judge
 
 
 def best_posture(
@@ -168,4 +170,5 @@ def _report(judge: Judge, pool: Pool, admissible: Array, usual: Array) -> BestPo
         limit_margin=float(distance.min()),
         admissible=admissible,
         usual=usual,
+        judge=judge,
     )

@@ -19,7 +19,7 @@ LINE = np.linspace([1.5, -0.1, 0.3], [1.5, 0.1, 0.3], 3)
 def test_no_posture_of_the_landscape_is_better(axis: np.ndarray | None, minimise: str) -> None:
     arm, path = soft_wrist(), PathTask(LINE, axis=axis, wrench=LOAD)
     found = best_posture(arm, path, minimise=minimise)
-    landscape = posture_landscape(arm, path, found, minimise=minimise, angles=40, starts=8)
+    landscape = posture_landscape(found, angles=40, starts=8)
     assert landscape.tilt == (axis is None)
     assert landscape.objective.min() == pytest.approx(found.objective, rel=1e-6)
     at = np.argmin(landscape.objective)
@@ -31,7 +31,7 @@ def test_the_landscape_says_what_the_formulas_say() -> None:
     """One point, tool down: the deflection by compliance matrices made elsewhere."""
     arm, path = soft_wrist(), PathTask(LINE[:1], axis=DOWN, wrench=LOAD)
     found = best_posture(arm, path, minimise="deflection")
-    landscape = posture_landscape(arm, path, found, minimise="deflection", angles=12)
+    landscape = posture_landscape(found, angles=12)
     C = compliances(arm, found.a, LOAD)
     deflection = np.linalg.norm((C[0] @ LOAD)[:3])
     assert landscape.chosen[1] == pytest.approx(deflection, rel=1e-6)
@@ -42,7 +42,7 @@ def test_the_landscape_says_what_the_formulas_say() -> None:
 def test_the_picture_marks_the_chosen_one_and_names_units() -> None:
     arm, path = soft_wrist(), PathTask(LINE, axis=DOWN, wrench=LOAD)
     found = best_posture(arm, path)
-    landscape = posture_landscape(arm, path, found, angles=40, starts=8)
+    landscape = posture_landscape(found, angles=40, starts=8)
     figure = posture_choice(
         found.per_point,
         compliance=True,
@@ -63,9 +63,9 @@ def test_the_picture_marks_the_chosen_one_and_names_units() -> None:
 def test_a_fixed_orientation_has_no_landscape() -> None:
     arm = soft_wrist()
     path = PathTask(LINE, axis=DOWN, wrench=LOAD)
-    found = best_posture(arm, path, rounds=1)
     fixed = replace(path, axis=None, rotation=np.diag([1.0, -1.0, -1.0]))
+    found = best_posture(arm, fixed, rounds=1)
     with pytest.raises(InputError, match="fixes the orientation"):
-        posture_landscape(arm, fixed, found)
+        posture_landscape(found)
     figure = posture_choice(found.per_point, compliance=True)
     assert len(figure.axes) == 1
