@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -46,6 +47,15 @@ class Rivalry:
 
     gains: Array
     known: Array
+
+    @classmethod
+    def of(cls, gains: Sequence[Array], known: Sequence[Array]) -> Self:
+        """From (M, k, k) and (k, k) of either effect; plausible ranges are known beforehand."""
+        size = max(block.shape[-1] for block in gains)
+        return cls(
+            np.array([_padded(block, size) for block in gains]),
+            np.array([_padded(block, size) for block in known]) + prior(size),
+        )
 
     def evidence_of(self, rows: Sequence[int]) -> float:
         """√λ of a choice, the smaller of both directions, in units of the noise."""
@@ -121,45 +131,52 @@ def rivalry(
         sigma: Standard uncertainty of one reading per axis [m]; a displacement has √2 of it.
         known: Readings that were taken already.
     """
-    gains, start = [], []
+
+    gains, before = [], []
     for true, other in ((effect, rival), (rival, effect)):
         columns = signature_columns(model, true, other, pool) / (sigma * DISPLACEMENT)
         gains.append(np.einsum("mik,mil->mkl", columns, columns))
-        before = prior(columns.shape[-1])
+        before.append(np.zeros(gains[-1].shape[1:]))
         if known is not None:
             old = signature_columns(model, true, other, known) / (sigma * DISPLACEMENT)
-            before = before + np.einsum("mik,mil->kl", old, old)
-        start.append(before)
-    size = max(block.shape[-1] for block in start)
-    return Rivalry(
-        np.array([_padded(block, size) for block in gains]),
-        np.array([_padded(block, size) for block in start])
-        + np.array([_filling(size, block.shape[-1]) for block in start]),
-    )
+            before[-1] = np.einsum("mik,mil->kl", old, old)
+    return Rivalry.of(gains, before)
 
 
 def signature_columns(model: Model, effect: Effect, rival: Effect, pool: Pool) -> Array:
-    """(M, 3, k) columns of base and rival over their plausible ranges, last the signature [m].
+    """(M, 3, k) columns of a pool, see `over_ranges` [m]."""
+    full = with_both(model, effect, rival)
+    return over_ranges(full, full.predict_with_sensitivities(pool.load_cases)[1], effect)
+
+
+def with_both(model: Model, effect: Effect, rival: Effect) -> Model:
+    """The model with those of two effects that it lacks."""
+    for added in (effect, rival):
+        if added.id not in {present.id for present in model.effects}:
+            model = model + added
+    return model
+
+
+def over_ranges(model: Model, derivative: Array, effect: Effect) -> Array:
+    """(..., k) columns of base and rival over their plausible ranges, last the effect's signature.
 
     The base are the free parameters of the model. An effect whose values are all zero has its
     typical size.
+
+    Args:
+        model: Base with both effects, P parameters.
+        derivative: (..., P) of what is read, by each parameter.
+        effect: The one that is held to be true.
     """
-    full = model
-    for added in (effect, rival):
-        if added.id not in {present.id for present in full.effects}:
-            full = full + added
-    _, derivative = full.predict_with_sensitivities(pool.load_cases)
-    owner = np.array([parameter.effect.id for parameter in full.parameters])
-    free = np.array([parameter.free for parameter in full.parameters])
-    plausible = np.array([parameter.spec.plausible for parameter in full.parameters])
-    own = owner == effect.id
-    sizes = full.values[own]
+    own = np.array([parameter.effect.id == effect.id for parameter in model.parameters])
+    others = np.array([parameter.free for parameter in model.parameters]) & ~own
+    plausible = np.array([parameter.spec.plausible for parameter in model.parameters])
+    sizes = model.values[own]
     if not sizes.any():
-        sizes = np.array([p.spec.typical for p in full.parameters])[own]
-    others = free & ~own
-    signature = derivative[:, :, own] @ sizes
+        sizes = np.array([parameter.spec.typical for parameter in model.parameters])[own]
+    signature = derivative[..., own] @ sizes
     return np.concatenate(
-        [derivative[:, :, others] * plausible[others], signature[:, :, None]], axis=2
+        [derivative[..., others] * plausible[others], signature[..., None]], axis=-1
     )
 
 
@@ -174,10 +191,6 @@ def _padded(block: Array, size: int) -> Array:
     """A block with zero rows and columns in front, so that the signature stays last."""
     missing = size - block.shape[-1]
     return np.pad(block, [(0, 0)] * (block.ndim - 2) + [(missing, 0), (missing, 0)])
-
-
-def _filling(size: int, own: int) -> Array:
-    return np.diag(np.r_[np.ones(size - own), np.zeros(own)])
 
 
 def _evidence(information: Array) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, entry_price, standing
@@ -18,6 +18,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
 from sk120stiff.plan import Cell, Rig, Rivalry, cell_from_data, random_pool
+from sk120stiff.plan.discriminate import over_ranges, with_both
 
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
 CONFIRMED = 2.0 * (SURE + 0.84)
@@ -124,18 +125,13 @@ def next_poses(
         zero_group=np.arange(len(a)), zero_joints=None,
     )  # fmt: skip
     pairs = ((effect, rival), (rival, effect))
-    gains = [_information(problem, drawn, *pair, each=True) for pair in pairs]
-    known = [_information(problem, readings, *pair, each=False) for pair in pairs]
-    ridge = np.eye(gains[0].shape[-1])
-    ridge[-1, -1] = 0.0
-    size = gains[0].shape[-1]
-    if gains[1].shape[-1] != size:
-        size = max(block.shape[-1] for block in gains)
-        gains = [_padded(block, size) for block in gains]
-        known = [_padded(block, size) for block in known]
-        ridge = np.eye(size)
-        ridge[-1, -1] = 0.0
-    both = Rivalry(np.array(gains), np.array([block[0] + ridge for block in known]))
+    known = [_columns(problem, readings, *pair)[0] for pair in pairs]
+    gains = []
+    for A, row in (_columns(problem, drawn, *pair) for pair in pairs):
+        each = np.zeros((len(a), A.shape[1], A.shape[1]))
+        np.add.at(each, row, A[:, :, None] * A[:, None, :])
+        gains.append(each)
+    both = Rivalry.of(gains, [A.T @ A for A in known])
     choice = both.best(min(count, len(a)))
     picked = drawn.select(np.array(choice.rows))
     return NextPoses(
@@ -146,35 +142,14 @@ def next_poses(
     )
 
 
-def _information(
-    problem: PoseProblem, readings: Measurements, effect: Effect, rival: Effect, *, each: bool
-) -> Array:
-    """(M or 1, k, k) information on everything else over plausible ranges, last the signature."""
-    model = problem.model
-    for added in (effect, rival):
-        if added.id not in {own.id for own in model.effects}:
-            model = model + added
+def _columns(
+    problem: PoseProblem, readings: Measurements, effect: Effect, rival: Effect
+) -> tuple[Array, Index]:
+    """(R, k) columns of R numbers in units of the noise, see `over_ranges`; and their readings."""
+    model = with_both(problem.model, effect, rival)
     here = replace(problem, model=model, measurements=readings)
     slope = here.channel_gap(model.values, derivative=True)[1] / here.of_channels.sigma[:, None]
-    owner = np.array([p.effect.id for p in model.parameters])
-    free = np.array([p.free for p in model.parameters])
-    plausible = np.array([p.spec.plausible for p in model.parameters])
-    own = owner == effect.id
-    sizes = model.values[own]
-    if not sizes.any():
-        sizes = np.array([p.spec.typical for p in model.parameters])[own]
-    others = free & ~own
-    A = np.column_stack([slope[:, others] * plausible[others], slope[:, own] @ sizes])
-    if not each:
-        return np.asarray((A.T @ A)[None])
-    out = np.zeros((readings.n_readings, A.shape[1], A.shape[1]))
-    np.add.at(out, here.rows, A[:, :, None] * A[:, None, :])
-    return out
-
-
-def _padded(block: Array, size: int) -> Array:
-    missing = size - block.shape[-1]
-    return np.pad(block, [(0, 0), (missing, 0), (missing, 0)])
+    return over_ranges(model, slope, effect), here.rows
 
 
 def open_pair(named: Sequence[tuple[Effect, tuple[str, ...]]], linear: Linear) -> (
