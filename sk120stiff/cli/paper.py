@@ -84,13 +84,12 @@ def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> li
 
     with progress_bar("writing the report") as report, together(last=out / REPORT):
         figures = figures_of(found)
-        names = [f"{each.name}.{end}" for each in figures for end in ("svg", "png")]
+        names = [f"{name}.{end}" for name in figures for end in ("svg", "png")]
         _refuse_foreign(out, [*names, *(f"{table.name}.csv" for table in tables)])
-        total, files = 2 * len(figures) + 1, []
-        for figure in figures:
-            for ending in ("svg", "png"):
-                files.append(save_figure(figure.figure, out / f"{figure.name}.{ending}"))
-                report(len(files), total)
+        total, files = len(names) + 1, []
+        for name in names:
+            files.append(save_figure(figures[Path(name).stem].drawn, out / name))
+            report(len(files), total)
         files += [write_atomically(out / f"{table.name}.csv", table.csv()) for table in tables]
         files.append(report_of(found, tables, figures).write(out / REPORT))
         report(total, total)

@@ -14,7 +14,6 @@ from sk120stiff.arrays import Array
 from sk120stiff.paper.printed import DEADWEIGHTS, FIGURE_POSES, LOADINGS, PrintedLoads
 from sk120stiff.paper.setting import Setting, motion_grid
 from sk120stiff.robot import STANDARD_GRAVITY
-from sk120stiff.stiffness import cartesian_compliance, principal_stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +53,7 @@ def posture(setting: Setting, tables: tuple[PrintedLoads, ...]) -> Posture:
 
 
 def _softest(setting: Setting, joints: Array) -> Array:
-    J = setting.arm(joints).linear_jacobian
-    return principal_stiffness(cartesian_compliance(J, setting.K_theta)).values[..., 0]
+    return setting.under_load(joints, np.zeros(3), "values").of("values")[..., 0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -53,6 +53,11 @@ class Picture:
     alt: str
     caption: str = ""
 
+    @property
+    def drawn(self) -> Figure:
+        """The figure itself."""
+        return self.figure() if callable(self.figure) else self.figure
+
 
 @dataclass(frozen=True)
 class KeyFigure:

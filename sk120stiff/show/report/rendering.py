@@ -153,8 +153,7 @@ def _slug(title: str) -> str:
 
 def _svg(picture: Picture) -> Markup:
     try:
-        figure = picture.figure() if callable(picture.figure) else picture.figure
-        return Markup(inline_svg(figure, picture.alt))
+        return Markup(inline_svg(picture.drawn, picture.alt))
     except Exception as error:  # noqa: BLE001  (an answer is never lost to its picture)
         said = failure(f"the picture {(picture.caption or picture.alt)!r}", error)
         return Markup('<p class="note problem">{}</p>').format(said)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -36,9 +34,6 @@ from sk120stiff.show.report import (
     reproducibility,
 )
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 _KINDS = {
     Verdict.REPRODUCED: "result",
     Verdict.NOT_REPRODUCIBLE: "caution",
@@ -46,31 +41,16 @@ _KINDS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class PaperFigure:
-    """A figure with the name of its file and what it shows."""
-
-    name: str
-    figure: Figure
-    alt: str
-    caption: str
-
-    def picture(self) -> Picture:
-        """For a report."""
-        return Picture(self.figure, self.alt, self.caption)
-
-
-def figures_of(found: Reproduction) -> tuple[PaperFigure, ...]:
-    """All figures: Table II, gaps and springs, Table IV, Figs. 4 to 9."""
-    return (*_table2(found), _classes(found), *_pulls(found), *_parts(found))
+def figures_of(found: Reproduction) -> dict[str, Picture]:
+    """All figures by the names of their files: Table II, gaps, springs, Table IV, Figs. 4 to 9."""
+    return _table2(found) | {"table4": _classes(found)} | _pulls(found) | _parts(found)
 
 
 def report_of(
-    found: Reproduction, tables: Sequence[SideBySide], figures: Sequence[PaperFigure]
+    found: Reproduction, tables: Sequence[SideBySide], picture: Mapping[str, Picture]
 ) -> Report:
     """The page that `sk120stiff paper --out` writes."""
     told: dict[str, list[str | Table]] = {t.name: [t.note, _table(t)] for t in tables}
-    picture = {figure.name: figure.picture() for figure in figures}
     parts = [f"figure_{s.figure}{end}" for s in found.parts.surfaces for end in ("_surface", "")]
     gaps = [*told["table2_gaps"], picture["table2"], picture["table2_gaps"]]
     angles = (
@@ -153,23 +133,22 @@ def _cells(column: Column) -> Sequence[object]:
     return [*map(int if column.decimals is None else float, column.texts)]
 
 
-def _table2(found: Reproduction) -> tuple[PaperFigure, ...]:
+def _table2(found: Reproduction) -> dict[str, Picture]:
     table, fitted = found.table2, found.identified
     models = {
         "paper's springs": table.ours["equilibrium"],
         "identified": table.displacement - fitted.fit.gap,
     }
-    curves = []
-    for pose in table.printed.poses:
-        rows = table.printed.rows(pose)
-        curves.append(
-            LoadCurve(
-                title=f"pose {pose}",
-                force=np.linalg.norm(table.measured.wrench[rows, :3], axis=1),
-                measured=table.displacement[rows],
-                models={name: moved[rows] for name, moved in models.items()},
-            )
+    curves = [
+        LoadCurve(
+            title=f"pose {pose}",
+            force=np.linalg.norm(table.measured.wrench[rows, :3], axis=1),
+            measured=table.displacement[rows],
+            models={name: moved[rows] for name, moved in models.items()},
         )
+        for pose in table.printed.poses
+        for rows in [table.printed.rows(pose)]
+    ]
     gaps: dict[str, Array] = {
         name: np.array([*table.per_pose(table.displacement - moved).values()])
         for name, moved in models.items()
@@ -181,35 +160,31 @@ def _table2(found: Reproduction) -> tuple[PaperFigure, ...]:
             strict=True,
         )
     ]  # fmt: skip
-    return (
-        PaperFigure(
-            "table2",
+    return {
+        "table2": Picture(
             force_deflection(curves),
             "Measured and predicted displacement over load for the three poses of Table II.",
             "Table II: measured displacements, and the models at exact equilibrium.",
         ),
-        PaperFigure(
-            "table2_gaps",
+        "table2_gaps": Picture(
             gap_per_pose(table.printed.poses, gaps),
             "Root-mean-square gap per pose with the paper's and with identified springs.",
             "What the models leave of the measured column.",
         ),
-        PaperFigure(
-            "identified",
+        "identified": Picture(
             parameter_forest(estimates, reference_name="paper"),
             "Identified springs relative to the paper's, with two standard errors.",
             "Springs from the three printed poses, relative to the paper's from twenty.",
         ),
-    )
+    }
 
 
-def _classes(found: Reproduction) -> PaperFigure:
+def _classes(found: Reproduction) -> Picture:
     first, second, third = motion_axes()
     cube = found.table4.classes.reshape(-1, len(first), len(second), len(third))
     middle = int(np.argmin(np.abs(first - np.pi / 6)))
     signs = ["".join("+" if x > 0 else "−" for x in row) for row in found.table4.signs]
-    return PaperFigure(
-        "table4",
+    return Picture(
         definiteness_map(
             second, third, np.swapaxes(cube[:, middle], 1, 2), x_label="θ2", y_label="θ3",
             titles=[f"case {k + 1}: {sign}" for k, sign in enumerate(signs)],
@@ -219,8 +194,8 @@ def _classes(found: Reproduction) -> PaperFigure:
     )  # fmt: skip
 
 
-def _pulls(found: Reproduction) -> list[PaperFigure]:
-    figures = []
+def _pulls(found: Reproduction) -> dict[str, Picture]:
+    figures = {}
     for name, joints in FIGURE_POSES.items():
         curves = [
             LoadCurve(f"pulled along {pull.axis}", pull.force, models=pull.displacement)
@@ -228,32 +203,26 @@ def _pulls(found: Reproduction) -> list[PaperFigure]:
             if pull.figure == name
         ]
         readings = ", ".join(f"{angle:.4f}°" for angle in np.degrees(joints[:3]))
-        figures.append(
-            PaperFigure(
-                f"figure_{name}",
-                force_deflection(curves),
-                f"Displacement over load along three axes at the configuration of Fig. {name}.",
-                f"Fig. {name}: θ1 to θ3 = {readings}. Models only: the paper's points and forces "
-                "are drawn, not printed.",
-            )
+        figures[f"figure_{name}"] = Picture(
+            force_deflection(curves),
+            f"Displacement over load along three axes at the configuration of Fig. {name}.",
+            f"Fig. {name}: θ1 to θ3 = {readings}. Models only: the paper's points and forces are "
+            "drawn, not printed.",
         )
     return figures
 
 
-def _parts(found: Reproduction) -> list[PaperFigure]:
+def _parts(found: Reproduction) -> dict[str, Picture]:
     """Each of Figs. 7 to 9 twice: as surfaces in perspective, and as maps to read values from."""
     drawings = (("_surface", relief_parts, "as surfaces"), ("", surface_parts, "as maps"))
-    figures = []
+    figures = {}
     for s in found.parts.surfaces:
         held = f"θ{s.held[0]} = {np.degrees(s.held[1]):.0f}°"
         x, y = (f"θ{joint}" for joint in s.joints)
         for ending, draw, kind in drawings:
-            figures.append(
-                PaperFigure(
-                    f"figure_{s.figure}{ending}",
-                    draw(s.x, s.y, s.parts, element=s.element, x_label=x, y_label=y),
-                    f"Parts of {s.element} for unit forces over two joints, {kind}.",
-                    f"Fig. {s.figure} {kind}: parts of {s.element} for unit forces, at {held}.",
-                )
+            figures[f"figure_{s.figure}{ending}"] = Picture(
+                draw(s.x, s.y, s.parts, element=s.element, x_label=x, y_label=y),
+                f"Parts of {s.element} for unit forces over two joints, {kind}.",
+                f"Fig. {s.figure} {kind}: parts of {s.element} for unit forces, at {held}.",
             )
     return figures
