@@ -36,9 +36,10 @@ from sk120stiff.effects.link_beam import LinkBending, LinkTorsion
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.effects.payload import Payload
 from sk120stiff.effects.places import USUAL_PLACES
+from sk120stiff.effects.reading_drift import ReadingDrift
 from sk120stiff.effects.thermal_growth import ThermalGrowth
 from sk120stiff.effects.tool_compliance import ToolCompliance
-from sk120stiff.effects.tracker import ReadingDrift, ReadingRotation, ReadingScale, ZeroOffset
+from sk120stiff.effects.tracker import ReadingRotation, ReadingScale, ZeroOffset
 from sk120stiff.effects.tracker_frame import TrackerFrame
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError, ToolkitWarning

@@ -34,6 +34,8 @@ class LoadCases:
         reading_axes: (N, 3, 3) axes in which displacements are stated, in base axes.
         order, time: (N,) position in the series [1] and instant [s] of each reading minus that of
             its zero, or None.
+        order_at_zero, time_at_zero: (N,) the same of that zero, counted from the first of all; None
+            where the file does not tell.
         branch: (N,) +1 while the load grows, -1 while it falls.
         pose: (N,) index into `poses`.
         poses: Labels of the poses.
@@ -68,6 +70,8 @@ class LoadCases:
     zero_a: Array | None = None
     zero_group: Integers | None = None
     repeat: Integers | None = None
+    order_at_zero: Array | None = None
+    time_at_zero: Array | None = None
 
     @property
     def count(self) -> int:
@@ -177,6 +181,8 @@ class LoadCases:
             zero_a=part(self.zero_a),
             zero_group=part(self.zero_group),
             repeat=part(self.repeat),
+            order_at_zero=part(self.order_at_zero),
+            time_at_zero=part(self.time_at_zero),
         )
 
 
@@ -248,6 +254,8 @@ def load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
         zero_a=measurements.zero_joints,
         zero_group=measurements.zero_group,
         repeat=measurements.repeat,
+        order_at_zero=_begun(measurements.order, measurements.order_since_zero),
+        time_at_zero=_begun(measurements.time, measurements.time_since_zero),
     )
     if measurements.absolute is None:
         return plain
@@ -274,6 +282,8 @@ def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> L
         force_point=force_point,
         order=_since_first(measurements.order),
         time=_since_first(measurements.time),
+        order_at_zero=None,
+        time_at_zero=None,
         absolute=True,
         payload_point=said.payload_point,
         temperature=None if temperature is None else temperature - temperature.mean(),
@@ -281,6 +291,11 @@ def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> L
         series_names=names,
         side=None if clock is None else approach_sides(plain.a, clock),
     )
+
+
+def _begun(clock: Array | None, since: Array | None) -> Array | None:
+    """When the zero of each row was read, from the first of all on."""
+    return None if clock is None or since is None else _since_first(clock - since)
 
 
 def _since_first(clock: Array | None) -> Array | None:

@@ -73,57 +73,6 @@ class ReadingScale(ReadingError):
 
 
 @dataclass(frozen=True)
-class ReadingDrift(ReadingError):
-    """Readings wander with time (or with their order, where no time is known) since the zero."""
-
-    per_second: bool = False
-    name: ClassVar[str] = "reading_drift"
-    needs: ClassVar[str] = "a column order or time[s]"
-    place: ClassVar[str] = "tracker"
-    equation: ClassVar[str] = "d_read = d + r * (time or number of the reading since its zero)"
-    says: ClassVar[str] = "The readings drift as the measurement goes on."
-    axes: ClassVar[str] = "axes of the base frame"
-
-    @classmethod
-    def at(cls, robot: Robot, where: str, options: Options) -> Self:
-        """Drift by the clock where there is one, else by the order of the readings."""
-        return cls(where, scale_of(robot), per_second=options.timed)
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The clock that the units of the parameters tell."""
-        return Options(timed="m/s" in parameters.values())
-
-    @property
-    def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Drift rates along the base axes."""
-        unit, typical = ("m/s", 1e-8) if self.per_second else ("m", 1e-6)
-        step = "for each second" if self.per_second else "for each reading"
-        return of_axes(
-            "rate_{}", unit, plausible=100 * typical, typical=typical,
-            meaning=f"read minus true along {{}} of the base, {step} since the zero reading",
-        )  # fmt: skip
-
-    def applies_to(self, load_cases: LoadCases) -> bool:
-        """The file must say in which order, or when, it was read."""
-        return self._clock(load_cases) is not None
-
-    def _clock(self, load_cases: LoadCases) -> Array | None:
-        return load_cases.time if self.per_second else load_cases.order
-
-    @cached_property
-    def generators(self) -> Array:
-        """It does not depend on the displacement."""
-        return np.zeros((3, 3, 3))
-
-    def offsets(self, load_cases: LoadCases) -> Array:
-        """Time or steps since the zero reading."""
-        clock = self._clock(load_cases)
-        elapsed = np.zeros(load_cases.count) if clock is None else clock
-        return elapsed[:, None, None] * np.eye(3)
-
-
-@dataclass(frozen=True)
 class ZeroOffset(ReadingError):
     """The unloaded reading of a pose was off: a constant on all readings of that pose."""
 

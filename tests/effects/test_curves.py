@@ -10,6 +10,7 @@ from sk120stiff.effects.foundation import BaseRocking, NonlinearRocking
 from sk120stiff.effects.gear import FrictionHysteresis, LostMotion
 from sk120stiff.effects.joint_tilt import NonlinearTilt
 from sk120stiff.effects.link_beam import LinkBending
+from sk120stiff.effects.reading_drift import ReadingDrift
 from sk120stiff.effects.tool_compliance import NonlinearTool
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import base_model, model_from_text, model_text
@@ -96,6 +97,8 @@ def test_between_repeats_the_load_is_off(robot):
         NonlinearRocking("base_link"),
         NonlinearTilt(JOINT, full=(900.0, 900.0)),
         NonlinearTool("tool0"),
+        ReadingDrift("tracker", over=(30.0,)),
+        ReadingDrift("tracker", per_second=True, over=(0.0, 120.0, 400.0)),
     ],
     ids=repr,
 )

@@ -340,6 +340,22 @@ def test_the_tracker_drifts_from_its_zero():
     close(got - plain, [14e-6, 0, 0])
 
 
+def test_the_tracker_drifts_while_it_warms_up():
+    """1 µm per reading at first, less and less over 10 readings: 10 µm in the end."""
+    law = CATALOGUE["reading_drift"].at(boom(), "tracker", Options(shape=("rate_x_over_10",)))
+    assert law.over == (10.0,)
+    load_cases = replace(
+        load_case(boom(), np.zeros((3, 2)), np.zeros((3, 6))),
+        order=np.array([1.0, 5.0, 200.0]), order_at_zero=np.array([0.0, 5.0, 0.0]),
+    )  # fmt: skip
+    model = (Model(boom()) + law).with_values([1e-6, 0.0, 0.0])
+    e = np.exp
+    gone = 10e-6 * np.array([1 - e(-0.1), e(-0.5) - e(-1.0), 1.0 - e(-20.0)])
+    assert np.allclose(model.predict(load_cases)[:, 0], gone, rtol=1e-12)
+    with pytest.raises(InputError, match="over how long"):
+        CATALOGUE["reading_drift"].at(boom(), "tracker", Options(shape=("rate_x_over_now",)))
+
+
 def test_the_zero_reading_of_a_pose_was_off():
     got, plain = with_instrument("zero_offset", SIDE, **{"1.z": 5e-6, "2.z": 1.0})
     close(got - plain, [0, 0, 5e-6])

@@ -17,6 +17,7 @@ from sk120stiff.explain.select.outliers import outlying_rows
 from sk120stiff.explain.select.score import price_of_sizes
 from sk120stiff.identify import fit
 from tests.explain.readings import SIGMA, base_fit, hidden
+from tests.hidden.generator.causes_detail import WarmUp
 from tests.hidden.generator.causes_elastic import BaseRocking, LinkBending
 from tests.hidden.generator.causes_foreign import QuadraticMount, RubberMount
 from tests.hidden.generator.causes_joint import GearHardening
@@ -81,6 +82,14 @@ def test_what_yields_out_of_proportion_is_named_by_its_law(springs, cause, name,
     assert not answer.remainder.significant
 
 
+def test_a_tracker_that_warms_up_is_named_by_its_course(springs):
+    warming = WarmUp("tracker", {"x": 9e-6, "y": -7e-6, "z": 5e-6}, {"time": 25.0})
+    answer = explain(springs, hidden(warming, sigma=4e-6))
+    assert [finding.effect.id for finding in answer.findings] == ["reading_drift:tracker"]
+    assert any("_over_" in spec.name for spec in answer.findings[0].effect.parameters)
+    assert not answer.remainder.significant
+
+
 def test_a_bias_that_the_catalogue_lacks_does_not_hide_behind_zero_offsets(springs):
     bias = ForceBias("sensor", {"x": -18.0, "y": 8.0, "z": 8.0})
     readings = hidden(bias, poses=12, loads=4, stated=False)
@@ -130,6 +139,7 @@ def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
         ("base_rocking", None, 4),
         ("joint_tilt", "joint_2_l", 3),
         ("tool_compliance", None, 3),
+        ("reading_drift", None, 5),
     ],
 )
 def test_every_law_of_a_part_leads_to_all_others(springs, name, where, least):

@@ -1,0 +1,129 @@
+"""The readings wander as the measurement goes on: steadily, or less and less as things warm up."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar, Self
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects.base import Options, ReadingError, scale_of
+from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.parameter import ParameterSpec, of_axes
+from sk120stiff.errors import InputError
+from sk120stiff.robot import Robot
+
+COURSES = (0.1, 0.3, 1.0)  # of the series: over which a drift may die away
+OVER = "_over_"  # rate_x_over_40: at first, dying away over 40 readings
+
+
+@dataclass(frozen=True)
+class ReadingDrift(ReadingError):
+    """Readings wander with time (or with their order, where no time is known) since the zero.
+
+    A drift that goes on adds r (t − t₀) to a reading at t whose zero was read at t₀. What warms up
+    drifts fast at first and then no more, with t counted from the first reading of the series::
+
+        r T (exp(−t₀/T) − exp(−t/T))
+
+    Attributes:
+        per_second: By the clock, not by the order.
+        over: Times T over which the drift dies away; 0: it goes on. Several together follow any
+            slow course.
+    """
+
+    per_second: bool = False
+    over: tuple[float, ...] = (0.0,)
+    name: ClassVar[str] = "reading_drift"
+    needs: ClassVar[str] = "a column order or time[s]"
+    place: ClassVar[str] = "tracker"
+    equation: ClassVar[str] = (
+        "d_read = d + r * (time or number of the reading since its zero), r dying away where "
+        "things warm up"
+    )
+    says: ClassVar[str] = "The readings drift as the measurement goes on."
+    axes: ClassVar[str] = "axes of the base frame"
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """Drift by the clock where there is one, else by the order of the readings."""
+        told = {_time(name) for name in options.shape if OVER in name}
+        steady = not told or any(name.startswith("rate_") and OVER not in name
+                                 for name in options.shape)  # fmt: skip
+        over = (*([0.0] if steady else []), *sorted(told))
+        return cls(where, scale_of(robot), options.timed, over)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The clock that the units of the parameters tell, and the law that their names tell."""
+        return Options(timed="m/s" in parameters.values(), shape=tuple(parameters))
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Drift rates along the base axes, for every time over which they die away."""
+        unit, typical = ("m/s", 1e-8) if self.per_second else ("m", 1e-6)
+        step = "for each second" if self.per_second else "for each reading"
+        clock = "s" if self.per_second else "readings"
+        return tuple(
+            spec
+            for T in self.over
+            for spec in of_axes(
+                "rate_{}" + (f"{OVER}{T:g}" if T else ""), unit,
+                plausible=100 * typical, typical=typical,
+                meaning=f"read minus true along {{}} of the base, {step}"
+                + (f" at first, dying away over {T:g} {clock}" if T else " since the zero reading"),
+            )
+        )  # fmt: skip
+
+    def applies_to(self, load_cases: LoadCases) -> bool:
+        """The file must say in which order, or when, it was read."""
+        return self._clock(load_cases)[0] is not None
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[ReadingDrift, ...]:
+        """Drifts that die away over `COURSES` of the series, and all of these together."""
+        elapsed, begun = self._clock(load_cases)
+        if elapsed is None or begun is None:
+            return ()
+        whole = float((begun + elapsed).max())
+        times = tuple(float(f"{share * whole:.3g}") for share in COURSES)
+        laws = [(0.0,), *((T,) for T in times), (0.0, *times)] if whole > 0.0 else []
+        return tuple(replace(self, over=own) for own in laws if own != self.over)
+
+    def _clock(self, load_cases: LoadCases) -> tuple[Array | None, Array | None]:
+        """Since the zero reading, and when that one was taken."""
+        if self.per_second:
+            return load_cases.time, load_cases.time_at_zero
+        return load_cases.order, load_cases.order_at_zero
+
+    @cached_property
+    def generators(self) -> Array:
+        """It does not depend on the displacement."""
+        return np.zeros((len(self.parameters), 3, 3))
+
+    def offsets(self, load_cases: LoadCases) -> Array:
+        """Time or steps since the zero reading, and what of them counts where a drift dies away."""
+        known, at = self._clock(load_cases)
+        elapsed = np.zeros(load_cases.count) if known is None else known
+        begun = np.zeros(load_cases.count) if at is None else at
+        courses = [
+            elapsed if T == 0.0 else T * np.exp(-begun / T) * -np.expm1(-elapsed / T)
+            for T in self.over
+        ]
+        return np.concatenate([c[:, None, None] * np.eye(3) for c in courses], axis=2)
+
+
+def _time(name: str) -> float:
+    text = name.partition(OVER)[2]
+    try:
+        T = float(text)
+    except ValueError:
+        T = np.nan
+    if not (np.isfinite(T) and T > 0.0 and f"{T:g}" == text):
+        raise InputError(
+            f"the parameter {name!r} does not say over how long the drift dies away",
+            remedy="Write rate_x_over_40 for 40 readings, or for 40 s where there is a clock.",
+        )
+    return T
