@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -42,7 +42,7 @@ def predict_what_holds(model: Model, load_cases: LoadCases) -> Predicted:
 Columns = dict[str, list[object]]
 
 
-def rows_of(columns: Mapping[str, list[object]]) -> list[dict[str, object]]:
+def rows_of(columns: Mapping[str, Iterable[object]]) -> list[dict[str, object]]:
     """The rows of a table, each a mapping from header to cell."""
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from sk120stiff.arrays import Index
 from sk120stiff.identify import Fit
+from sk120stiff.model.prediction_table import rows_of
 from sk120stiff.paper.reproduction import Reproduction
 from sk120stiff.paper.table2 import FORMULAS
 from sk120stiff.paper.table3 import Table3
@@ -46,13 +45,15 @@ def _table2(found: Reproduction) -> dict[str, object]:
         "calculated_rms_um": {name: _micrometres(table.calculated_rms(name)) for name in FORMULAS},
         "K_C_effect_rms_um": _micrometres(table.effect_of_K_C),
         "variants": table.variants,
-        "rows": _rows(
-            pose=table.printed.pose,
-            joints=table.measured.joints,
-            force=table.measured.wrench[:, :3],
-            calculated_theirs=table.calculated,
-            **{f"calculated_{name}": table.ours[name] for name in FORMULAS},
-            measured=table.displacement,
+        "rows": rows_of(
+            {
+                "pose": table.printed.pose,
+                "joints": table.measured.joints,
+                "force": table.measured.wrench[:, :3],
+                "calculated_theirs": table.calculated,
+                **{f"calculated_{name}": table.ours[name] for name in FORMULAS},
+                "measured": table.displacement,
+            }
         ),
         "measured_rms_um": {
             "paper_springs": _micrometres(table.measured_rms()),
@@ -82,15 +83,17 @@ def _table3(table: Table3) -> dict[str, object]:
         "identity_error": table.identity_error,
         "balance_error": table.balance_error,
         "overcount": [table.overcount.min(), table.overcount.max()],
-        "rows": _rows(
-            pose=table.printed.pose,
-            force=table.printed.force,
-            cartesian_theirs=table.printed_cartesian,
-            joint_conventional_theirs=table.printed_conventional,
-            **vars(table.works),
-            work_along_path=table.work,
-            energy=table.energy,
-            largest_in_any_direction=table.largest,
+        "rows": rows_of(
+            {
+                "pose": table.printed.pose,
+                "force": table.printed.force,
+                "cartesian_theirs": table.printed_cartesian,
+                "joint_conventional_theirs": table.printed_conventional,
+                **vars(table.works),
+                "work_along_path": table.work,
+                "energy": table.energy,
+                "largest_in_any_direction": table.largest,
+            }
         ),
     }
 
@@ -106,22 +109,19 @@ def _table4(table: Table4) -> dict[str, object]:
         "pd_columns_reproduced_by_determinant": table.reproduced_determinant,
         "printed_opposites_mirror": mirrored(table.printed),
         "opposites_mirror": mirrored(table.counts),
-        "cases": _rows(
-            case=range(1, len(table.signs) + 1),
-            signs=table.signs,
-            theirs=_rows(**dict(zip(classes, table.printed.T, strict=True))),
-            counts=_rows(**dict(zip(classes, table.counts.T, strict=True))),
-            determinant=_rows(
-                **dict(zip(("positive", "ND", "rest"), table.determinant_counts.T, strict=True))
-            ),
-            K_theta_minus_K_C_PD=table.difference_positive,
+        "cases": rows_of(
+            {
+                "case": range(1, len(table.signs) + 1),
+                "signs": table.signs,
+                "theirs": rows_of(dict(zip(classes, table.printed.T, strict=True))),
+                "counts": rows_of(dict(zip(classes, table.counts.T, strict=True))),
+                "determinant": rows_of(
+                    dict(zip(("positive", "ND", "rest"), table.determinant_counts.T, strict=True))
+                ),
+                "K_theta_minus_K_C_PD": table.difference_positive,
+            }
         ),
     }
-
-
-def _rows(**columns: Iterable[object]) -> list[dict[str, object]]:
-    """Columns as one container a row."""
-    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _micrometres(values: dict[str, float]) -> dict[str, float]:

@@ -14,7 +14,7 @@ from sk120stiff.arrays import Mask
 from sk120stiff.effects import load_cases_of
 from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.run import Explained, Named
-from sk120stiff.explain.answer.document import BEST_GUESS, parameter_entry
+from sk120stiff.explain.answer.document import BEST_GUESS, micrometres, parameter_entry
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
@@ -35,7 +35,7 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
     stated = final.problem.stated_sigma
     reasons = unseen(final)
     lengths = bool(len(final.problem.lengths))
-    um = _um if lengths else _none
+    um = micrometres if lengths else _none
     return {
         "schema": SCHEMA,
         "verdict": answer.verdict,
@@ -54,7 +54,7 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
                     "model": step.label,
                     "fit_rms": step.fit_rms * 1e6,
                     "heldout_rms": step.heldout_rms * 1e6,
-                    "heldout_mean_distance": _um(step.heldout_distance),
+                    "heldout_mean_distance": micrometres(step.heldout_distance),
                 }
                 for step in answer.steps
             ],
@@ -160,10 +160,6 @@ def _none(_radians: float | None) -> None:
     """What is no length has no size in µm."""
 
 
-def _um(metres: float | None) -> float | None:
-    return None if metres is None or not np.isfinite(metres) else metres * 1e6
-
-
 def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[str, Any]:
     problem = answer.final.problem
     own = [p for p in answer.final.fit.model.parameters if p.effect == item.effect]
@@ -177,7 +173,7 @@ def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[
         "alternatives": list(item.alternatives),
         "exact_aliases": [],
         "probability": min(item.probability, SURE),
-        "share_um": _um(share) if len(problem.lengths) else None,
+        "share_um": micrometres(share) if len(problem.lengths) else None,
         "parameters": [_parameter(p, reasons, problem.reach(p)) for p in own],
         "sentence": item.effect.sentence(),
         "equation": item.effect.equation,

@@ -42,7 +42,7 @@ def verdict_document(
         "parameters": parameters_before_and_after(answer),
         "gap": {
             "unit": "um",
-            "noise_floor": _um(answer.noise_floor),
+            "noise_floor": micrometres(answer.noise_floor),
             "p": answer.adequacy.chance,
             "steps": [
                 {
@@ -55,12 +55,12 @@ def verdict_document(
         },
         "next_step": next_step(answer),
         "budget": [
-            {"name": share.name, "rms_um": _um(share.rms), "std_um": _um(share.std)}
+            {"name": share.name, "rms_um": micrometres(share.rms), "std_um": micrometres(share.std)}
             for share in answer.budget
         ],
         "where": list(answer.where),
         "suspects": [
-            {"name": suspect.id, "heldout_gain_um": _um(suspect.heldout_gain)}
+            {"name": suspect.id, "heldout_gain_um": micrometres(suspect.heldout_gain)}
             for suspect in answer.suspects
         ],
         "best_guess": BEST_GUESS if answer.guess is not None else None,
@@ -69,7 +69,7 @@ def verdict_document(
         "noise": {
             "model": noise_sentence(answer.final),
             "source": answer.yardstick.source,
-            "sigma_um": _um(answer.yardstick.sigma),
+            "sigma_um": micrometres(answer.yardstick.sigma),
             "degrees_of_freedom": answer.yardstick.freedom,
             "decided": list(answer.noise_reasons),
             "set_aside": [
@@ -97,12 +97,12 @@ def remainder_document(answer: Explanation) -> dict[str, Any]:
     """What is left beyond the noise."""
     left = answer.remainder
     return {
-        "rms_um": _um(left.rms),
-        "interval_95": [_um(end) for end in left.interval],
+        "rms_um": micrometres(left.rms),
+        "interval_95": [micrometres(end) for end in left.interval],
         "p": left.probability,
         "significant": left.significant,
         "proportional": left.form.proportional,
-        "constant_um": _um(left.form.constant),
+        "constant_um": micrometres(left.form.constant),
         "where": list(left.where),
     }
 
@@ -133,7 +133,8 @@ def share_of(answer: Explanation, finding: Finding) -> float | None:
     return None
 
 
-def _um(metres: float | None) -> float | None:
+def micrometres(metres: float | None) -> float | None:
+    """A length for people; null where there is none."""
     return None if metres is None or not np.isfinite(metres) else metres * 1e6
 
 
@@ -161,7 +162,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "alternatives": list(finding.alternatives),
         "exact_aliases": list(finding.exact),
         "probability": finding.probability,
-        "share_um": _um(share_of(answer, finding)),
+        "share_um": micrometres(share_of(answer, finding)),
         "parameters": [parameter_entry(p, unseen.get(p.name)) for p in found],
         "sentence": finding.effect.sentence(),
         "equation": finding.effect.equation,
