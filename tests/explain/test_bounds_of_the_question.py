@@ -15,7 +15,8 @@ from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.options import with_assumed
 from sk120stiff.explain.select import stepwise
 from sk120stiff.explain.select.stepwise import Selection, refit, select
-from tests.explain.readings import NOISE, POINT, hidden
+from sk120stiff.plan import random_pool
+from tests.explain.readings import NOISE, POINT, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 
 
@@ -68,6 +69,30 @@ def test_the_twist_of_the_forearm_is_another_name_for_the_spring_of_joint_4(spri
     model = (springs + wrist).with_public(**{"joint_springs:joint_4_r.stiffness": 3e5})
     rivals = [effect(robot, "link_torsion", "link_3_u"), effect(robot, "force_scale", "sensor")]
     assert exact_aliases(model, wrist, rivals, point=POINT) == ("link_torsion:link_3_u",)
+
+
+def test_another_name_is_asked_for_under_a_load_that_the_model_holds(springs):
+    robot, names = springs.robot, ("joint_springs:joint_2_l.stiffness",)
+    wrist = effect(robot, "joint_springs", "joint_4_r")
+    rivals = [effect(robot, "link_torsion", "link_3_u")]
+    pool = random_pool(robot, poses=150, directions=3, force=300.0, point=POINT, seed=1)
+    for stiffness, told in ((1.0, ("link_torsion:link_3_u",)), (1e-3, ())):
+        soft = (springs + wrist).with_public(**dict.fromkeys(names, stiffness))
+        soft = soft.with_public(**{"joint_springs:joint_4_r.stiffness": 3e5})
+        with pytest.raises(Refusal):
+            soft.predict(pool.load_cases)
+        assert exact_aliases(soft, wrist, rivals, point=POINT) == told
+
+
+def test_two_effects_that_undo_each_other_are_no_model(springs):
+    """While loads only grow, friction is lost motion with the other sign."""
+    base = base_fit(hidden())
+    play, rubs = (
+        effect(springs.robot, name, "joint_6_t") for name in ("lost_motion", "friction_hysteresis")
+    )
+    assert max(abs(p.internal) for p in refit(base, [play]).parameters) < 1e-3
+    with pytest.raises(Refusal, match="undone by another effect"):
+        refit(base, [play, rubs])
 
 
 def test_drift_taken_for_granted_goes_by_the_clock_where_there_is_one(springs):

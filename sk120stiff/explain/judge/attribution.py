@@ -95,7 +95,7 @@ def judged(found: Selection, *, seed: int, least: float = -np.inf) -> tuple[Sele
             return found, Named(findings, tuple(fallen))
         fallen.append(weakest)
         kept = [e for e in _in_order(found) if e.id != weakest.id]
-        found = _without_the_weakest(found, kept)
+        found = with_the_strongest(found, kept)
 
 
 def _in_order(found: Selection) -> list[Effect]:
@@ -103,7 +103,7 @@ def _in_order(found: Selection) -> list[Effect]:
     return [found.regression.candidates[e] for e in by_weight(found.regression, found.scored)]
 
 
-def _without_the_weakest(found: Selection, effects: list[Effect]) -> Selection:
+def with_the_strongest(found: Selection, effects: list[Effect]) -> Selection:
     """The selection with these effects, or with as many of the strongest as a fit holds."""
     while True:
         try:

@@ -14,11 +14,11 @@ from dataclasses import replace
 
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
-from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged
+from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged, with_the_strongest
 from sk120stiff.explain.judge.imitation import imitated
 from sk120stiff.explain.judge.outweighed import outweighed
 from sk120stiff.explain.judge.posterior import NONE, one_more
-from sk120stiff.explain.select.stepwise import Selection, refit, with_effects
+from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
@@ -92,7 +92,7 @@ def unless_imitating(found: Selection, named: Named, seed: int) -> tuple[Selecti
     if reason is None:
         return found, named
     kept = [effect for effect in effects if effect.id != reason[0]]
-    found, again = judged(with_effects(found, kept), seed=seed, least=MARGIN)
+    found, again = judged(with_the_strongest(found, kept), seed=seed, least=MARGIN)
     fallen = (*named.fallen, Fallen(*reason), *again.fallen)
     return unless_imitating(found, Named(again.findings, fallen), seed)
 

@@ -22,6 +22,7 @@ from sk120stiff.model import Model
 
 TRIED = 1  # models whose fit may be refused before smaller ones are tried
 ROUNDS = 4  # of linearising, searching and refitting
+BOUNDLESS = 1e3  # times its plausible size: that is no size, the other effects undo it
 ROUNDING = 1e-12  # of the largest column: what is smaller is no first-order effect of a parameter
 
 
@@ -122,9 +123,23 @@ def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
 
 
 def refit(base: Fit, effects: Sequence[Effect]) -> Fit:
-    """The base model with effects added, fitted at exact equilibrium to the same readings."""
+    """The base model with effects added, fitted at exact equilibrium to the same readings.
+
+    Raises:
+        Refusal: No equilibrium was found, or two effects undo each other without end.
+    """
     if not effects:
         return base
+    found = _fitted_with(base, effects)
+    for parameter in found.parameters:
+        if parameter.effect in effects and not abs(parameter.internal) < (
+            BOUNDLESS * parameter.spec.plausible
+        ):
+            raise Refusal(f"{parameter.name} is undone by another effect, and grows without end")
+    return found
+
+
+def _fitted_with(base: Fit, effects: Sequence[Effect]) -> Fit:
     model = base.model
     for effect in effects:
         model = model + effect
