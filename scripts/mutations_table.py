@@ -45,6 +45,7 @@ def _tests(folder: str, *names: str) -> tuple[str, ...]:
 STIFFNESS = _tests("stiffness", "complementary", "cartesian", "critical", "principal", "energy")
 FIT = _tests("identify", "fit", "uncertainty", "lack_of_fit", "noise")
 EXPLAIN = _tests("explain", "regression", "evidence", "judging", "localise")
+POSITIONS = _tests("absolute", "choose", "names", "pair", "advice")
 
 FAULTS: tuple[Fault, ...] = (
     *_of(
@@ -224,5 +225,71 @@ FAULTS: tuple[Fault, ...] = (
         "explain/judge/posterior.py", *EXPLAIN,
         evidence_counted_twice=("np.exp(-0.5 * (values", "np.exp(-1.0 * (values"),
         none_never_likely=("weights / weights.sum()", "weights / weights[1:].sum()"),
+    ),
+    *_of(
+        "explain/absolute/choose.py", *POSITIONS,
+        confirmed_by_its_share_alone=("gained.share > SHARE and gained.errors > SURE and",
+                                      "gained.share > SHARE and"),
+        looking_at_many_for_nothing=("CLEAR + float(np.log(max(len(linear.candidates), 1)))", "CLEAR"),
+        rivals_of_nothing_forgotten=("nothing + np.log(len(others) + 1.0)])", "nothing])"),
+        gain_at_poses_that_were_fitted=("linear.gap(each, linear.noise(each), held_out=True)",
+                                        "linear.gap(each, linear.noise(each), held_out=False)"),
+    ),
+    *_of(
+        "explain/absolute/linear.py", *POSITIONS,
+        evidence_without_its_volume=("return -0.5 * (found.square + found.volume)",
+                                     "return -0.5 * found.square"),
+        poses_left_out_in_the_fit=("G = self.whole if without is None else self.whole - self.sums[without]",
+                                   "G = self.whole"),
+        parts_softer_than_rigid=("wrong = (pick >= P) & (x < 0.0)", "wrong = (pick >= P) & (x < -1e99)"),
+        noise_smaller_than_stated=("return max(left, together) if self.stated else left", "return left"),
+    ),
+    *_of(
+        "identify/absolute/gauss_newton.py", *POSITIONS,
+        prior_centred_elsewhere=("(centre - x) / span])", "(x - centre) / span])"),
+    ),
+    *_of(
+        "measurements/registration.py", *_tests("measurements", "registration"),
+        mirrored_frames=("np.sign(np.linalg.det(u @ vt)) or 1.0", "1.0"),
+        residual_not_divided_by_its_freedom=("spare = 3 * count - 6 - (marker.size if fit_marker else 0)",
+                                             "spare = 3 * count"),
+        covariance_of_a_frame_without_its_scale=("(vt.T / values)[:6] / size[:6, None]",
+                                                 "(vt.T / values)[:6]"),
+    ),
+    *_of(
+        "model/uncertainty.py", *_tests("model", "uncertainty", "loaded_uncertainty"),
+        unseen_taken_for_known=("lost = hidden > HIDDEN * (", "lost = hidden > 1e99 * ("),
+        unseen_that_is_small_left_out=("np.sqrt(known + hidden)", "np.sqrt(known)"),
+        remainder_of_small_loads_too_large=("share = size if self.grows", "share = size**0 if self.grows"),
+        moment_by_a_wrong_lever=("(moment**2).sum(axis=-1) / length**2", "(moment**2).sum(axis=-1) * length**2"),
+        Student_taken_for_normal=("stats.t.ppf(upper, self.freedom)", "stats.norm.ppf(upper)"),
+        interval_with_one_end=("upper = 0.5 * (1.0 + level)", "upper = level"),
+    ),
+    *_of(
+        "plan/design.py", *_tests("plan", "design"),
+        displacement_as_sure_as_one_reading=("noise = sigma * DISPLACEMENT", "noise = sigma"),
+        other_parameters_held_for_known=("0.5 * (whole - rest)", "0.5 * whole"),
+        readings_taken_already_forgotten=("start += information(model, known, span).sum(axis=0)",
+                                          "start += 0.0 * information(model, known, span).sum(axis=0)"),
+        choice_never_exchanged=("if found[pick] > reached + BETTER:", "if False:"),
+    ),
+    *_of(
+        "plan/discriminate.py", *_tests("plan", "design"),
+        rival_imitates_nothing=("information[..., -1, -1] - (border * solved).sum(-1)",
+                                "information[..., -1, -1]"),
+        signature_known_beforehand=("ridge[-1, -1] = 0.0", "ridge[-1, -1] = 1.0"),
+        the_easier_effect_to_tell=("_evidence(both).min(axis=-1)", "_evidence(both).max(axis=-1)"),
+    ),
+    *_of(
+        "workspace/compensate.py", *_tests("workspace", "compensate"),
+        correction_doubles_the_error=("error = -now.away[active]", "error = now.away[active]"),
+        orientation_turned_the_wrong_way=("[error, -now.turned[active]]", "[error, now.turned[active]]"),
+        correction_beyond_a_limit=("np.clip(a + step, lower, upper) - a", "step"),
+        correction_where_none_is_allowed=("used = np.where(free[:, None, :], J, 0.0)", "used = J"),
+    ),
+    *_of(
+        "workspace/standing_uncertainty.py", *_tests("workspace", "standing_uncertainty"),
+        distance_of_one_axis_alone=("std[rows] = np.linalg.norm(axes, axis=1)", "std[rows] = axes[:, 0]"),
+        budget_without_what_is_unseen=("covariance[unknown, unknown] = np.inf", "covariance[unknown, unknown] *= 1.0"),
     ),
 )  # fmt: skip
