@@ -45,7 +45,7 @@ def _tests(folder: str, *names: str) -> tuple[str, ...]:
 STIFFNESS = _tests("stiffness", "complementary", "cartesian", "critical", "principal", "energy")
 FIT = _tests("identify", "fit", "uncertainty", "lack_of_fit", "noise")
 EXPLAIN = _tests("explain", "regression", "evidence", "judging", "localise")
-POSITIONS = _tests("absolute", "choose", "names", "pair", "advice")
+POSITIONS = _tests("absolute", "linear", "choose", "names")
 
 FAULTS: tuple[Fault, ...] = (
     *_of(
@@ -284,7 +284,7 @@ FAULTS: tuple[Fault, ...] = (
         "workspace/compensate.py", *_tests("workspace", "compensate"),
         correction_doubles_the_error=("error = -now.away[active]", "error = now.away[active]"),
         orientation_turned_the_wrong_way=("[error, -now.turned[active]]", "[error, now.turned[active]]"),
-        correction_beyond_a_limit=("np.clip(a + step, lower, upper) - a", "step"),
+        correction_beyond_a_limit=("upper = np.maximum(robot.upper, given)", "upper = given + 9.0"),
         correction_where_none_is_allowed=("used = np.where(free[:, None, :], J, 0.0)", "used = J"),
     ),
     *_of(

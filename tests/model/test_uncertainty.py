@@ -201,6 +201,18 @@ def test_what_does_not_show_is_unknown_only_where_it_matters(model: Model) -> No
     np.testing.assert_allclose(spread(along @ L, along @ B, 0.0)[1], 0.1)
 
 
+def test_what_does_not_show_and_moves_little_is_added() -> None:
+    seen, unseen = np.array([[3.0, 4.0], [3.0, 4.0]]), np.array([[1.0], [2.0]])
+    np.testing.assert_allclose(spread(seen, unseen, 0.0), [np.sqrt(26.0), np.inf])
+    np.testing.assert_allclose(spread(seen, unseen, 4.0), np.sqrt([26.0, 29.0]))
+
+
+def test_an_interval_is_wider_where_the_noise_is_estimated(model: Model) -> None:
+    """Tables of the normal distribution and of Student's with five degrees of freedom."""
+    assert knowledge(model).reach(0.95) == pytest.approx(1.95996, abs=1e-5)
+    assert knowledge(model, freedom=5.0).reach(0.95) == pytest.approx(2.57058, abs=1e-5)
+
+
 def test_a_model_without_uncertainty_predicts_as_before(model: Model) -> None:
     plain = model.with_values(model.values)
     found = predict_with_uncertainty(plain, load_case(model.robot, POSES, LOADS))

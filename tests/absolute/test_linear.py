@@ -1,0 +1,130 @@
+"""Evidence, held-out gaps and confirmation of causes of positions, on made-up columns."""
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+from scipy.stats import multivariate_normal
+
+from sk120stiff.effects import effect
+from sk120stiff.explain.absolute.choose import SHARE, SURE, Gain, _confirmed, alternatives, gain
+from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.identify.absolute.gauss_newton import gauss_newton
+from sk120stiff.robot import load_robot
+
+ROWS, FOLDS = 60, 5
+NAMES = ("reading_scale", "reading_rotation", "force_scale", "force_bias")
+
+
+def linear(
+    *sizes: float, stated: bool = True, sigma: float = 1.0, positive: bool = False
+) -> Linear:
+    """Two base columns and four candidates of one column each, across the base; true `sizes`."""
+    rng = np.random.default_rng(4)
+    robot = load_robot("motoman_sk120")
+    base, columns = np.split(np.linalg.qr(rng.normal(size=(ROWS, 6)))[0], [2], axis=1)
+    columns = 8.0 * columns
+    truth = np.resize([*sizes, 0.0, 0.0, 0.0, 0.0], 4)
+    row = np.repeat(np.arange(ROWS // 3), 3)
+    return Linear(
+        residual=base @ [20.0, -15.0] + columns @ truth + sigma * rng.normal(size=ROWS),
+        base=base,
+        columns=columns,
+        positive=np.full(4, positive),
+        sizes=np.ones(4),
+        candidates=tuple(effect(robot, name) for name in NAMES),
+        slices=tuple(slice(k, k + 1) for k in range(4)),
+        row=row,
+        fold=row % FOLDS,
+        stated=stated,
+    )
+
+
+def test_a_score_is_the_evidence_of_a_dense_gaussian():
+    """Readings with noise one and usual sizes one, seen across the base."""
+    made = linear(1.0, -0.5)
+    across = np.linalg.svd(made.base)[0][:, 2:]  # (ROWS, ROWS - 2)
+    y = across.T @ made.residual
+
+    def evidence(chosen):
+        A = across.T @ made.columns[:, list(chosen)]
+        return multivariate_normal(np.zeros(len(y)), np.eye(len(y)) + A @ A.T).logpdf(y)
+
+    for chosen in [(0,), (1, 2), (0, 1, 2, 3)]:
+        found = made.score(chosen, 1.0) - made.score((), 1.0)
+        assert found == pytest.approx(evidence(chosen) - evidence(()), abs=1e-6)
+
+
+def test_poses_left_out_take_no_part_in_the_fit_that_is_held_against_them():
+    made = linear(1.0, -0.5)
+    gap = made.gap((0, 1), 1.0, held_out=True)
+    A = np.column_stack([made.base, made.columns[:, :2]])
+    prior = np.diag([0.0, 0.0, 1.0, 1.0])
+    for f in range(FOLDS):
+        test = made.fold == f
+        seen, y = A[~test], made.residual[~test]
+        x = np.linalg.solve(seen.T @ seen + prior, seen.T @ y)
+        assert np.allclose(gap[test], made.residual[test] - A[test] @ x, atol=1e-8)
+
+
+def test_parts_that_would_have_to_be_softer_than_rigid_are_rigid():
+    made = linear(1.0, -1.0, positive=True)
+    found = made.solved((0, 1), 1.0)
+    A = np.column_stack([made.base, made.columns[:, :2]])
+    padded = np.concatenate([A, np.diag([0.0, 0.0, 1.0, 1.0])])
+    low = [-np.inf, -np.inf, 0.0, 0.0]
+    best = lsq_linear(padded, np.append(made.residual, np.zeros(4)), (low, np.inf)).x
+    assert best[3] == pytest.approx(0.0, abs=1e-9)
+    assert found.pick.tolist() == [0, 1, 2]
+    assert np.allclose(found.x, best[:3], atol=1e-6)
+
+
+def test_what_is_left_counts_as_no_less_than_the_stated_noise():
+    assert linear(1.0, sigma=0.2).noise((0,)) == 1.0
+    assert linear(1.0, sigma=0.2, stated=False).noise((0,)) == pytest.approx(0.04, rel=0.4)
+    assert linear(1.0, sigma=3.0).noise((0,)) == pytest.approx(9.0, rel=0.4)
+
+
+def test_a_gain_is_what_the_gap_falls_by_at_poses_left_out():
+    made = linear(1.0, -0.5)
+    found = gain(made, (0, 1, 2), 0)
+    after, before = (
+        np.linalg.norm(made.gap(c, made.noise(c), held_out=True)) for c in ((0, 1, 2), (1, 2))
+    )
+    assert found.share == pytest.approx(1.0 - after / before)
+    assert gain(made, (0, 1, 2), 2).share < 0.0 < found.share  # a fit would fall for both
+
+
+@pytest.mark.parametrize(
+    ("gained", "sure"),
+    [
+        (Gain(2 * SHARE, 2 * SURE, 5), True),
+        (Gain(0.5 * SHARE, 2 * SURE, 5), False),
+        (Gain(2 * SHARE, 0.5 * SURE, 5), False),
+        (Gain(2 * SHARE, 2 * SURE, 3), False),
+    ],
+)
+def test_a_cause_is_confirmed_by_its_size_its_doubt_and_most_parts(gained, sure):
+    assert _confirmed(gained, linear()) is sure
+
+
+def test_a_name_stands_against_chance_in_the_place_of_all_that_were_looked_at():
+    """Four candidates, one of them named, no other explains as much: odds of four to nothing."""
+    made = linear(0.8)
+    rivals, probability = alternatives(made, (0,), 0)
+    assert rivals == ()
+    noise = made.noise((0,))
+    odds = np.exp(made.score((0,), noise) - made.score((), noise)) / 4.0
+    assert 1.0 < odds < 1e4
+    assert probability == pytest.approx(odds / (1.0 + odds))
+
+
+def test_geometry_is_drawn_to_where_its_prior_stands():
+    """‖J x − y‖² + ‖(x − c) / s‖² of a linear problem has its minimum in closed form."""
+    rng = np.random.default_rng(2)
+    J, y = rng.normal(size=(9, 3)), rng.normal(size=9)
+    span, centre = np.array([0.5, 1.0, 2.0]), np.array([1.0, -2.0, 3.0])
+    weight = np.diag(span**-2.0)
+    best = np.linalg.solve(J.T @ J + weight, J.T @ y + weight @ centre)
+    free = (np.full(3, -np.inf), np.full(3, np.inf))
+    found = gauss_newton(lambda x: (J @ x - y, J), np.zeros(3), free, span, centre)
+    assert np.allclose(found.x, best, atol=1e-2)
