@@ -6,7 +6,16 @@ from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
-from sk120stiff.explain.absolute.choose import SHARE, SURE, Gain, _confirmed, alternatives, gain
+from sk120stiff.explain.absolute.choose import (
+    CLEAR,
+    SHARE,
+    SURE,
+    Gain,
+    _confirmed,
+    _next,
+    alternatives,
+    gain,
+)
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.identify.absolute.gauss_newton import gauss_newton
 from sk120stiff.robot import load_robot
@@ -105,6 +114,16 @@ def test_a_gain_is_what_the_gap_falls_by_at_poses_left_out():
 )
 def test_a_cause_is_confirmed_by_its_size_its_doubt_and_most_parts(gained, sure):
     assert _confirmed(gained, linear()) is sure
+
+
+def test_a_cause_joins_by_more_evidence_the_more_were_looked_at():
+    """Odds of e³ are asked of each, beyond those of one among four."""
+    bar = CLEAR + np.log(4.0)
+    for size in np.linspace(0.2, 1.2, 41):
+        made = linear(size)
+        noise = made.noise(())
+        brought = max(made.score((e,), noise) for e in range(4)) - made.score((), noise)
+        assert bool(_next(made, (), set(), at_once=False)) is bool(brought >= bar)
 
 
 def test_a_name_stands_against_chance_in_the_place_of_all_that_were_looked_at():
