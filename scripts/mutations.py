@@ -1,6 +1,6 @@
 """Put faults into physics and inference, one at a time, and print which ones the tests see.
 
-    python scripts/mutations.py                  # all of them: twenty minutes
+    python scripts/mutations.py                  # all of them: a quarter of an hour
     python scripts/mutations.py --only "K_C"     # those whose name holds these words
     python scripts/mutations.py --check          # does every fault still find its line?
 

@@ -44,7 +44,6 @@ def _tests(folder: str, *names: str) -> tuple[str, ...]:
 
 STIFFNESS = _tests("stiffness", "complementary", "cartesian", "critical", "principal", "energy")
 FIT = _tests("identify", "fit", "uncertainty", "lack_of_fit", "noise")
-EXPLAIN = _tests("explain", "regression", "evidence", "judging", "localise")
 POSITIONS = _tests("absolute", "linear", "choose", "names")
 
 FAULTS: tuple[Fault, ...] = (
@@ -182,18 +181,18 @@ FAULTS: tuple[Fault, ...] = (
         REML_freedom_of_plain_likelihood=("self.rows - len(self.xx) + 1, 1)", "self.rows, 1)"),
     ),
     *_of(
-        "explain/localise/places.py", *EXPLAIN,
+        "explain/localise/places.py", *_tests("explain", "localise"),
         Holm_dropped=("corrected = holm([suspicion.probability for suspicion, _ in found])",
                       "corrected = [suspicion.probability for suspicion, _ in found]"),
     ),
     *_of(
-        "explain/judge/adequacy.py", *EXPLAIN,
+        "explain/judge/adequacy.py", *_tests("explain", "evidence"),
         adequacy_without_Bonferroni=("min(1.0, len(tests) * min(", "min(1.0, min("),
         named_effects_explain_what_the_base_does=("signature - base @ (base.T @ signature)",
                                                   "signature"),
     ),
     *_of(
-        "explain/judge/confirm.py", *EXPLAIN,
+        "explain/judge/confirm.py", *_tests("explain", "evidence"),
         confirmation_folds_that_leak=("regression.sums((fold != k).astype(float))",
                                       "regression.sums(np.ones(regression.poses))"),
         last_confirmation_fold_never_scored=(
@@ -205,11 +204,11 @@ FAULTS: tuple[Fault, ...] = (
         what_beats_it_takes_its_place=("if both.plausible and fair[best] - both.score > WANTED", "if False"),
     ),
     *_of(
-        "explain/candidates/regression.py", *EXPLAIN,
+        "explain/candidates/regression.py", *_tests("explain", "regression"),
         candidates_judged_as_one=("self.alpha / max(len(self.candidates), 1), 1)", "self.alpha, 1)"),
     ),
     *_of(
-        "explain/select/score.py", *EXPLAIN,
+        "explain/select/score.py", *_tests("explain", "regression"),
         sizes_for_nothing=("price += price_of_sizes(gain, len(own), n)", "price += 0.0"),
         looking_for_nothing=("price = len(parts) * price_of_looking(regression, n) +", "price ="),
     ),
@@ -222,7 +221,7 @@ FAULTS: tuple[Fault, ...] = (
         spread_for_nothing=("return spread, least(0.0)[0] - value", "return spread, least(0.0)[0]"),
     ),
     *_of(
-        "explain/judge/posterior.py", *EXPLAIN,
+        "explain/judge/posterior.py", *_tests("explain", "evidence"),
         evidence_counted_twice=("np.exp(-0.5 * (values", "np.exp(-1.0 * (values"),
         none_never_likely=("weights / weights.sum()", "weights / weights[1:].sum()"),
     ),

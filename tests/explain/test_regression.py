@@ -11,7 +11,13 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
 from sk120stiff.explain.candidates.regression import Regression, solve_columns
 from sk120stiff.explain.select.beam import beam_search, gains
-from sk120stiff.explain.select.score import _deviance, price_of_choice, score_set
+from sk120stiff.explain.select.score import (
+    _deviance,
+    price_of_choice,
+    price_of_looking,
+    price_of_sizes,
+    score_set,
+)
 from sk120stiff.robot import load_robot
 
 POSES, AXES = 12, 15
@@ -63,6 +69,17 @@ def test_free_columns_are_least_squares():
     values, rss, *_ = np.linalg.lstsq(found.X[:, pick], found.y, rcond=None)
     assert np.allclose(solved.values, values, rtol=1e-6)
     assert np.isclose(solved.rss, rss[0], rtol=1e-9)
+
+
+def test_an_effect_pays_for_its_sizes_for_looking_and_for_its_law():
+    found = regression()
+    sums = found.sums()
+    base, one = score_set(found, sums, ()), score_set(found, sums, (0,))
+    fall = base.solved.rss - one.solved.rss
+    n = POSES * AXES
+    price = price_of_looking(found, n) + price_of_sizes(fall, 1, n) + price_of_choice(found, 0, 0)
+    assert price_of_sizes(fall, 1, n) == pytest.approx(np.log(n))  # a strong one
+    assert one.score - base.score == pytest.approx(price - fall, abs=1e-4)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -121,6 +138,11 @@ def test_noise_alone_names_nothing():
         clean = Regression(**{**vars_of(found), "y": y})
         alarms += bool(beam_search(clean)[0].effects)
     assert alarms <= 3
+
+
+def test_chance_is_shared_by_all_that_are_looked_at():
+    """An alarm in a hundred, of four candidates: χ² of one degree at 0.0025 each."""
+    assert regression().least_fall == pytest.approx(9.1406, abs=1e-4)
 
 
 def test_an_implausible_value_disqualifies():
