@@ -102,6 +102,23 @@ def test_no_convergence_is_said() -> None:
         polish(evaluate, np.zeros(1), (np.array([-FREE]), np.array([FREE])), np.array([10.0]))
 
 
+@pytest.mark.parametrize(("edge", "near"), [(0.97, True), (0.5, False)])
+def test_a_minimum_at_a_jump_counts_where_the_rest_hardly_matters(edge: float, near: bool) -> None:
+    """Play jumps; beyond the edge the misfit is larger by 25, before it a standard error is 1."""
+    noise = np.tile([1.0, -1.0], 50)
+
+    def evaluate(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        residual = np.concatenate([noise, [x[0] - 1.0, 5.0 * (x[0] > edge)]])
+        return residual, np.concatenate([np.zeros(100), [1.0, 0.0]])[:, None]
+
+    task = evaluate, np.zeros(1), (np.array([-FREE]), np.array([FREE])), np.array([10.0])
+    if near:
+        assert polish(*task).x[0] == pytest.approx(edge, abs=0.01)
+    else:
+        with pytest.raises(Refusal, match="did not converge"):
+            polish(*task)
+
+
 def test_nothing_to_estimate() -> None:
     found = minimise(
         lambda x: (np.ones(3), np.zeros((3, 0))), np.zeros(0), (np.zeros(0),) * 2, np.zeros(0), "lm"

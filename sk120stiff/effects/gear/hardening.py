@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import ClassVar, Self
 
 import numpy as np
@@ -82,10 +83,10 @@ class GearHardening(GearEffect):
         )  # fmt: skip
 
     def other_laws(self, load_cases: LoadCases) -> tuple[GearHardening, ...]:
-        """The series, one step, or steps at all `STEPS` of the largest torque of the readings."""
+        """The series, one step, two as in most data sheets, or one at each of `STEPS`."""
         largest = self.largest_torque(load_cases)
         steps = tuple(float(f"{share * largest:.3g}") for share in STEPS) if largest > 0.0 else ()
-        laws = [(), *((T,) for T in steps[FIRST:]), steps]
+        laws = [(), *((T,) for T in steps[FIRST:]), *combinations(steps, 2), steps]
         return tuple(replace(self, breaks=own) for own in laws if own != self.breaks)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
