@@ -29,7 +29,9 @@ LEARNED = 1e-6  # relative step below which rounding hides the curvature
 SOUND = 0.1  # least curvature over that of Gauss and Newton for which the learned one is trusted
 GRAIN = 1e-9  # relative rounding of a sum of squares of whitened gaps
 FAINT = 1e-10  # change of the predictions, in units of their noise, that is below all rounding
-ENOUGH = 0.1  # a last step by which no parameter moves by more than this share of its standard error
+ENOUGH = (
+    0.1  # a last step by which no parameter moves by more than this share of its standard error
+)
 SLOPE = 1e-9  # cosine between residual and a column below which the misfit counts as flat
 
 
