@@ -154,7 +154,7 @@ def test_every_law_of_a_part_leads_to_all_others(springs, name, where, least):
 def test_a_gear_of_two_steps_is_no_play_with_wide_flanks(springs):
     """The usual law of data sheets; the softer first step is crossed at every torque but few."""
     law = {"first": 1.2, "second": 0.27}, {"T1": 135.0, "T2": 369.0}
-    answer = explain(springs, hidden(GearHardening("joint_1_s", *law), sigma=60e-6))
+    answer = explain(springs, hidden(GearHardening("joint_1_s", *law), sigma=15e-6))
     assert answer.findings[0].effect.id == "gear_hardening:joint_1_s"
     assert len(answer.findings[0].effect.breaks) == 2
 
