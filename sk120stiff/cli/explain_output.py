@@ -193,7 +193,7 @@ def parts(
 def _budget(answer: Explanation) -> object:
     """What moves the point at the measured loads, the largest part first."""
     rows = [
-        (share.name, share.rms * 1e6, None if share.std is None else share.std * 1e6)
+        (share.name, share.rms * 1e6, "?" if share.std is None else share.std * 1e6)
         for share in answer.budget[:LISTED]
         if share.rms > 0.0
     ]

@@ -127,12 +127,21 @@ class Nonlinear(Elastic):
         """The law that names of parameters tell; None where they tell none of this kind.
 
         Raises:
-            InputError: A name ends in no positive load, or the loads of some are missing.
+            InputError: A name ends in no positive load, the loads of some are missing, or the names
+                are those of two laws.
         """
         straight = cls.straight(where, scale).parameters
-        if any(name.endswith((POSITIVE, NEGATIVE)) for name in names):
+        by_sign = [name for name in names if name.endswith((POSITIVE, NEGATIVE))]
+        by_load = [name for name in names if AT in name]
+        if by_sign and by_load:
+            raise InputError(
+                f"{by_sign[0]} and {by_load[0]} belong to two laws",
+                remedy="Give all parameters as ..._positive and ..._negative, or all as ..._at_0 "
+                "and ..._at_150.",
+            )
+        if by_sign:
             return cls(where, scale)
-        if not any(AT in name for name in names):
+        if not by_load:
             return None
         return cls(where, scale, tuple(_told(spec, names) for spec in straight))
 

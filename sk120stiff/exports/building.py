@@ -57,7 +57,10 @@ def told_of(model: Model) -> tuple[tuple[Told, ...], tuple[Told, ...]]:
         if isinstance(effect, Switching):
             left_out.append(Told(effect.id, "jumps with the sign of a torque: no spring does"))
         elif not isinstance(effect, LinearElastic):
-            carried.append(Told(effect.id, "as a spring, as stiff as it is without load"))
+            torques = np.zeros((load_cases.count, len(effect.coordinates(model.robot))))
+            if effect.elongation(torques, load_cases, model.values[part]).by_torque.any():
+                how = "as a spring, as stiff as it is under the weight alone"
+                carried.append(Told(effect.id, how))
             left_out.append(Told(effect.id, "how its stiffness goes with the load"))
         elif (patterns := effect.patterns(load_cases)).ndim == 3 or not np.ptp(patterns, 1).any():
             carried.append(Told(effect.id, "as springs"))

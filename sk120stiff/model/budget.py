@@ -15,6 +15,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.model.model import Model
 
+ROUNDING = 1e-12  # m: what moves the point by less does not move it
+
 
 @dataclass(frozen=True)
 class Share:
@@ -62,9 +64,9 @@ def shares(model: Model, derivative: Array, covariance: Array | None) -> tuple[S
 def _share(name: str, moved: Array, columns: Array, covariance: Array | None) -> Share:
     """Size of what some parameters bring (N, 3): columns (N, 3, p), covariance (p, p)."""
     rms = float(np.sqrt(np.mean(moved**2)))
+    if rms < ROUNDING:
+        return Share(name, 0.0, 0.0)
     if covariance is None or not np.isfinite(covariance).all():
         return Share(name, rms, None)
-    if rms == 0.0:
-        return Share(name, 0.0, 0.0)
     slope = np.einsum("ni,nip->p", moved, columns) / (moved.size * rms)
     return Share(name, rms, float(np.sqrt(max(slope @ covariance @ slope, 0.0))))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Elastic, LinearElastic, LoadCases, load_case
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ConstantCompliance, ElasticLaw, Weight, symmetric_part
@@ -69,10 +70,31 @@ class ModelCompliance:
         return ConstantCompliance(self.mechanism, first, self.point, shift, gravity)
 
     @property
-    def linear(self) -> bool:
-        """Is every law linear in the load, so that `constant`, where it is one, is all there is?"""
-        elastic = [effect for effect in self.model.effects if isinstance(effect, Elastic)]
-        return all(isinstance(effect, LinearElastic) for effect in elastic)
+    def curved(self) -> tuple[str, ...]:
+        """Effects that do not yield in proportion to the load; where none, `constant` is all."""
+        parts = zip(self.model.effects, self.model.assembly.slices, strict=True)
+        return tuple(
+            effect.id
+            for effect, part in parts
+            if isinstance(effect, Elastic)
+            and not isinstance(effect, LinearElastic)
+            and self.model.values[part].any()
+        )
+
+    def warn_of_small_loads(self) -> None:
+        """Tell that a stiffness is the one under small loads, where that is not all there is.
+
+        Warns:
+            ToolkitWarning: Something does not yield in proportion to the load.
+        """
+        if self.curved:
+            warnings.warn(
+                f"not in proportion to the load: {', '.join(self.curved)}. A stiffness, and what "
+                "it foretells, holds for small loads beside the arm's weight; 'predict', "
+                "'compensate' and the equilibrium of 'stiffness' follow the whole law",
+                ToolkitWarning,
+                stacklevel=3,
+            )
 
     def start(self, a: Array) -> Array:
         """See `Compliant`."""
@@ -118,7 +140,7 @@ def model_compliance(
         point: (3,) in that frame [m]; its origin by default.
 
     Raises:
-        InputError: Nothing in the model yields under load, or there is no such frame.
+        InputError: Nothing in the model yields under small loads, or there is no such frame.
     """
     physical, at = seen_from(
         model.physical(),
@@ -128,7 +150,7 @@ def model_compliance(
     arm = ModelCompliance(physical, at)
     if not arm.compliance_at(physical.robot.rest[None]).any():
         raise InputError(
-            "nothing in this model yields under load",
+            "nothing in this model yields under small loads",
             where=model.robot.name,
             remedy="Give a model with joint_springs or another elastic effect.",
         )

@@ -100,12 +100,12 @@ def loaded_stiffness(
         frame: Frame whose origin is meant; the tool frame by default.
 
     Raises:
-        InputError: The model has nothing that yields under load, or there is no such frame.
+        InputError: Nothing in the model yields under small loads, or there is no such frame.
         Refusal: The load is exactly critical: K_θ − K_C is singular.
 
     Warns:
         ToolkitWarning: No equilibrium exists: the load is beyond what the springs can hold; or the
-            arm bends as no arm does.
+            arm bends as no arm does; or something does not yield in proportion to the load.
 
     Examples:
         >>> import sk120stiff as sk
@@ -115,6 +115,7 @@ def loaded_stiffness(
         ((3, 3), True)
     """
     arm = model_compliance(model, frame)
+    arm.warn_of_small_loads()
     n, load = arm.mechanism.n, np.asarray(wrench, dtype=float)
     rows = model.robot.coordinates(a)[None]
     missing: dict[str, str] = {}

@@ -145,8 +145,12 @@ def elastic_arm(
 
     Raises:
         InputError: Nothing in the model yields or moves the frame, or there is no such frame.
+
+    Warns:
+        ToolkitWarning: Something does not yield in proportion to the load.
     """
     model_arm = model_compliance(model, frame, None if point is None else np.asarray(point, float))
+    model_arm.warn_of_small_loads()
     physical = model_arm.model
     robot = physical.robot
     if not model_arm.mechanism.chain.names:

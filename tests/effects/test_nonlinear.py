@@ -53,3 +53,9 @@ def test_a_law_out_of_proportion_needs_its_load(end):
     with pytest.raises(InputError) as refused:
         bent(boom(), "base_rocking", [0, 0, 1], **{"stiffness_x_at_0": 1e7, f"stiffness_x{end}": 1})
     assert "stiffness_x_at_150 for 150 N*m" in str(refused.value)
+
+
+def test_a_model_file_holds_one_law():
+    both = {"stiffness_x_positive": 1e7, "stiffness_y_at_0": 1e7}
+    with pytest.raises(InputError, match="belong to two laws"):
+        bent(boom(), "base_rocking", [0, 0, 1], **both)

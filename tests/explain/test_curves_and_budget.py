@@ -11,6 +11,7 @@ from sk120stiff.explain.judge.budget import error_budget
 from sk120stiff.explain.judge.gear_curve import STEPS, gear_curves
 from sk120stiff.explain.priors import PRIORS, USUAL, price, priors_from
 from sk120stiff.identify import fit
+from sk120stiff.model.budget import shares as error_shares
 from tests.explain.readings import NOISE, hidden
 from tests.hidden.generator.causes_curves import MaxwellSlip, SmoothPlay
 from tests.hidden.generator.sk120 import sk120
@@ -87,6 +88,11 @@ def test_the_budget_adds_up_as_vectors(skewed):
     assert [share.rms for share in skewed.budget] == sorted(
         (share.rms for share in skewed.budget), reverse=True
     )
+
+
+def test_what_moves_nothing_has_no_share_from_rounding(springs):
+    whole = error_shares(springs, np.full((4, 3, 3), 1e-9), None)
+    assert {share.rms for share in whole} == {0.0}
 
 
 def test_the_error_of_a_share_is_that_of_drawn_readings(springs):

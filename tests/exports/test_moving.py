@@ -7,7 +7,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from sk120stiff.effects import load_case
+from sk120stiff.effects import CATALOGUE, load_case
+from sk120stiff.effects.base import Options
 from sk120stiff.errors import InputError
 from sk120stiff.exports import export
 from sk120stiff.model import Model, base_model, joint_spring_model
@@ -258,6 +259,17 @@ def test_what_springs_cannot_be_is_told() -> None:
     assert {e.id for e in model.effects} == {t.effect for t in (*made.carried, *made.left_out)}
     header = made.text[: made.text.index("<compiler")]
     assert all(name in header for name in told)
+
+
+def test_what_yields_under_load_alone_is_no_spring() -> None:
+    names = [f"stiffness_{axis}_at_{load}" for load in (0, 9000) for axis in "xy"]
+    rocks = CATALOGUE["base_rocking"].at(
+        (arm := sk120_with()).robot, "base_link", Options(shape=tuple(names))
+    )
+    later = {f"{rocks.id}.stiffness_x_at_9000": 1e7}
+    made = exported((arm + rocks).with_public(later), "mjcf", pose=POSE)
+    assert rocks.id not in {told.effect for told in made.carried}
+    assert "with the load" in {told.effect: told.how for told in made.left_out}[rocks.id]
 
 
 def test_a_compliance_that_goes_with_the_pose_is_right_at_the_pose(tmp_path: Path) -> None:

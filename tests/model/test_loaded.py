@@ -1,13 +1,17 @@
 """`loaded_stiffness` for models of more than joint springs, against what the model itself does."""
 
+import warnings
+
 import numpy as np
 import pytest
 
-from sk120stiff.effects import effect
-from sk120stiff.errors import InputError
+from sk120stiff.effects import CATALOGUE, effect
+from sk120stiff.effects.base import Options
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import Model, joint_spring_model, loaded_stiffness, model_compliance
 from sk120stiff.robot import load_robot
 from sk120stiff.stiffness import Definiteness, under_load
+from sk120stiff.workspace import elastic_arm
 from tests.oracles.sample_urdfs import six_axis_arm
 
 POSE = np.deg2rad([10.0, 20.0, -30.0, 40.0, 50.0, 60.0])
@@ -125,3 +129,28 @@ def test_a_negative_spring_is_unstable_without_load(six_springs: Model) -> None:
 def test_a_rigid_model_has_no_stiffness(six_springs: Model) -> None:
     with pytest.raises(InputError, match="nothing in this model yields"):
         loaded_stiffness(Model(six_springs.robot), POSE, np.zeros(6))
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"base_rocking": {f"stiffness_{k}_at_{T}": T or np.inf for T in (0, 9000) for k in "xy"}},
+        {"gear_hardening": {"quadratic": 1e-9, "cubic": 0.0}},
+        {"lost_motion": {"half_width": 1e-4}},
+    ],
+)
+def test_a_stiffness_that_holds_for_small_loads_alone_says_so(six_springs, law) -> None:
+    (name, values), robot = *law.items(), six_springs.robot
+    where = CATALOGUE[name].places(robot)[0]
+    bent = CATALOGUE[name].at(robot, where, Options(shape=tuple(values)))
+    model = six_springs + bent
+    told = f"not in proportion to the load: {bent.id}"
+    there = model.with_public(**{f"{bent.id}.{key}": value for key, value in values.items()})
+    with pytest.warns(ToolkitWarning, match=told):
+        loaded_stiffness(there, POSE, np.zeros(6))
+    with pytest.warns(ToolkitWarning, match=told):
+        elastic_arm(there)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        loaded_stiffness(model, POSE, np.zeros(6))
+        elastic_arm(six_springs)

@@ -102,5 +102,5 @@ class Elastic:
         arm = model_compliance(model)
         assumed = bool(typical_parameters(arm.model))
         names = ", ".join(dict.fromkeys(effect.name for effect in arm.model.effects))
-        simple = arm.constant if arm.linear else None
+        simple = None if arm.curved else arm.constant
         return cls(simple or arm, label or (ASSUMED if assumed else f"model of {names}"), assumed)
