@@ -40,5 +40,6 @@ def _parts(each: EffectWords) -> list[object]:
         f"{each.name}, at {each.where}. {each.sentence}",
         f"    law:  {each.equation}",
         f"    axes: {each.axes}",
+        *([f"    also: {each.also}"] if each.also else []),
         meanings,
     ]

@@ -92,6 +92,8 @@ class Effect(ABC):
         says: What happens, in plain words, as a full sentence in which ``{where}`` is the place
             (class attribute; or `sentence` says it).
         axes: The frame in which its parameters are stated (class attribute).
+        also: By which names of parameters its other laws are told, and what those mean (class
+            attribute).
         former: Names under which files of earlier versions hold a parameter with the other sign,
             and its name now (class attribute).
         random_effects: The parameters are draws of one size (class attribute).
@@ -127,6 +129,7 @@ class Effect(ABC):
     equation: ClassVar[str] = ""
     says: ClassVar[str]
     axes: ClassVar[str] = ""
+    also: ClassVar[str] = ""
     former: ClassVar[Mapping[str, str]] = {}
     random_effects: ClassVar[bool] = False
     bends_a_spring: ClassVar[bool] = False

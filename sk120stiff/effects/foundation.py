@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import ONE_WAY, Alias, Effect, LinearElastic, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.nonlinear import Nonlinear, nonlinear_laws, shape_of
+from sk120stiff.effects.nonlinear import ALSO, Nonlinear, nonlinear_laws, shape_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 
@@ -35,6 +35,7 @@ class BaseRocking(LinearElastic):
     axes: ClassVar[str] = (
         "axes of the base frame through the foundation point; z is the normal of the floor"
     )
+    also: ClassVar[str] = f"with {CROSS}, where the stiff direction lies askew of the axes; {ALSO}"
     one_axis_each: ClassVar[bool] = True
 
     @classmethod

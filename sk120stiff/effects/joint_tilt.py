@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Effect, LinearElastic, Options, scale_of, unit_vectors
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.nonlinear import Nonlinear, nonlinear_laws, shape_of
+from sk120stiff.effects.nonlinear import ALSO, Nonlinear, nonlinear_laws, shape_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, free_joints
@@ -31,6 +31,7 @@ class JointTilt(LinearElastic):
     axes: ClassVar[str] = (
         "axes through the joint, normal to its own: along the link that it carries, and across it"
     )
+    also: ClassVar[str] = ALSO
     one_axis_each: ClassVar[bool] = True
 
     @classmethod

@@ -82,6 +82,12 @@ class LinkBending(LinearElastic):
     equation: ClassVar[str] = "curvature(s) = M(s) / EI(s), slimmer at the far end"
     says: ClassVar[str] = "The link {where} bends along its length."
     axes: ClassVar[str] = "the line from the link's joint to the next; both planes that hold it"
+    also: ClassVar[str] = (
+        "EI_taper_60: its section loses 60 % of its depth towards the far end (EI alone: 30 %; "
+        "EI_taper_minus_50 gains 50 %); EI_roll_axis: the beam lies along the axis of the next "
+        "joint; EI_in_plane and EI_out_of_plane: one for each plane; ends add up in the order "
+        "EI_in_plane_roll_axis_taper_60"
+    )
     inexact: ClassVar[float] = 0.14  # links taper more or less
 
     @classmethod

@@ -31,6 +31,11 @@ from sk120stiff.robot import Robot, VirtualJoint
 
 AT = "_at_"  # stiffness_x_at_0 and stiffness_x_at_3000: without load, and from 3000 N·m on
 POSITIVE, NEGATIVE = "_positive", "_negative"
+ALSO = (
+    "out of proportion, with two of each stiffness: ..._at_0 without load and ..._at_150 for "
+    "further load from 150 N*m (or N) on, the compliance on a straight line in between; or "
+    "..._positive and ..._negative, each under load of that sign"
+)
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,7 @@ class Nonlinear(Elastic):
     """
 
     full: tuple[float, ...] = ()
+    also: ClassVar[str] = ALSO
     straight: ClassVar[type[LinearElastic]]
 
     @classmethod

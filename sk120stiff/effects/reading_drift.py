@@ -46,6 +46,10 @@ class ReadingDrift(ReadingError):
     )
     says: ClassVar[str] = "The readings drift as the measurement goes on."
     axes: ClassVar[str] = "axes of the base frame"
+    also: ClassVar[str] = (
+        "rate_x_over_40: the rate at first of a drift that dies away over 40 readings (40 s where "
+        "there is a clock), as exp(-t / 40); several add up"
+    )
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:

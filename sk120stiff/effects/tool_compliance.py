@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Effect, LinearElastic, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.nonlinear import Nonlinear, nonlinear_laws, shape_of
+from sk120stiff.effects.nonlinear import ALSO, Nonlinear, nonlinear_laws, shape_of
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 
@@ -28,6 +28,7 @@ class ToolCompliance(LinearElastic):
     equation: ClassVar[str] = "turn = moment / K and shift = force / K, axis by axis"
     says: ClassVar[str] = "The fixture at {where} yields between flange and measured point."
     axes: ClassVar[str] = "axes of the tool frame, at its origin"
+    also: ClassVar[str] = ALSO
     one_axis_each: ClassVar[bool] = True
 
     @classmethod

@@ -28,6 +28,7 @@ class EffectWords:
         sentence: What happens.
         equation: The law, in the symbols that `axes` and `parameters` explain.
         axes: The frame of its parameters.
+        also: Its other laws, by the names of their parameters; empty where it has none.
         parameters: What is to be known about it.
     """
 
@@ -36,6 +37,7 @@ class EffectWords:
     sentence: str
     equation: str
     axes: str
+    also: str
     parameters: tuple[ParameterWords, ...]
 
 
@@ -47,6 +49,7 @@ def words_of(effect: Effect) -> EffectWords:
         sentence=effect.sentence(),
         equation=effect.equation,
         axes=effect.axes,
+        also=effect.also,
         parameters=tuple(
             ParameterWords(spec.name, spec.unit, spec.meaning) for spec in effect.parameters
         ),

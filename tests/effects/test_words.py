@@ -1,16 +1,19 @@
 """Every number says what it means: law, axes, sign, unit; and its sign is the one it says."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from sk120stiff.effects import CATALOGUE, all_effects, catalogue_words, effect, words_of
+from sk120stiff.effects.base import Options
 from sk120stiff.identify import fit
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import random_poses
 from sk120stiff.robot import load_robot
+from tests.effects.arms import readings
 
 STIFF = [1.4e6, 4e5, 9e5, 1e6, 3e5, 2e5]
 
@@ -25,6 +28,19 @@ def test_every_parameter_of_every_effect_has_a_meaning() -> None:
         meanings = [item.meaning for item in words.parameters]
         assert all(meanings), each.id
         assert len(set(meanings)) == len(meanings), f"{each.id}: two values that mean the same"
+
+
+@pytest.mark.parametrize("kind", CATALOGUE, ids=lambda kind: kind.name)
+def test_the_names_of_every_other_law_are_told(kind) -> None:
+    found = readings(robot := load_robot("motoman_sk120"), 6, seed=2)
+    found = replace(found, time_at_zero=np.arange(6.0))
+    usual = kind.at(robot, kind.places(robot)[0], Options(timed=True))
+    laws = usual.other_laws(found)
+    own = " ".join(spec.name for spec in usual.parameters)
+    others = " ".join(spec.name for law in laws for spec in law.parameters)
+    told = set(re.findall("[a-z]+", kind.also.lower()))
+    assert set(re.findall("[a-z]+", others.lower())) - set(re.findall("[a-z]+", own)) <= told
+    assert bool(laws) == bool(kind.also)
 
 
 def test_the_words_list_the_catalogue() -> None:

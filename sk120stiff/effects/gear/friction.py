@@ -52,6 +52,10 @@ class FrictionHysteresis(GearEffect, Switching):
     )
     says: ClassVar[str] = "Friction in {where} makes loading and unloading differ."
     axes: ClassVar[str] = "the axis of the joint itself"
+    also: ClassVar[str] = (
+        f"{REACH}20: after a reversal it sticks until the torque has changed by r = 20 N*m; "
+        "several add up"
+    )
     twins: ClassVar[tuple[str, ...]] = (LostMotion.name,)  # while loads only grow
 
     @classmethod

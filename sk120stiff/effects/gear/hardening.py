@@ -45,6 +45,10 @@ class GearHardening(GearEffect):
     equation: ClassVar[str] = "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3"
     says: ClassVar[str] = "The gear of {where} gets stiffer as its torque grows."
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
+    also: ClassVar[str] = (
+        f"in steps, as data sheets have it: {BELOW}150 in rad/(N*m) is by how much more the gear "
+        "yields while the torque is below 150 N*m; several steps add up"
+    )
     bends_a_spring: ClassVar[bool] = True
 
     @classmethod

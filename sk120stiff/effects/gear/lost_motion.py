@@ -45,6 +45,10 @@ class LostMotion(GearEffect, Switching):
         "The gear of {where} has lost motion: it jumps when its torque turns round."
     )
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
+    also: ClassVar[str] = (
+        f"{HALF}{FLANK}20 with s = tanh(torque / 20 N*m); {HALF}_positive and {HALF}_negative, "
+        f"each for torques of that sign, and {HALF}_positive{FLANK}20; several add up"
+    )
     twins: ClassVar[tuple[str, ...]] = ("friction_hysteresis",)  # while loads only grow
 
     @classmethod
