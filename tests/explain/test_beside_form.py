@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
+from sk120stiff.effects import effect
 from sk120stiff.explain import Options, explain
+from sk120stiff.explain.judge.beside_form import with_model_form
 from sk120stiff.explain.judge.remainder import remainder_of
-from sk120stiff.identify import known_model
-from sk120stiff.measurements import Measurements, read_measurements
+from sk120stiff.identify import fit, known_model
+from sk120stiff.measurements import Measurements, NoiseModel, read_measurements
 from sk120stiff.model import joint_spring_model
-from tests.explain.readings import base_fit, hidden
+from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.real_arms import fanuc
 
@@ -50,6 +52,18 @@ def test_a_strong_cause_is_named_though_no_law_is_exact(springs):
     written = known_model(answer.final).uncertainty.remainder  # one number in every file
     assert written.rms == pytest.approx(np.full(3, left.rms))
     assert written.grows
+
+
+def test_beside_the_names_a_larger_noise_is_no_error_of_the_model(springs):
+    """What the springs alone left is forgotten once names explain it."""
+    tilt = effect(springs.robot, "joint_tilt", "joint_2_l")
+    readings = hidden(JointTilt("joint_2_l", {"first": 4e-7, "second": 0.0}))
+    stated = NoiseModel(SIGMA / 1.3, zero="shared")
+    before = with_model_form(fit(springs, readings, noise=stated))
+    assert before.form
+    after = with_model_form(fit(springs + tilt, readings, noise=before))
+    assert after.freedom == 0
+    assert not after.form
 
 
 def test_roughness_alone_has_no_name(springs):

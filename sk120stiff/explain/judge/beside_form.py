@@ -22,6 +22,7 @@ from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
+from sk120stiff.measurements.model_form import ModelForm
 
 ROUNDS = 3  # of estimating, searching and judging
 WORTH = 2.0  # gain in -2 ln L by which structure has to beat noise that is merely larger
@@ -105,7 +106,7 @@ def with_model_form(fit: Fit) -> NoiseModel:
     noise = fit.problem.noise
     found = variance_components(fit)
     if noise.known and found.inflation_gain > found.gain - WORTH:
-        return replace(noise, freedom=0)
+        return replace(noise, form=ModelForm(), freedom=0)
     if not noise.known:
         noise = replace(noise, sigma=noise.sigma * found.noise_factor)
     return replace(noise, form=found.form)
