@@ -212,6 +212,7 @@ def said(answer: Explanation) -> str:
 def findings(answer: Explanation) -> list[str]:
     """Every named effect, its alternatives and its size."""
     lines = []
+    unseen = unseen_reasons(answer.final) if answer.findings else {}
     for finding in answer.findings:
         sure = f"P = {finding.probability:.2f}"
         lines.append(f"{finding.effect.sentence()} [{finding.effect.id}] ({sure})")
@@ -224,7 +225,8 @@ def findings(answer: Explanation) -> list[str]:
             lines.append(f"  {len(own)} values, the largest:")
             own = [largest]
         for p in own:
-            value = with_error(p.value, p.std, p.spec.unit)
+            hidden = p.name in unseen
+            value = "cannot be seen" if hidden else with_error(p.value, p.std, p.spec.unit)
             lines.append(f"  {p.spec.name} {value} ({p.spec.meaning})")
         evidence = finding.evidence
         if evidence.runner_up is not None:

@@ -158,11 +158,29 @@ class Catalogue:
         if where is None and len(places) == 1:
             where = places[0]
         if where not in places:
-            raise InputError(
-                f"the effect {name!r} cannot act at {where!r} on {robot.name}",
-                remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
-            )
+            raise self.misplaced(name, where, robot)
         return kind.at(robot, where, options or Options())
+
+    def misplaced(self, name: str, where: str | None, robot: Robot) -> InputError:
+        """What to say of an effect that is asked for where it cannot act, or at no place.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> print(sk.CATALOGUE.misplaced("joint_tilt", None, robot).what)
+            at which place is the effect 'joint_tilt' meant?
+        """
+        places = self[name].places(robot)
+        if places and not where:
+            return InputError(
+                f"at which place is the effect {name!r} meant?",
+                remedy=f"Write {name}:{places[0]}, for example. It acts at: {', '.join(places)}.",
+            )
+        at = f" at {where!r}" if where else ""
+        return InputError(
+            f"the effect {name!r} cannot act{at} on {robot.name}",
+            remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
+        )
 
     def unknown(self, name: str) -> InputError:
         """What to say of a name that is no effect's.

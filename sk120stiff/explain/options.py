@@ -143,9 +143,5 @@ def _everything(model: Model, used: Measurements, catalogue: Catalogue) -> tuple
 def _unknown(wanted: str, model: Model, catalogue: Catalogue) -> InputError:
     name, _, where = wanted.partition(":")
     if name in catalogue:
-        places = catalogue[name].places(model.robot)
-        return InputError(
-            f"the effect {name!r} cannot act at {where!r} on {model.robot.name}",
-            remedy=f"It acts at: {', '.join(places) or 'no place of this robot'}.",
-        )
+        return catalogue.misplaced(name, where, model.robot)
     return catalogue.unknown(wanted)

@@ -15,7 +15,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.model.model import Model
 
-ROUNDING = 1e-12  # m: what moves the point by less does not move it
+ROUNDING = 1e-9  # m: what moves the point by less does not move it
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,12 @@
 import json
 import warnings
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from sk120stiff import base_model, load_robot, read_measurements
-from sk120stiff.cli.explain_output import Task, write_answer
+from sk120stiff.cli.explain_output import Task, findings, write_answer
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.explain import Explanation, explain
 from sk120stiff.robot.bundled import bundled_robots
@@ -101,3 +102,16 @@ def test_an_answer_saves_itself_as_the_command_writes_it(answer, task, tmp_path)
         one, other = (tmp_path / folder / name for folder in ("itself", "command"))
         assert one.read_bytes() == other.read_bytes()
     assert repr(answer).startswith("<Explanation: none; gap ")
+
+
+def test_what_no_reading_shows_is_not_called_rigid(answer, monkeypatch) -> None:
+    first = answer.final.model.parameters[0]
+    one = SimpleNamespace(
+        effect=first.effect, probability=1.0, alternatives=(), exact=(),
+        evidence=SimpleNamespace(runner_up=None),
+    )  # fmt: skip
+    told = SimpleNamespace(findings=(one,), final=answer.final)
+    assert "cannot be seen" not in findings(told)[1]
+    where = "sk120stiff.cli.explain_output.unseen_reasons"
+    monkeypatch.setattr(where, lambda fit: {first.name: "no load turns it"})
+    assert f"{first.spec.name} cannot be seen" in findings(told)[1]
