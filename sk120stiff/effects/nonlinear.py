@@ -184,7 +184,7 @@ def _told(spec: ParameterSpec, names: Collection[str]) -> float:
         return float(load)
     raise InputError(
         f"the names of the parameters do not tell up to which load {spec.name} changes",
-        remedy=f"Write {head}0 and {head}150 for 150 {_load_unit(spec)}.",
+        remedy=f"Write {head}0 and {head}150 for 150 {_load_unit(spec)}, {head}1e+06 for 1000000.",
     )
 
 

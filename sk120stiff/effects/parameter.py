@@ -41,7 +41,10 @@ class ParameterSpec:
         """The value as people write it; infinite stiffness where nothing yields."""
         if not self.reciprocal:
             return internal
-        return float(np.inf) if internal == 0.0 else 1.0 / internal
+        if internal == 0.0:
+            return float(np.inf)
+        short = float(f"{1.0 / internal:.15g}")  # 50000, not 49999.99999999999
+        return short if 1.0 / short == internal else 1.0 / internal
 
     def internal(self, public: float) -> float:
         """The value as the law uses it."""

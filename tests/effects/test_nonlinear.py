@@ -48,6 +48,13 @@ def test_a_tool_gives_way_to_one_side():
     close(bent(boom(), "tool_compliance", [0, 0, -100], **values), [0, 0, 0])
 
 
+def test_a_stiffness_is_written_as_people_would() -> None:
+    spec = CATALOGUE["joint_tilt"].sample().parameters[0]
+    assert 1.0 / (1.0 / 5e4) != 5e4
+    assert spec.public(1.0 / 5e4) == 5e4
+    assert spec.internal(spec.public(1.0 / 3e5 / 7.0)) == 1.0 / 3e5 / 7.0  # and nothing is lost
+
+
 @pytest.mark.parametrize("end", ["_at_-3", "_at_soon", "_at_1e400"])
 def test_a_law_out_of_proportion_needs_its_load(end):
     with pytest.raises(InputError) as refused:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sk120stiff.explain.localise.words import microns
+
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
 
@@ -24,9 +26,9 @@ def _none(answer: Explanation) -> list[str]:
     if left.chance is None:
         return [f"Before anything is concluded, state the noise or {REPEATS}, and run this again."]
     if left.understated is not None:
-        sigma = (answer.yardstick.sigma or 0.0) * left.understated * 1e6
+        sigma = (answer.yardstick.sigma or 0.0) * left.understated
         return [
-            f"Correct the stated σ to about {sigma:.3g} µm, or look for what disturbs single "
+            f"Correct the stated σ to about {microns(sigma)}, or look for what disturbs single "
             "readings; the model itself may be used as it is."
         ]
     return [
@@ -68,12 +70,12 @@ def _outside(answer: Explanation) -> list[str]:
 
 
 def _gain(answer: Explanation) -> str:
-    first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
+    first, last = (answer.steps[k].heldout_rms for k in (0, -1))
     if not (np.isfinite(first) and np.isfinite(last) and last < first):
         return "Use model.yaml where poses and loads are like those measured."
     return (
-        f"Use model.yaml: at poses that no fit saw it is off by {last:.3g} µm rms per axis where "
-        f"springs alone were off by {first:.3g} µm."
+        f"Use model.yaml: at poses that no fit saw it is off by {microns(last)} rms per axis where "
+        f"springs alone were off by {microns(first)}."
     )
 
 
@@ -84,7 +86,7 @@ def _largest(answer: Explanation) -> list[str]:
         return []
     return [
         f"At the measured loads {mine[0].name} brings the most of what was named, "
-        f"{1e6 * mine[0].rms:.3g} µm rms per axis: look there first if the arm is to be mended."
+        f"{microns(mine[0].rms)} rms per axis: look there first if the arm is to be mended."
     ]
 
 

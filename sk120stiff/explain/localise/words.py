@@ -37,13 +37,13 @@ def where_sentences(found: Localisation) -> tuple[str, ...]:
 
 
 def _size(found: Localisation) -> str:
-    gap = f"The base model misses the readings by {_um(found.rms)} rms per axis"
+    gap = f"The base model misses the readings by {microns(found.rms)} rms per axis"
     if found.noise is None or found.probability is None:
         return (
             f"{gap}. Nothing tells how large the noise is, so its size alone proves nothing, and "
             "shares are of the gap itself, noise included."
         )
-    noise = _um(found.noise)
+    noise = microns(found.noise)
     origin = ORIGINS.get(found.noise_from, "")
     if found.probability >= LEVEL:
         also = ", yet part of it goes with something" if found.strongest else ""
@@ -141,7 +141,7 @@ def _poses(found: Localisation) -> Iterator[str]:
     while top < len(ranked) and carried < 0.5:
         carried += ranked[top].share
         top += 1
-    worst = f"a gap of {_um(ranked[0].rms)} rms"
+    worst = f"a gap of {microns(ranked[0].rms)} rms"
     if carried < 0.5 or top > min(MANY_POSES, len(found.poses) // 2):
         lead = f"It shows at {len(ranked)} of {len(found.poses)} poses"
         yield f"{lead}; the worst, {ranked[0].label}, has {worst}."
@@ -164,7 +164,7 @@ def _poses_of_the_gap(found: Localisation) -> Iterator[str]:
     out = [pose for pose in ranked if pose.probability < LEVEL]
     worst = out[0] if out else ranked[0]
     carries = (
-        f"carries {_percent(worst.share)} of the gap's square with {_um(worst.rms)} rms; "
+        f"carries {_percent(worst.share)} of the gap's square with {microns(worst.rms)} rms; "
         f"an even share of {len(ranked)} poses is {_percent(1.0 / len(ranked))}"
     )
     if not out:
@@ -181,8 +181,8 @@ def _loads(found: Localisation) -> Iterator[str]:
         grows = high.rms > 1.25 * low.rms
         how = "It grows with the load" if grows else "It hardly grows with the load"
         yield (
-            f"{how}: {_um(low.rms)} rms at loads up to {low.high:.0f} N, {_um(high.rms)} from "
-            f"{high.low:.0f} N on."
+            f"{how}: {microns(low.rms)} rms at loads up to {low.high:.0f} N, "
+            f"{microns(high.rms)} from {high.low:.0f} N on."
         )
     if found.whole == "gap":
         yield "What of it is in proportion to the load and what is not, these readings do not tell."
@@ -229,8 +229,8 @@ def _postures(found: Localisation) -> Iterator[str]:
     for trend in found.postures[:1]:
         if trend.probability < LEVEL:
             yield (
-                f"It goes with {trend.name}: {_um(trend.low)} rms at the lower half of the poses, "
-                f"{_um(trend.high)} at the upper ({chance(trend.probability)})."
+                f"It goes with {trend.name}: {microns(trend.low)} rms at the lower half of the "
+                f"poses, {microns(trend.high)} at the upper ({chance(trend.probability)})."
             )
 
 
@@ -246,7 +246,8 @@ def _series(found: Localisation) -> Iterator[str]:
         yield f"It does not go with {listed(clear, 'or')}{beside}."
 
 
-def _um(metres: float) -> str:
+def microns(metres: float) -> str:
+    """A length in micrometres with its unit: three digits, none after the point from 100 on."""
     microns = 1e6 * metres
     return f"{microns:.0f} µm" if microns >= 99.95 else f"{microns:#.3g} µm"
 

@@ -84,9 +84,14 @@ def _directions(found: Localisation) -> Table:
     )
 
 
+def _between(low: float, high: float) -> str:
+    ends = dict.fromkeys((f"{low:.0f}", f"{high:.0f}"))
+    return f"{' to '.join(ends)} N"
+
+
 def _levels(found: Localisation) -> Table:
     rows = [
-        (f"{level.low:.0f} to {level.high:.0f} N", level.count, 1e6 * level.rms, _um(level.noise))
+        (_between(level.low, level.high), level.count, 1e6 * level.rms, _um(level.noise))
         for level in found.levels
     ]
     return Table(
