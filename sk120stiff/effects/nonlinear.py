@@ -50,6 +50,7 @@ class Nonlinear(Elastic):
     """
 
     full: tuple[float, ...] = ()
+    law_prior: ClassVar[float] = 0.2  # most bearings and bolted joints hardly depart from straight
     also: ClassVar[str] = ALSO
     straight: ClassVar[type[LinearElastic]]
 

@@ -128,15 +128,16 @@ def _at(
 def price_of_choice(regression: Regression, effect: int, variant: int, tied: bool = True) -> float:
     """What an effect pays for the variant by which it enters, and for being less usual.
 
-    The law that the catalogue gives it is the usual one, with its parameters equal or not. Any
-    other law is as likely as all others together.
+    The law that the catalogue gives it is the usual one, with its parameters equal or not. The
+    others together are as likely, those less that are rarer by themselves (`Effect.law_prior`).
     """
     usual = {regression.usual[effect]}
     if regression.usual[effect] == 0 and regression.tied[effect] > 0 and tied:
         usual.add(regression.tied[effect])
     others = len(regression.variants[effect]) - len(usual)
     own = price_of_law(len(usual) if variant in usual else others, usual=variant in usual)
-    return own + regression.unusual[effect]
+    rare = -2.0 * float(np.log(regression.law(effect, variant).law_prior))
+    return own + rare + regression.unusual[effect]
 
 
 def price_of_law(count: int, *, usual: bool) -> float:
