@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import ONE_WAY, Alias, Effect, LinearElastic, Options, scale_of
+from sk120stiff.effects.base import ONE_WAY, Alias, Effect, LinearElastic, Options
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.nonlinear import ALSO, Nonlinear, nonlinear_laws, shape_of
+from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 
@@ -19,7 +18,7 @@ CROSS = "cross_stiffness"
 
 
 @dataclass(frozen=True)
-class BaseRocking(LinearElastic):
+class BaseRocking(StraightPart):
     """The base turns about the x and y axes of the base frame through the foundation point.
 
     The base frame's z is the normal of the mounting surface, whether floor, wall or ceiling. Yaw
@@ -41,21 +40,12 @@ class BaseRocking(LinearElastic):
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Effect:
         """The foundation, askew where names of parameters tell of a cross term."""
-        scale = scale_of(robot)
-        bent = NonlinearRocking.told_by(options.shape, where, scale)
-        return bent or cls(where, scale, CROSS in options.shape)
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The law that the names of the parameters tell."""
-        return shape_of(parameters)
+        found = super().at(robot, where, options)
+        return replace(found, askew=CROSS in options.shape) if isinstance(found, cls) else found
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """With a cross term or without, and out of proportion."""
-        return (
-            replace(self, askew=not self.askew),
-            *nonlinear_laws(NonlinearRocking, self, load_cases),
-        )
+        return (replace(self, askew=not self.askew), *super().other_laws(load_cases))
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -109,12 +99,8 @@ class BaseRocking(LinearElastic):
 class NonlinearRocking(Nonlinear):
     """The foundation gives way more and more, one way only, or stiffens as it is loaded."""
 
-    name: ClassVar[str] = BaseRocking.name
-    place: ClassVar[str] = BaseRocking.place
-    equation: ClassVar[str] = BaseRocking.equation + ", K going with the moment"
     says: ClassVar[str] = "The base rocks on its foundation, not in proportion to the moment."
-    axes: ClassVar[str] = BaseRocking.axes
-    straight: ClassVar[type[LinearElastic]] = BaseRocking
+    straight: ClassVar[type[StraightPart]] = BaseRocking
 
 
 @dataclass(frozen=True)

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Effect, LinearElastic, Options, scale_of, unit_vectors
+from sk120stiff.effects.base import unit_vectors
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.nonlinear import ALSO, Nonlinear, nonlinear_laws, shape_of
+from sk120stiff.effects.nonlinear import Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, free_joints
 
 
 @dataclass(frozen=True)
-class JointTilt(LinearElastic):
+class JointTilt(StraightPart):
     """Two virtual joints at the bearing, on its moving side: along the link, and across it.
 
     The bearing of a joint that slides is its carriage.
@@ -31,23 +30,7 @@ class JointTilt(LinearElastic):
     axes: ClassVar[str] = (
         "axes through the joint, normal to its own: along the link that it carries, and across it"
     )
-    also: ClassVar[str] = ALSO
     one_axis_each: ClassVar[bool] = True
-
-    @classmethod
-    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
-        """The bearing, out of proportion where names of parameters tell so."""
-        scale = scale_of(robot)
-        return NonlinearTilt.told_by(options.shape, where, scale) or cls(where, scale)
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The law that the names of the parameters tell."""
-        return shape_of(parameters)
-
-    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
-        """Out of proportion."""
-        return nonlinear_laws(NonlinearTilt, self, load_cases)
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -95,11 +78,7 @@ class JointTilt(LinearElastic):
 class NonlinearTilt(Nonlinear):
     """The bearing stiffens as more of it carries, or gives way one way only."""
 
-    name: ClassVar[str] = JointTilt.name
-    place: ClassVar[str] = JointTilt.place
-    equation: ClassVar[str] = JointTilt.equation + ", K going with the moment"
     says: ClassVar[str] = (
         "The bearing of {where} tilts about the axes normal to its joint axis, not in proportion."
     )
-    axes: ClassVar[str] = JointTilt.axes
-    straight: ClassVar[type[LinearElastic]] = JointTilt
+    straight: ClassVar[type[StraightPart]] = JointTilt

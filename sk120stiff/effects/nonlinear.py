@@ -23,7 +23,15 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Alias, Effect, Elastic, Elongation, LinearElastic, Options
+from sk120stiff.effects.base import (
+    Alias,
+    Effect,
+    Elastic,
+    Elongation,
+    LinearElastic,
+    Options,
+    scale_of,
+)
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.errors import InputError
@@ -38,13 +46,48 @@ ALSO = (
 )
 
 
+class StraightPart(LinearElastic):
+    """The straight law of a part that may yield out of proportion too.
+
+    Attributes:
+        nonlinear: The laws out of proportion (class attribute); they make themselves known.
+    """
+
+    also: ClassVar[str] = ALSO
+    nonlinear: ClassVar[type[Nonlinear]]
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
+        """The part, out of proportion where names of parameters tell so."""
+        scale = scale_of(robot)
+        return cls.nonlinear.told_by(options.shape, where, scale) or cls(where, scale)
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The law that the names of the parameters tell."""
+        return Options(shape=tuple(parameters))
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """Out of proportion, over the loads of some readings."""
+        virtual = self.virtual_joints(load_cases.robot)
+        loads = np.abs(load_cases.torques_on(virtual)).max(axis=0, initial=0.0)
+        turns = np.array([joint.revolute for joint in virtual])
+        full = np.array([loads[turns == kind].max(initial=0.0) for kind in turns])
+        if not full.any():
+            return ()
+        full[full == 0.0] = full.max()  # nothing turns it, or nothing shifts it: any load will do
+        measured = tuple(float(f"{T:.3g}") for T in full)
+        law = self.nonlinear
+        return law(self.where, self.scale, measured), law(self.where, self.scale)
+
+
 @dataclass(frozen=True)
 class Nonlinear(Elastic):
     """A part whose compliance goes with its load, the weight's share included.
 
     Attributes:
         straight: The law that is in proportion, one compliance for every coordinate (class
-            attribute).
+            attribute); name, place and axes are those of it.
         full: Load T [N·m or N] of every coordinate, up to which the compliance changes; empty: it
             goes with the sign alone.
     """
@@ -52,7 +95,15 @@ class Nonlinear(Elastic):
     full: tuple[float, ...] = ()
     law_prior: ClassVar[float] = 0.2  # most bearings and bolted joints hardly depart from straight
     also: ClassVar[str] = ALSO
-    straight: ClassVar[type[LinearElastic]]
+    straight: ClassVar[type[StraightPart]]
+
+    def __init_subclass__(cls) -> None:
+        """Make the law known to the straight one."""
+        super().__init_subclass__()
+        straight = cls.straight
+        cls.name, cls.place, cls.axes = straight.name, straight.place, straight.axes
+        cls.equation = f"{straight.equation}, K going with the load"
+        straight.nonlinear = cls
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Effect:
@@ -62,10 +113,10 @@ class Nonlinear(Elastic):
     @classmethod
     def options_of(cls, parameters: Mapping[str, str]) -> Options:
         """The law that the names of the parameters tell."""
-        return shape_of(parameters)
+        return cls.straight.options_of(parameters)
 
     @property
-    def _part(self) -> LinearElastic:
+    def _part(self) -> StraightPart:
         return self.straight(self.where, self.scale)
 
     @property
@@ -151,26 +202,6 @@ class Nonlinear(Elastic):
         if not by_load:
             return None
         return cls(where, scale, tuple(_told(spec, names) for spec in straight))
-
-
-def nonlinear_laws(
-    law: type[Nonlinear], part: LinearElastic, load_cases: LoadCases
-) -> tuple[Nonlinear, ...]:
-    """The laws out of proportion of a part with a straight one, over the loads of some readings."""
-    virtual = part.virtual_joints(load_cases.robot)
-    loads = np.abs(load_cases.torques_on(virtual)).max(axis=0, initial=0.0)
-    turns = np.array([joint.revolute for joint in virtual])
-    full = np.array([loads[turns == kind].max(initial=0.0) for kind in turns])
-    if not full.any():
-        return ()
-    full[full == 0.0] = full.max()  # nothing turns it, or nothing shifts it: any load will do
-    measured = tuple(float(f"{T:.3g}") for T in full)
-    return (law(part.where, part.scale, measured), law(part.where, part.scale))
-
-
-def shape_of(parameters: Mapping[str, str]) -> Options:
-    """The law that names of parameters tell, where an effect knows a `Nonlinear` one too."""
-    return Options(shape=tuple(parameters))
 
 
 def _named(spec: ParameterSpec, end: str, words: str) -> ParameterSpec:

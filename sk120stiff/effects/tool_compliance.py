@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Effect, LinearElastic, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
-from sk120stiff.effects.nonlinear import ALSO, Nonlinear, nonlinear_laws, shape_of
+from sk120stiff.effects.nonlinear import Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 
 
 @dataclass(frozen=True)
-class ToolCompliance(LinearElastic):
+class ToolCompliance(StraightPart):
     """What is bolted to the flange turns about and shifts along the axes of the tool frame.
 
     Fixtures are rarely round, so every axis has a stiffness of its own.
@@ -28,23 +26,7 @@ class ToolCompliance(LinearElastic):
     equation: ClassVar[str] = "turn = moment / K and shift = force / K, axis by axis"
     says: ClassVar[str] = "The fixture at {where} yields between flange and measured point."
     axes: ClassVar[str] = "axes of the tool frame, at its origin"
-    also: ClassVar[str] = ALSO
     one_axis_each: ClassVar[bool] = True
-
-    @classmethod
-    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
-        """The fixture, out of proportion where names of parameters tell so."""
-        scale = scale_of(robot)
-        return NonlinearTool.told_by(options.shape, where, scale) or cls(where, scale)
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The law that the names of the parameters tell."""
-        return shape_of(parameters)
-
-    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
-        """Out of proportion."""
-        return nonlinear_laws(NonlinearTool, self, load_cases)
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -97,11 +79,7 @@ class ToolCompliance(LinearElastic):
 class NonlinearTool(Nonlinear):
     """The fixture stiffens as it is pressed, or gives way one way only."""
 
-    name: ClassVar[str] = ToolCompliance.name
-    place: ClassVar[str] = ToolCompliance.place
-    equation: ClassVar[str] = ToolCompliance.equation + ", K going with the load"
     says: ClassVar[str] = (
         "The fixture at {where} yields between flange and measured point, not in proportion."
     )
-    axes: ClassVar[str] = ToolCompliance.axes
-    straight: ClassVar[type[LinearElastic]] = ToolCompliance
+    straight: ClassVar[type[StraightPart]] = ToolCompliance
