@@ -82,6 +82,14 @@ def test_what_yields_out_of_proportion_is_named_by_its_law(springs, cause, name,
     assert not answer.remainder.significant
 
 
+def test_the_noise_has_one_number_before_and_after(springs):
+    """A floor that yields one way bends the readings of a pose; that is no noise of the springs."""
+    mount = {"x": 6e-7, "y": 8e-7}, {"full": 1500.0, "gap": True}
+    answer = explain(springs, hidden(QuadraticMount("base_link", *mount), stated=False))
+    assert answer.verdict == "named" and answer.yardstick.source == "scatter"
+    assert f"noise alone makes ({1e6 * answer.noise_floor:#.3g} µm" in answer.where[0]
+
+
 def test_a_tracker_that_warms_up_is_named_by_its_course(springs):
     warming = WarmUp("tracker", {"x": 9e-6, "y": -7e-6, "z": 5e-6}, {"time": 25.0})
     answer = explain(springs, hidden(warming, sigma=4e-6))

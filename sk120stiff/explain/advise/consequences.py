@@ -23,7 +23,9 @@ def completed(
 ) -> Explanation:
     """The answer with where the gap lives, detectable sizes, what is hidden, the next poses."""
     smallest, invisible = detectable(answer, regression)
-    found = localise(answer.base)
+    # Within poses the springs alone leave part of the cause: the noise is what the answer says.
+    alike = answer.final.problem.noise == answer.base.problem.noise
+    found = localise(answer.base, answer.yardstick if alike else None)
     try:
         following = next_poses(answer, seed=seed, cell=cell)
         told = {} if following is None else {"next_remarks": following[2]}
