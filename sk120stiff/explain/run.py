@@ -18,8 +18,9 @@ from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
 from sk120stiff.explain.judge.attribution import MISSPECIFICATION, judged
 from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
+from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.posterior import doubted, one_more
-from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.explain.judge.remainder import Remainder, remainder_of
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.localise.places import localise
@@ -125,7 +126,11 @@ def explain(
         readings=measurements,
         adequacy=left,
         remainder=remainder,
-        unnamed=(*named.reasons, *_where_it_binds(found, options)),
+        unnamed=(
+            *named.reasons,
+            *_beyond_belief(found, remainder),
+            *_where_it_binds(found, options),
+        ),
         limits=options.limits,
         suspects=suspects,
         guess=guess,
@@ -148,6 +153,12 @@ def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:
         f"All {options.max_effects} effects that may be named at most were found; there may be "
         "more: ask for more with --max-effects.",
     )
+
+
+def _beyond_belief(found: Selection, remainder: Remainder) -> tuple[str, ...]:
+    """What would explain the remainder, if its size could be believed."""
+    told = implausible(found) if remainder.significant else None
+    return () if told is None else (told,)
 
 
 def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:

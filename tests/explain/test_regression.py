@@ -179,6 +179,23 @@ def test_effects_settle_their_laws_one_after_the_other():
     assert price_of_choice(many, 0, 1) > price_of_choice(many, 0, 0)
 
 
+def test_what_is_implausible_by_one_law_is_looked_for_by_others():
+    """The likelier law of two that are nearly alike is beyond its range: the other one is found."""
+    plain = regression()
+    X = plain.X.copy()
+    rng = np.random.default_rng(8)
+    X[:, 3] = 0.9 * X[:, 2] + 0.02 * rng.normal(size=len(X))
+    narrow = plain.plausible.copy()
+    narrow[2] = 1.0
+    variants, laws = list(plain.variants), list(plain.laws)
+    variants[0], laws[0] = (np.array([2]), np.array([3])), laws[0] * 2
+    variants[1] = variants[2]  # no other effect has that column
+    y = 9.0 * X[:, 2]
+    found = {"y": y, "X": X, "plausible": narrow, "variants": tuple(variants), "laws": tuple(laws)}
+    best = beam_search(Regression(**{**vars_of(plain), **found}))[0]
+    assert best.by_variant.get(0) == 1
+
+
 def beside_form(share: float) -> Regression:
     """The same readings; in the first two axes of every three model-form error outweighs noise."""
     plain = regression()

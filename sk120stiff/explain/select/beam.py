@@ -93,6 +93,10 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
                 likely = {e: likeliest(regression, total, e, promised[e]) for e in step}
                 child = scored(model.by_variant | likely)
                 grown[child.effects] = child
+        least = min((m.score for m in grown.values() if m.plausible), default=np.inf)
+        beyond = (m for m in grown.values() if not m.plausible and m.score < least)
+        for model in sorted(beyond, key=lambda m: m.score)[:width]:  # by another law they may be
+            grown[model.effects] = settled(model)
         ranked = sorted((m for m in grown.values() if m.plausible), key=lambda m: m.score)
         ranked[:SETTLED] = [settled(m) for m in ranked[:SETTLED]]
         front = sorted((m for m in ranked[:width] if m.plausible), key=lambda m: m.score)

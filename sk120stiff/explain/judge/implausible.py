@@ -1,0 +1,53 @@
+"""What would fit, were its size to be believed.
+
+An effect is only looked for within what is plausible of an arm of this size. Where something
+remains that an effect beyond that range explains far better than all within it, the reader hears of
+it: units may be wrong, or the arm is not what was thought.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.select.beam import HOPELESS, likeliest, promises
+from sk120stiff.explain.select.score import Scored, score_set
+from sk120stiff.explain.select.stepwise import Selection
+
+
+def implausible(found: Selection) -> str | None:
+    """The one effect more that explains by far the most, if its size is beyond belief; in words."""
+    regression, sums, now = found.regression, found.regression.sums(), found.scored
+    promised = promises(regression, sums, now.solved)
+    tried: dict[int, Scored] = {}
+    for e in set(range(len(regression.candidates))) - set(now.effects):
+        if not regression.candidates[e].random_effects and len(promised[e]):
+            law = now.by_variant | {e: likeliest(regression, sums, e, promised[e])}
+            tried[e] = score_set(regression, sums, law, untied=e, start=law, only=())
+    beyond = [e for e, model in tried.items() if not model.plausible]
+    if not beyond or not now.plausible:
+        return None
+    best = min(beyond, key=lambda e: tried[e].score)
+    believed = min([now.score, *(model.score for model in tried.values() if model.plausible)])
+    if tried[best].score > believed - HOPELESS:
+        return None
+    return _told(regression, best, tried[best])
+
+
+def _told(regression: Regression, effect: int, model: Scored) -> str:
+    """The parameter that is farthest beyond what is believed, with both numbers."""
+    variant = model.by_variant[effect]
+    law, columns = regression.law(effect, variant), regression.variants[effect][variant]
+    sizes = dict(zip(model.solved.columns.tolist(), model.solved.values, strict=True))
+    ratios = [abs(sizes.get(c, 0.0)) / regression.plausible[c] for c in columns.tolist()]
+    k = int(np.argmax(ratios))
+    spec, column = law.parameters[k], int(columns[k])
+    value = spec.public(sizes[column] * spec.typical)
+    limit = abs(spec.public(regression.plausible[column] * spec.typical))
+    bound = "softer than" if spec.reciprocal else "beyond"
+    return (
+        f"{law.id} would explain far more than anything believable, but by {spec.name} = "
+        f"{value:.3g} {spec.unit}, {bound} what is believed of an arm of this size "
+        f"({limit:.3g} {spec.unit}). Check the units of loads and readings; if the arm is so, take "
+        f"it for granted with --assume {law.id}."
+    )
