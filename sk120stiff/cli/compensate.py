@@ -70,151 +70,33 @@ FEED, RAPID = "600 mm/min", "6000 mm/min"
 
 def command(
     model: ModelArgument,
-    path: Annotated[
-        Path,
-        typer.Argument(
-            metavar="PATH",
-            help="G-code (.nc, .ngc, .tap, …), APT or CLS (.apt, .cls, .cl), or a CSV file of "
-            "points: joints (joint_1_s[deg], …) or the tool's placement (x[mm], y, z, roll[deg], "
-            "pitch, yaw), the wrench on the robot (fx[N], fy, fz, mx[N*m], my, mz), feed[mm/min].",
-            show_default=False,
-        ),
-    ],
-    out: Annotated[
-        Path,
-        typer.Option(
-            "--out",
-            metavar="FILE",
-            help="Where to write the corrected path: .csv, .nc, .src (KUKA), .mod (ABB), .ls "
-            "(FANUC), .jbi (Motoman), .script (UR).",
-        ),
-    ],
+    path: Path,
+    out: Annotated[Path, typer.Option("--out")],
     at: AtOption = None,
-    orientation: Annotated[
-        bool, typer.Option("--orientation", help="Restore the tool's orientation too.")
-    ] = False,
-    only: Annotated[
-        str | None,
-        typer.Option(
-            metavar="JOINTS",
-            help="Joints that may be corrected, separated by commas.",
-            show_default="all",
-        ),
-    ] = None,
-    against: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="MODEL",
-            help="Judge the corrected path by this model instead: what a wrong model costs.",
-            show_default="the model that corrects",
-        ),
-    ] = None,
-    start: Annotated[
-        str | None,
-        typer.Option(
-            metavar="POSE",
-            help="For positions: the pose near which the arm begins, as in --pose elsewhere; it "
-            "stays in that branch.",
-            show_default="a branch above the floor that touches nothing, near the zero pose",
-        ),
-    ] = None,
-    floor: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH",
-            help="Height in the base frame below which no joint should go: '-0.3 m'.",
-            show_default="the base plane, or the path where that is lower",
-        ),
-    ] = None,
-    frame: Annotated[
-        str | None,
-        typer.Option(
-            metavar="PLACE",
-            help="Where the path's own axes lie in the base: 'x=1200 mm; z=-300 mm; yaw=90 deg'.",
-            show_default="in the base",
-        ),
-    ] = None,
-    wrench: Annotated[
-        str | None,
-        typer.Option(
-            "--wrench",
-            metavar="VALUES",
-            help="The load at every point of a path that holds none: '0,0,-490 N', or six numbers "
-            "'0,0,-490,0,5,0 N, N*m'.",
-            show_default="the load of the file",
-        ),
-    ] = None,
-    load_axes: Annotated[
-        LoadAxes, typer.Option(help="Axes that loads are stated in, of --wrench and of the file.")
-    ] = LoadAxes.base,
+    orientation: bool = False,
+    only: str | None = None,
+    against: Path | None = None,
+    start: str | None = None,
+    floor: str | None = None,
+    frame: str | None = None,
+    wrench: str | None = None,
+    load_axes: LoadAxes = LoadAxes.base,
     tool_rpy: Annotated[
         str | None,
         typer.Option(
-            metavar="ANGLES",
-            help="The tool in the path's axes, roll, pitch, yaw, for G-code and APT; an axis that "
-            "the file states turns it. 'free': any orientation.",
-            show_default=f"{TOOL_DOWN} (z axis down), turned about its axis where limits need it",
+            show_default=f"{TOOL_DOWN} (z axis down), turned about its axis where limits need it"
         ),
     ] = None,
-    chord: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH", help="How far a chord of an arc may be off it.", show_default=CHORD
-        ),
-    ] = None,
-    step: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH",
-            help="Longest straight feed move: longer ones are divided, and each part is corrected.",
-            show_default="as in the path",
-        ),
-    ] = None,
-    to: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LANGUAGE",
-            help="csv, gcode, krl, rapid, ls, jbi or urscript.",
-            show_default="by the ending of --out",
-        ),
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="What the language needs besides, such as tool=1 or pulses=…; the program's "
-            "header lists all with their values. May be repeated.",
-            show_default=False,
-        ),
-    ] = None,
-    by_joints: Annotated[
-        bool,
-        typer.Option("--by-joints", help="Move by joint values instead of in straight lines."),
-    ] = False,
-    sheet: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="HTML",
-            help="Write a sheet: error before and after with its ±, the share of each effect, "
-            "where it is worst. A browser prints it as PDF.",
-            show_default="none",
-        ),
-    ] = None,
-    measured: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="CSV",
-            help="Points as measured, to stand beside the prediction: point, run (before, after), "
-            "x[mm], y, z in the path's axes, or dx[mm], dy, dz from the target.",
-            show_default="none",
-        ),
-    ] = None,
+    chord: Annotated[str | None, typer.Option(show_default=CHORD)] = None,
+    step: str | None = None,
+    to: str | None = None,
+    settings: Annotated[list[str] | None, typer.Option("--set")] = None,
+    by_joints: bool = False,
+    sheet: Path | None = None,
+    measured: Path | None = None,
     cell: CellOption = None,
-    feed: Annotated[
-        str, typer.Option(metavar="SPEED", help="Feed where the path states none.")
-    ] = FEED,
-    rapid: Annotated[str, typer.Option(metavar="SPEED", help="Speed of rapid moves.")] = RAPID,
+    feed: str = FEED,
+    rapid: str = RAPID,
 ) -> Answer:
     """Joint commands that cancel the deflection along a loaded path.
 
@@ -225,6 +107,44 @@ def command(
 
     Example: sk120stiff compensate model.yaml part.nc --frame 'x=1500 mm; z=-300 mm'
     --wrench '0,0,-490 N' --out part.jbi
+
+    Args:
+        path (PATH): G-code (.nc, .ngc, .tap, …), APT or CLS (.apt, .cls, .cl), or a CSV file of
+            points: joints (joint_1_s[deg], …) or the tool's placement (x[mm], y, z, roll[deg],
+            pitch, yaw), the wrench on the robot (fx[N], fy, fz, mx[N*m], my, mz), feed[mm/min].
+        out (FILE): Where to write the corrected path: .csv, .nc, .src (KUKA), .mod (ABB), .ls
+            (FANUC), .jbi (Motoman), .script (UR).
+        orientation: Restore the tool's orientation too.
+        only (JOINTS): Joints that may be corrected, separated by commas. [default: all]
+        against (MODEL): Judge the corrected path by this model instead: what a wrong model costs.
+            [default: the model that corrects]
+        start (POSE): For positions: the pose near which the arm begins, as in --pose elsewhere; it
+            stays in that branch. [default: a branch above the floor that touches nothing, near the
+            zero pose]
+        floor (LENGTH): Height in the base frame below which no joint should go: '-0.3 m'. [default:
+            the base plane, or the path where that is lower]
+        frame (PLACE): Where the path's own axes lie in the base: 'x=1200 mm; z=-300 mm; yaw=90
+            deg'. [default: in the base]
+        wrench (VALUES): The load at every point of a path that holds none: '0,0,-490 N', or six
+            numbers '0,0,-490,0,5,0 N, N*m'. [default: the load of the file]
+        load_axes: Axes that loads are stated in, of --wrench and of the file.
+        tool_rpy (ANGLES): The tool in the path's axes, roll, pitch, yaw, for G-code and APT; an
+            axis that the file states turns it. 'free': any orientation.
+        chord (LENGTH): How far a chord of an arc may be off it.
+        step (LENGTH): Longest straight feed move: longer ones are divided, and each part is
+            corrected. [default: as in the path]
+        to (LANGUAGE): csv, gcode, krl, rapid, ls, jbi or urscript. [default: by the ending of
+            --out]
+        settings (KEY=VALUE): What the language needs besides, such as tool=1 or pulses=…; the
+            program's header lists all with their values. May be repeated.
+        by_joints: Move by joint values instead of in straight lines.
+        sheet (HTML): Write a sheet: error before and after with its ±, the share of each effect,
+            where it is worst. A browser prints it as PDF. [default: none]
+        measured (CSV): Points as measured, to stand beside the prediction: point, run (before,
+            after), x[mm], y, z in the path's axes, or dx[mm], dy, dz from the target. [default:
+            none]
+        feed (SPEED): Feed where the path states none.
+        rapid (SPEED): Speed of rapid moves.
     """
     will_write(out)
     check_sheet(sheet)

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from sk120stiff.cli.explain_output import (
     Task,
@@ -44,9 +42,7 @@ Told = Callable[[int, int], None]
 
 
 def command(
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder for the results.")
-    ] = Path("sk120stiff-demo"),
+    out: Path = Path("sk120stiff-demo"),
 ) -> Answer:
     """The main job on measured data, and on a hidden cause.
 
@@ -56,6 +52,9 @@ def command(
     campaign's own into the folder hidden_cause.
 
     Example: sk120stiff demo --out sk120stiff-demo
+
+    Args:
+        out (DIR): Folder for the results.
     """
     check_folder(out)
     check_folder(out / HIDDEN)

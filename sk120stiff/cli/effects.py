@@ -13,15 +13,16 @@ from sk120stiff.effects import EffectWords, catalogue_words
 
 
 def command(
-    name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="One effect; all without a name.")
-    ] = None,
+    name: Annotated[str | None, typer.Argument()] = None,
 ) -> Answer:
     """What every effect and its numbers mean: law, axes, sign, unit.
 
     The same words stand beside every number in reports, verdicts and model files.
 
     Example: sk120stiff effects force_bias
+
+    Args:
+        name ([NAME]): One effect; all without a name.
     """
     found = catalogue_words(name)
     parts: list[object] = []

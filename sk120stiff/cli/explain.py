@@ -29,47 +29,18 @@ from sk120stiff.model import Model
 
 def command(
     data: DataArgument,
-    out: Annotated[
-        Path,
-        typer.Option("--out", metavar="DIR", help="Folder for the results.", show_default=False),
-    ],
+    out: Annotated[Path, typer.Option("--out")],
     model: ModelOption = None,
-    holdout: Annotated[
-        Path | None,
-        typer.Option(metavar="CSV", help="Readings of other poses, kept out of every fit."),
-    ] = None,
-    exclude: Annotated[
-        list[str] | None,
-        typer.Option(metavar="EFFECT", help="Leave out this effect, 'name' or 'name:where'."),
-    ] = None,
-    only: Annotated[
-        list[str] | None,
-        typer.Option(metavar="EFFECT", help="Consider this effect only (may be repeated)."),
-    ] = None,
-    assume: Annotated[
-        list[str] | None,
-        typer.Option(metavar="EFFECT", help="Put this effect into the model from the start."),
-    ] = None,
-    max_effects: Annotated[
-        int, typer.Option(min=0, max=20, help="Name no more than this; told where it binds.")
-    ] = MOST_EFFECTS,
-    alpha: Annotated[
-        float,
-        typer.Option(min=1e-6, max=0.5, help="Largest chance of a name where nothing is missing."),
-    ] = Options.alpha,
-    prior: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="EFFECT=P",
-            help="How probable an effect is before measuring, e.g. base_rocking=0.5 (the usual "
-            "is 0.1; may be repeated).",
-        ),
-    ] = None,
+    holdout: Path | None = None,
+    exclude: list[str] | None = None,
+    only: list[str] | None = None,
+    assume: list[str] | None = None,
+    max_effects: Annotated[int, typer.Option(min=0, max=20)] = MOST_EFFECTS,
+    alpha: Annotated[float, typer.Option(min=1e-06, max=0.5)] = Options.alpha,
+    prior: list[str] | None = None,
     cell: CellOption = None,
     seed: SeedOption = 0,
-    no_report: Annotated[
-        bool, typer.Option("--no-report", help="Write no report.html and no scene.html.")
-    ] = False,
+    no_report: bool = False,
 ) -> Answer:
     """What is missing when simulation and measurement disagree.
 
@@ -79,6 +50,18 @@ def command(
     are looked for first and stop it, with what mends them.
 
     Example: sk120stiff explain readings.csv --holdout others.csv --out explained
+
+    Args:
+        out (DIR): Folder for the results.
+        holdout (CSV): Readings of other poses, kept out of every fit.
+        exclude (EFFECT): Leave out this effect, 'name' or 'name:where'.
+        only (EFFECT): Consider this effect only (may be repeated).
+        assume (EFFECT): Put this effect into the model from the start.
+        max_effects: Name no more than this; told where it binds.
+        alpha: Largest chance of a name where nothing is missing.
+        prior (EFFECT=P): How probable an effect is before measuring, e.g. base_rocking=0.5 (the
+            usual is 0.1; may be repeated).
+        no_report: Write no report.html and no scene.html.
     """
     check_folder(out)
     readings, robot = open_data(data)

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import open_model, pose_of
@@ -30,22 +27,10 @@ class Kind(StrEnum):
 
 def command(
     model: ModelArgument,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            metavar="FILE",
-            help="Where to write it: .urdf, .yaml (kinematics_params of UR's driver), .csv (DH "
-            "tables), .xml (MuJoCo) or .sdf.",
-            show_default="only say what would be carried; give --to",
-        ),
-    ] = None,
+    out: Path | None = None,
     pose: PoseOption = None,
     at: AtOption = None,
-    to: Annotated[
-        Kind | None,
-        typer.Option("--to", help="The format.", show_default="by the ending of FILE"),
-    ] = None,
+    to: Kind | None = None,
 ) -> Answer:
     """A calibrated URDF, DH tables, or an arm for a simulator.
 
@@ -55,6 +40,11 @@ def command(
     cannot hold is told by name.
 
     Example: sk120stiff export model.yaml --pose '0,20,-30,0,-60,0 deg' --out sk120.xml
+
+    Args:
+        out (FILE): Where to write it: .urdf, .yaml (kinematics_params of UR's driver), .csv (DH
+            tables), .xml (MuJoCo) or .sdf. [default: only say what would be carried; give --to]
+        to: The format. [default: by the ending of FILE]
     """
     will_write(out)
     chosen = format_of(out, None if to is None else to.value)

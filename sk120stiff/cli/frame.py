@@ -21,6 +21,7 @@ from typing import Annotated, NoReturn, TextIO
 
 import typer
 
+from sk120stiff.cli.signature import declared
 from sk120stiff.cli.visible import visible
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
 from sk120stiff.errors import InputError, Refusal, ToolkitError
@@ -57,31 +58,30 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
 
     A command that takes a robot gets --xacro-arg too.
     """
-    signature = inspect.signature(body, eval_str=True)
-    robots = [name for name, p in signature.parameters.items() if takes_robot(p)]
+    told, parameters = declared(body)
+    robots = [p.name for p in parameters if takes_robot(p)]
 
     @functools.wraps(body)
     def run(
         *, as_json: bool, debug: bool, xacro_args: list[str] | None = None, **options: object
     ) -> None:
-        with running(), _messages(debug=debug) as told:
+        with running(), _messages(debug=debug) as warned:
             with guarded(debug=debug, as_json=as_json):
                 if xacro_args:
                     with_xacro_arguments(options, robots, xacro_args)
                 answer = body(**options)
                 if answer.afterwards is None:
-                    emit(answer, as_json=as_json, warned=told)
+                    emit(answer, as_json=as_json, warned=warned)
             if answer.afterwards is not None:
                 # Once its address is printed, Ctrl-C is how a server ends: from the first letter
                 # on. A document has been printed then: there is no second one for what goes wrong.
                 with guarded(debug=debug), suppress(KeyboardInterrupt):
-                    emit(answer, as_json=as_json, warned=told)
+                    emit(answer, as_json=as_json, warned=warned)
                     answer.afterwards()
         if answer.exit_code:
             raise typer.Exit(answer.exit_code)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
-    parameters = [p.replace(kind=keyword) for p in signature.parameters.values()]
     if robots:
         parameters.append(
             inspect.Parameter("xacro_args", keyword, default=None, annotation=XacroArgs)
@@ -90,6 +90,7 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
         parameters.append(inspect.Parameter(name, keyword, default=False, annotation=annotation))
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     run.__annotations__ = {p.name: p.annotation for p in parameters}
+    run.__doc__ = told
     return run
 
 

@@ -52,46 +52,15 @@ class Method(StrEnum):
 def command(
     data: DataArgument,
     model: ModelOption = None,
-    method: Annotated[
-        Method, typer.Option(help="Trust-region-reflective, or Levenberg-Marquardt.")
-    ] = Method.trf,
-    effects: Annotated[
-        list[str] | None,
-        typer.Option("--with", metavar="EFFECT", help="Identify this too: 'name' or 'name:where'."),
-    ] = None,
-    fix: Annotated[
-        list[str] | None,
-        typer.Option(metavar="PARAM", help="Keep this parameter, 'effect:where.parameter'."),
-    ] = None,
-    free: Annotated[
-        list[str] | None,
-        typer.Option(metavar="PARAM", help="Estimate only the parameters named so."),
-    ] = None,
-    robust: Annotated[
-        bool, typer.Option("--robust", help="Trust readings less that lie far from all others.")
-    ] = False,
-    profile: Annotated[
-        bool, typer.Option("--profile", help="Profile-likelihood intervals: exact, and slower.")
-    ] = False,
-    leave_out: Annotated[
-        bool, typer.Option("--held-out", help="The error at poses left out of the fit.")
-    ] = False,
-    others: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--compare",
-            metavar="MODEL",
-            help="Compare with this: a model file, or effects to add, 'base_rocking+joint_tilt:..'",
-        ),
-    ] = None,
-    waves: Annotated[
-        bool,
-        typer.Option(
-            "--waves/--no-waves",
-            help="Of positions: let transmission errors in where they show. Without them the "
-            "geometry fits best alone, as a calibrated URDF has it, and springs take the blame.",
-        ),
-    ] = True,
+    method: Method = Method.trf,
+    effects: Annotated[list[str] | None, typer.Option("--with")] = None,
+    fix: list[str] | None = None,
+    free: list[str] | None = None,
+    robust: bool = False,
+    profile: bool = False,
+    leave_out: Annotated[bool, typer.Option("--held-out")] = False,
+    others: Annotated[list[str] | None, typer.Option("--compare")] = None,
+    waves: Annotated[bool, typer.Option("--waves/--no-waves")] = True,
     out: OutOption = None,
 ) -> Answer:
     """Spring values and their uncertainty from measured deflections.
@@ -101,6 +70,19 @@ def command(
     that no arm can have given are refused.
 
     Example: sk120stiff identify robots/motoman_sk120/data/table2_measured.csv --out model.yaml
+
+    Args:
+        method: Trust-region-reflective, or Levenberg-Marquardt.
+        effects (EFFECT): Identify this too: 'name' or 'name:where'.
+        fix (PARAM): Keep this parameter, 'effect:where.parameter'.
+        free (PARAM): Estimate only the parameters named so.
+        robust: Trust readings less that lie far from all others.
+        profile: Profile-likelihood intervals: exact, and slower.
+        leave_out: The error at poses left out of the fit.
+        others (MODEL): Compare with this: a model file, or effects to add,
+            'base_rocking+joint_tilt:..'
+        waves: Of positions: let transmission errors in where they show. Without them the geometry
+            fits best alone, as a calibrated URDF has it, and springs take the blame.
     """
     will_write(out)
     readings, robot = open_data(data)

@@ -44,131 +44,25 @@ class Load(StrEnum):
 
 
 def command(
-    source: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE",
-            help="Positions of a marker, with or without joints: text of any separator, .xlsx, "
-            ".mat, or the folder of a ROS bag. What it is, its content tells.",
-            show_default=False,
-        ),
-    ],
-    robot: Annotated[
-        str,
-        typer.Option(
-            "--robot",
-            metavar="ROBOT",
-            help="A .urdf, a .xacro, a folder with robot.yaml, or a bundled name (motoman_sk120).",
-            show_default=False,
-        ),
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            metavar="FILE",
-            help="The CSV file to write; a YAML file goes beside it.",
-            show_default=False,
-        ),
-    ] = None,
-    preview: Annotated[
-        bool,
-        typer.Option("--preview", "--dry-run", help="Show what was understood; write nothing."),
-    ] = False,
-    joints_file: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Joint values, where they stand in a file of their own; matched by name, else by "
-            "order.",
-            show_default=False,
-        ),
-    ] = None,
-    loads_file: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE", help="Forces or payloads, in the same way.", show_default=False
-        ),
-    ] = None,
-    length: Annotated[
-        Length | None, typer.Option(help="Unit of positions, where the file does not say it.")
-    ] = None,
-    angle: Annotated[
-        Angle | None, typer.Option(help="Unit of joint angles, where the file does not say it.")
-    ] = None,
-    load: Annotated[
-        Load | None, typer.Option(help="Unit of fx,fy,fz or payload (kg: payload alone).")
-    ] = None,
-    wrench: Annotated[
-        str | None,
-        typer.Option(
-            metavar="VALUES",
-            help="What the column load counts, on the robot in base axes: '0,0,-490 N'.",
-            show_default=False,
-        ),
-    ] = None,
-    coverage: Annotated[
-        float | None,
-        typer.Option(
-            metavar="K",
-            min=0.1,
-            help="Stated uncertainties are K times standard ones.",
-            show_default="2 for U95, else 1",
-        ),
-    ] = None,
-    point: Annotated[
-        str | None,
-        typer.Option(
-            metavar="VALUES",
-            help="Where the marker sits in the tool frame: '0,0,150 mm'.",
-            show_default="found by the fit",
-        ),
-    ] = None,
-    joints: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAMES",
-            help="Columns of the actuated joints, in the joints' order: 'a,b,c'; or sums of them, "
-            "as controllers have it: 'q1,q2,-(q2+q3)'.",
-            show_default="named as the joints, or q1,q2,...",
-        ),
-    ] = None,
-    columns: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAMES",
-            help="Names for the columns of FILE, in their order, where it has no headers: "
-            "'name,x,y,z'; a dash for one that is not needed.",
-            show_default=False,
-        ),
-    ] = None,
-    register: Annotated[
-        bool | None,
-        typer.Option(
-            "--register/--no-register",
-            help="Write positions in base axes, by the best fit of the robot to them.",
-            show_default="only where displacements are made of positions in other axes",
-        ),
-    ] = None,
-    format_name: Annotated[
-        str | None,
-        typer.Option(
-            "--format",
-            metavar="NAME",
-            help="sa, leica, polyworks, robodk, delmia, figaroh, rosbag or points.",
-            show_default="told by the content",
-        ),
-    ] = None,
-    marker: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Which marker, where there are several (x1, x2 ...)."),
-    ] = None,
-    sheet: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Which sheet of a workbook.")
-    ] = None,
-    topic: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Which topic of a recording has positions.")
-    ] = None,
+    source: Path,
+    robot: Annotated[str, typer.Option("--robot")],
+    out: Path | None = None,
+    preview: Annotated[bool, typer.Option("--preview", "--dry-run")] = False,
+    joints_file: Path | None = None,
+    loads_file: Path | None = None,
+    length: Length | None = None,
+    angle: Angle | None = None,
+    load: Load | None = None,
+    wrench: str | None = None,
+    coverage: Annotated[float | None, typer.Option(min=0.1)] = None,
+    point: str | None = None,
+    joints: str | None = None,
+    columns: str | None = None,
+    register: Annotated[bool | None, typer.Option("--register/--no-register")] = None,
+    format_name: Annotated[str | None, typer.Option("--format")] = None,
+    marker: int | None = None,
+    sheet: str | None = None,
+    topic: str | None = None,
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
@@ -180,6 +74,36 @@ def command(
 
     Example: sk120stiff import points.txt --joints-file joints.csv --robot ur5.urdf --length mm
     --angle deg --out own.csv
+
+    Args:
+        source (FILE): Positions of a marker, with or without joints: text of any separator, .xlsx,
+            .mat, or the folder of a ROS bag. What it is, its content tells.
+        robot (ROBOT): A .urdf, a .xacro, a folder with robot.yaml, or a bundled name
+            (motoman_sk120).
+        out (FILE): The CSV file to write; a YAML file goes beside it.
+        preview: Show what was understood; write nothing.
+        joints_file (FILE): Joint values, where they stand in a file of their own; matched by name,
+            else by order.
+        loads_file (FILE): Forces or payloads, in the same way.
+        length: Unit of positions, where the file does not say it.
+        angle: Unit of joint angles, where the file does not say it.
+        load: Unit of fx,fy,fz or payload (kg: payload alone).
+        wrench (VALUES): What the column load counts, on the robot in base axes: '0,0,-490 N'.
+        coverage (K): Stated uncertainties are K times standard ones. [default: 2 for U95, else 1]
+        point (VALUES): Where the marker sits in the tool frame: '0,0,150 mm'. [default: found by
+            the fit]
+        joints (NAMES): Columns of the actuated joints, in the joints' order: 'a,b,c'; or sums of
+            them, as controllers have it: 'q1,q2,-(q2+q3)'. [default: named as the joints, or
+            q1,q2,...]
+        columns (NAMES): Names for the columns of FILE, in their order, where it has no headers:
+            'name,x,y,z'; a dash for one that is not needed.
+        register: Write positions in base axes, by the best fit of the robot to them. [default: only
+            where displacements are made of positions in other axes]
+        format_name (NAME): sa, leica, polyworks, robodk, delmia, figaroh, rosbag or points.
+            [default: told by the content]
+        marker (N): Which marker, where there are several (x1, x2 ...).
+        sheet (NAME): Which sheet of a workbook.
+        topic (NAME): Which topic of a recording has positions.
     """
     if out is None and not preview:
         raise InputError(

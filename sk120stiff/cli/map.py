@@ -51,102 +51,21 @@ from sk120stiff.workspace.grid import CARTESIAN
 
 def command(
     robot: RobotOrModelArgument,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="STORE.zarr", help="Folder to write the map to.")
-    ],
-    grid: Annotated[
-        list[str],
-        typer.Option(
-            "--grid",
-            metavar="AXES",
-            help="Axes as NAME=START:STOP:STEP with units, 'joint_2_l=-70:70:2; joint_3_u=::2 deg' "
-            "(an empty start or stop is the joint's limit), or positions of the point, "
-            "'x=0:3:0.1; y=0; z=-1:2:0.1 m'. May be given several times.",
-        ),
-    ],
+    out: Annotated[Path, typer.Option("--out")],
+    grid: Annotated[list[str], typer.Option("--grid")],
     model: ModelOption = None,
-    wrench: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--wrench",
-            metavar="VALUES",
-            help="A load as in 'stiffness'; give it several times for several loads.",
-            show_default="no load",
-        ),
-    ] = None,
+    wrench: list[str] | None = None,
     pose: PoseOption = None,
     at: AtOption = None,
-    axis: Annotated[
-        str | None,
-        typer.Option(
-            "--tool-axis",
-            metavar="X,Y,Z",
-            help="For positions: direction of the tool's z axis in the base frame ('0,0,-1': "
-            "down). Rotation about it is free.",
-            show_default="any orientation",
-        ),
-    ] = None,
-    orientation: Annotated[
-        str | None,
-        typer.Option(
-            metavar="RPY",
-            help="For positions: orientation of the tool, roll, pitch and yaw as in a URDF "
-            "('180,0,0 deg').",
-            show_default="any orientation",
-        ),
-    ] = None,
-    start: Annotated[
-        str | None,
-        typer.Option(
-            metavar="POSE",
-            help="For positions: a pose as in --pose; the arm is led from it to every point along "
-            "a straight line and stays in its branch.",
-            show_default="at each point the stiffest branch that is found",
-        ),
-    ] = None,
-    directions: Annotated[
-        bool, typer.Option("--directions", help="Store the softest and stiffest directions too.")
-    ] = False,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Dask scheduler (tcp://host:8786) whose workers share the folder of the map.",
-            show_default="compute here",
-        ),
-    ] = None,
-    page: Annotated[
-        Path | None,
-        typer.Option(
-            "--page",
-            metavar="HTML",
-            help="Write a page too: the map as coloured points around the robot.",
-            show_default="none",
-        ),
-    ] = None,
-    colour: Annotated[
-        str | None,
-        typer.Option(
-            metavar="VARIABLE",
-            help="What colours the points of --page: minimum_stiffness, deflection_length, "
-            "deflection_std_parameters or another variable of the map.",
-            show_default="minimum_stiffness",
-        ),
-    ] = None,
-    figures: Annotated[
-        Path | None,
-        typer.Option(
-            "--figures",
-            metavar="DIR",
-            help="Draw slices too, as SVG and PNG: least stiffness, definiteness, and under a load "
-            "the deflection and its ±, over every pair of axes, through the softest point.",
-            show_default="none",
-        ),
-    ] = None,
-    overwrite: Annotated[
-        bool,
-        typer.Option("--overwrite", help="Replace another map of that name, and nothing else."),
-    ] = False,
+    axis: Annotated[str | None, typer.Option("--tool-axis")] = None,
+    orientation: str | None = None,
+    start: str | None = None,
+    directions: bool = False,
+    scheduler: str | None = None,
+    page: Path | None = None,
+    colour: str | None = None,
+    figures: Path | None = None,
+    overwrite: bool = False,
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
@@ -159,6 +78,31 @@ def command(
 
     Example: sk120stiff map motoman_sk120 --grid 'joint_2_l=::2; joint_3_u=::2 deg'
     --wrench '0,0,-490 N' --out sk120.zarr --figures sk120_slices
+
+    Args:
+        out (STORE.zarr): Folder to write the map to.
+        grid (AXES): Axes as NAME=START:STOP:STEP with units, 'joint_2_l=-70:70:2; joint_3_u=::2
+            deg' (an empty start or stop is the joint's limit), or positions of the point,
+            'x=0:3:0.1; y=0; z=-1:2:0.1 m'. May be given several times.
+        wrench (VALUES): A load as in 'stiffness'; give it several times for several loads.
+            [default: no load]
+        axis (X,Y,Z): For positions: direction of the tool's z axis in the base frame ('0,0,-1':
+            down). Rotation about it is free. [default: any orientation]
+        orientation (RPY): For positions: orientation of the tool, roll, pitch and yaw as in a URDF
+            ('180,0,0 deg'). [default: any orientation]
+        start (POSE): For positions: a pose as in --pose; the arm is led from it to every point
+            along a straight line and stays in its branch. [default: at each point the stiffest
+            branch that is found]
+        directions: Store the softest and stiffest directions too.
+        scheduler (ADDRESS): Dask scheduler (tcp://host:8786) whose workers share the folder of the
+            map. [default: compute here]
+        page (HTML): Write a page too: the map as coloured points around the robot. [default: none]
+        colour (VARIABLE): What colours the points of --page: minimum_stiffness, deflection_length,
+            deflection_std_parameters or another variable of the map. [default: minimum_stiffness]
+        figures (DIR): Draw slices too, as SVG and PNG: least stiffness, definiteness, and under a
+            load the deflection and its ±, over every pair of axes, through the softest point.
+            [default: none]
+        overwrite: Replace another map of that name, and nothing else.
     """
     will_fill(out)
     will_write(page, "--page")

@@ -35,10 +35,7 @@ PROBE = np.array([100.0, 70.0, -50.0, 0.0, 0.0, 0.0])  # N; a load that passes t
 
 def command(
     robot: RobotArgument,
-    out: Annotated[
-        Path,
-        typer.Option("--out", metavar="DIR", help="Folder to make.", show_default=False),
-    ],
+    out: Annotated[Path, typer.Option("--out")],
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
@@ -49,6 +46,9 @@ def command(
     with the joints' names and units, to be filled in. Replaces no file.
 
     Example: sk120stiff new my_robot.urdf --out my_robot
+
+    Args:
+        out (DIR): Folder to make.
     """
     for name in FILES:
         if (out / name).exists():

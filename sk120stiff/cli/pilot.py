@@ -39,35 +39,17 @@ _Text = str | None
 
 
 def command(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="The campaign's folder.")],
-    model: Annotated[
-        str | None, typer.Option(metavar="MODEL", help="Robot or model file; begins a campaign.")
-    ] = None,
-    force: Annotated[_Text, typer.Option(metavar="FORCE", help="Largest load: '400 N'.")] = None,
-    noise: Annotated[
-        _Text, typer.Option(metavar="LENGTH", help="Standard uncertainty of one reading: '10 um'.")
-    ] = None,
-    point: Annotated[
-        _Text,
-        typer.Option(metavar="XYZ", help="Measured and loaded point, tool frame: '0,50,120 mm'."),
-    ] = None,
-    zero: Annotated[
-        _Text, typer.Option(metavar="ZERO", help="separate: a zero reading for each; or shared.")
-    ] = None,
-    target: Annotated[
-        _Text, typer.Option(metavar="SHARE", help="Springs known to this are enough: '2 %'.")
-    ] = None,
-    most: Annotated[int | None, typer.Option(min=1, help="Readings at most.")] = None,
-    cell: Annotated[
-        Path | None,
-        typer.Option(metavar="YAML", help="What stands around the arm, its rig, its tracker."),
-    ] = None,
-    typed: Annotated[
-        bool, typer.Option("--type", help="Ask for each reading here, and write it down.")
-    ] = False,
-    watch: Annotated[
-        bool, typer.Option("--watch", help="Look again whenever readings.csv grows.")
-    ] = False,
+    folder: Path,
+    model: str | None = None,
+    force: _Text = None,
+    noise: _Text = None,
+    point: _Text = None,
+    zero: _Text = None,
+    target: _Text = None,
+    most: Annotated[int | None, typer.Option(min=1)] = None,
+    cell: Path | None = None,
+    typed: Annotated[bool, typer.Option("--type")] = False,
+    watch: bool = False,
 ) -> Answer:
     """Which reading comes next, what is known, and when to stop.
 
@@ -77,6 +59,19 @@ def command(
 
     Example: sk120stiff pilot campaign --model robots/motoman_sk120/model.yaml --point '0,50,120 mm'
     Example: sk120stiff pilot campaign --type
+
+    Args:
+        folder (DIR): The campaign's folder.
+        model (MODEL): Robot or model file; begins a campaign.
+        force (FORCE): Largest load: '400 N'.
+        noise (LENGTH): Standard uncertainty of one reading: '10 um'.
+        point (XYZ): Measured and loaded point, tool frame: '0,50,120 mm'.
+        zero (ZERO): separate: a zero reading for each; or shared.
+        target (SHARE): Springs known to this are enough: '2 %'.
+        most: Readings at most.
+        cell (YAML): What stands around the arm, its rig, its tracker.
+        typed: Ask for each reading here, and write it down.
+        watch: Look again whenever readings.csv grows.
     """
     at = Folder(folder)
     stated = {

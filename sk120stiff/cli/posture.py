@@ -48,74 +48,16 @@ class Minimise(StrEnum):
 
 def command(
     model: ModelArgument,
-    path: Annotated[
-        Path,
-        typer.Argument(
-            metavar="PATH",
-            help="A CSV file of tool placements and wrenches as for 'compensate': x[mm], y, z, "
-            "orientation or none, fx[N], fy, fz.",
-            show_default=False,
-        ),
-    ],
-    out: Annotated[
-        Path, typer.Option("--out", metavar="CSV", help="Where to write the path by joints.")
-    ],
-    minimise: Annotated[
-        Minimise,
-        typer.Option(help="Compliance (so the stiffness is largest), or deflection by the wrench."),
-    ] = Minimise.compliance,
-    direction: Annotated[
-        str | None,
-        typer.Option(
-            metavar="X,Y,Z", help="Direction that matters, base axes.", show_default="all"
-        ),
-    ] = None,
-    axis: Annotated[
-        str | None,
-        typer.Option(
-            "--tool-axis",
-            metavar="X,Y,Z",
-            help="Direction of the tool's z axis, rotation about it free; instead of an "
-            "orientation in the file.",
-            show_default=False,
-        ),
-    ] = None,
-    place: Annotated[
-        str | None,
-        typer.Option(
-            metavar="RANGES",
-            help="How the part, and the path with it, may be moved about its middle: "
-            "'x=-300:300 mm; yaw=-30:30 deg'.",
-            show_default="not at all",
-        ),
-    ] = None,
-    limit_margin: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ANGLE", help="Distance from joint limits: '5 deg'.", show_default="none"
-        ),
-    ] = None,
-    singularity_margin: Annotated[
-        float,
-        typer.Option(help="Smallest allowed ratio of the position Jacobian's singular values."),
-    ] = 0.02,
-    picture: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Draw the choice (.svg, .png or .pdf): the worst point over the tool's "
-            "orientation with the posture that was chosen, and the values along the path.",
-            show_default="none",
-        ),
-    ] = None,
-    page: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="HTML",
-            help="Write a page too: the arm in 3-D at every point of the path.",
-            show_default="none",
-        ),
-    ] = None,
+    path: Path,
+    out: Annotated[Path, typer.Option("--out")],
+    minimise: Minimise = Minimise.compliance,
+    direction: str | None = None,
+    axis: Annotated[str | None, typer.Option("--tool-axis")] = None,
+    place: str | None = None,
+    limit_margin: str | None = None,
+    singularity_margin: float = 0.02,
+    picture: Path | None = None,
+    page: Path | None = None,
     cell: CellOption = None,
     at: AtOption = None,
     seed: SeedOption = 0,
@@ -128,6 +70,23 @@ def command(
 
     Example: sk120stiff posture model.yaml path.csv --tool-axis 0,0,-1 --minimise deflection
     --out best.csv --picture best.svg
+
+    Args:
+        path (PATH): A CSV file of tool placements and wrenches as for 'compensate': x[mm], y, z,
+            orientation or none, fx[N], fy, fz.
+        out (CSV): Where to write the path by joints.
+        minimise: Compliance (so the stiffness is largest), or deflection by the wrench.
+        direction (X,Y,Z): Direction that matters, base axes. [default: all]
+        axis (X,Y,Z): Direction of the tool's z axis, rotation about it free; instead of an
+            orientation in the file.
+        place (RANGES): How the part, and the path with it, may be moved about its middle:
+            'x=-300:300 mm; yaw=-30:30 deg'. [default: not at all]
+        limit_margin (ANGLE): Distance from joint limits: '5 deg'. [default: none]
+        singularity_margin: Smallest allowed ratio of the position Jacobian's singular values.
+        picture (FILE): Draw the choice (.svg, .png or .pdf): the worst point over the tool's
+            orientation with the posture that was chosen, and the values along the path. [default:
+            none]
+        page (HTML): Write a page too: the arm in 3-D at every point of the path. [default: none]
     """
     if picture is not None and picture.suffix.lower() not in (".svg", ".png", ".pdf"):
         raise InputError(

@@ -36,50 +36,33 @@ class Steps(StrEnum):
 
 def command(
     model: ModelArgument,
-    plan: Annotated[
-        Path,
-        typer.Argument(
-            metavar="PLAN",
-            help="Poses and loads: measurements without displacements (others are not looked at).",
-            show_default=False,
-        ),
-    ],
-    out: Annotated[
-        Path,
-        typer.Option("--out", metavar="CSV", help="Where to write them.", show_default=False),
-    ],
-    noise: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH",
-            help="Standard uncertainty of one reading per axis, e.g. '10 um'.",
-            show_default="none",
-        ),
-    ] = None,
-    zero: Annotated[
-        Zero, typer.Option(help="One zero reading for all loads of a pose, or one for each.")
-    ] = Zero.shared,
-    growth: Annotated[
-        float,
-        typer.Option(min=0.0, max=0.5, help="Noise that grows with the displacement: its share."),
-    ] = 0.0,
-    schedule: Annotated[
-        Steps, typer.Option(help="Each load alone, in steps up to it, or up and down.")
-    ] = Steps.as_given,
-    levels: Annotated[int, typer.Option(min=1, help="Steps up to the full load.")] = 5,
-    repeats: Annotated[int, typer.Option(min=1, help="How often each reading is taken.")] = 1,
-    outliers: Annotated[
-        float,
-        typer.Option(min=0.0, max=0.5, help="Share of readings off by 5 to 20 times the noise."),
-    ] = 0.0,
-    positions: Annotated[
-        bool, typer.Option("--positions", help="Write x, y, z with zero rows, no differences.")
-    ] = False,
+    plan: Path,
+    out: Annotated[Path, typer.Option("--out")],
+    noise: str | None = None,
+    zero: Zero = Zero.shared,
+    growth: Annotated[float, typer.Option(min=0.0, max=0.5)] = 0.0,
+    schedule: Steps = Steps.as_given,
+    levels: Annotated[int, typer.Option(min=1)] = 5,
+    repeats: Annotated[int, typer.Option(min=1)] = 1,
+    outliers: Annotated[float, typer.Option(min=0.0, max=0.5)] = 0.0,
+    positions: bool = False,
     seed: SeedOption = 0,
 ) -> Answer:
     """Synthetic measurements from a model: loads, noise, zeros.
 
     Example: sk120stiff simulate model.yaml plan.csv --noise '10 um' --out readings.csv
+
+    Args:
+        plan (PLAN): Poses and loads: measurements without displacements (others are not looked at).
+        out (CSV): Where to write them.
+        noise (LENGTH): Standard uncertainty of one reading per axis, e.g. '10 um'. [default: none]
+        zero: One zero reading for all loads of a pose, or one for each.
+        growth: Noise that grows with the displacement: its share.
+        schedule: Each load alone, in steps up to it, or up and down.
+        levels: Steps up to the full load.
+        repeats: How often each reading is taken.
+        outliers: Share of readings off by 5 to 20 times the noise.
+        positions: Write x, y, z with zero rows, no differences.
     """
     declare_readings(out)
     readings, robot = open_data(plan)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from threading import Event
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer, note
@@ -29,65 +27,19 @@ if TYPE_CHECKING:
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
-DataOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--data",
-        metavar="DATA",
-        help="Measurements (CSV) whose poses are listed, with measured and predicted arrows.",
-        show_default=False,
-    ),
-]
-BeforeOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--before",
-        metavar="MODEL",
-        help="A second model, whose predictions are shown beside those of the first.",
-        show_default=False,
-    ),
-]
-NoOpenOption = Annotated[
-    bool, typer.Option("--no-open", help="Print the address without opening a browser.")
-]
-PortOption = Annotated[
-    int, typer.Option("--port", metavar="N", help="First port to try; 0 takes any that is free.")
-]
-HostOption = Annotated[
-    str,
-    typer.Option(
-        "--host",
-        metavar="ADDRESS",
-        help="Address to listen on. Anything but loopback shows the page to your network.",
-    ),
-]
-MeshcatOption = Annotated[
-    bool,
-    typer.Option("--meshcat", help="Open Meshcat's own viewer instead, on this machine alone."),
-]
-StaticOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--static",
-        metavar="FILE",
-        help="Write the scene as one HTML file that works offline, instead of serving it.",
-        show_default=False,
-    ),
-]
-
 
 def command(
     robot: RobotOrModelArgument,
     model: ModelOption = None,
-    data: DataOption = None,
-    before: BeforeOption = None,
+    data: Path | None = None,
+    before: Path | None = None,
     pose: PoseOption = None,
     wrench: WrenchOption = None,
-    static: StaticOption = None,
-    meshcat: MeshcatOption = False,
-    no_open: NoOpenOption = False,
-    port: PortOption = 7400,
-    host: HostOption = "127.0.0.1",
+    static: Path | None = None,
+    meshcat: bool = False,
+    no_open: bool = False,
+    port: int = 7400,
+    host: str = "127.0.0.1",
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
@@ -99,6 +51,15 @@ def command(
     with --data it plays the measured poses there.
 
     Example: sk120stiff view motoman_sk120 --wrench '0,0,-490 N' --static scene.html
+
+    Args:
+        data (DATA): Measurements (CSV) whose poses are listed, with measured and predicted arrows.
+        before (MODEL): A second model, whose predictions are shown beside those of the first.
+        static (FILE): Write the scene as one HTML file that works offline, instead of serving it.
+        meshcat: Open Meshcat's own viewer instead, on this machine alone.
+        no_open: Print the address without opening a browser.
+        port (N): First port to try; 0 takes any that is free.
+        host (ADDRESS): Address to listen on. Anything but loopback shows the page to your network.
     """
     will_write(static, "--static")
     will_draw(robot)

@@ -2,14 +2,18 @@
 
 import importlib
 import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Annotated
 
 import pytest
+import typer
 
 import sk120stiff.cli
 from sk120stiff.cli.main import COMMANDS
+from sk120stiff.cli.signature import declared
 
 HEAVY = {
     "jinja2",
@@ -30,7 +34,7 @@ INFRASTRUCTURE = {
     "__init__", "calibration", "cell", "compensate_path", "compensate_program",
     "compensate_sheet", "compensate_words", "drawing", "environment", "explain_output", "frame",
     "identify_rows", "import_preview", "main", "map_postures", "opening", "options",
-    "positions", "tables", "uncertainty", "visible", "xacro_option",
+    "positions", "signature", "tables", "uncertainty", "visible", "xacro_option",
 }  # fmt: skip
 
 
@@ -46,6 +50,28 @@ def test_the_list_says_what_the_command_says(name: str) -> None:
     body = importlib.import_module(f"sk120stiff.cli.{name}").command
     first_line = (inspect.getdoc(body) or "").splitlines()[0]
     assert first_line == COMMANDS[name]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_parameter_is_explained_and_nothing_else_is(name: str) -> None:
+    body = importlib.import_module(f"sk120stiff.cli.{name}").command
+    told, parameters = declared(body)
+    assert "Args:" not in told
+    assert [p.name for p in parameters if not p.annotation.__metadata__[0].help] == []
+    entries = re.findall(r"^    (\w+)(?: \(.*?\))?: ", inspect.getdoc(body) or "", re.MULTILINE)
+    assert set(entries) <= {p.name for p in parameters}
+
+
+def test_a_command_without_docstrings_keeps_its_options() -> None:
+    def body(
+        path: Path, flag: bool = False, keys: Annotated[str, typer.Option("--set")] = ""
+    ) -> None: ...
+
+    told, parameters = declared(body)
+    shown = {p.name: p.annotation.__metadata__[0] for p in parameters}
+    assert told == ""
+    assert isinstance(shown["path"], typer.models.ArgumentInfo)
+    assert (shown["flag"].default, shown["keys"].default) == ("--flag", "--set")
 
 
 def test_help_lists_every_command_with_its_line(run) -> None:

@@ -42,132 +42,27 @@ MOST_LEFT_OUT = 5  # poses to which no way is found, before that is the answer
 
 
 def command(
-    robot: Annotated[
-        str | None,
-        typer.Argument(metavar="ROBOT", help="Robot or model file; --model does as well."),
-    ] = None,
-    model: Annotated[
-        Path | None, typer.Option("--model", metavar="MODEL", help="Model file (YAML), or a robot.")
-    ] = None,
-    count: Annotated[int | None, typer.Option(min=1, help="Number of poses.")] = None,
-    loads: Annotated[int, typer.Option(min=1, help="Number of loads at each pose.")] = 1,
-    check: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="CSV",
-            help="Plan nothing: say row by row what is wrong with this plan, these readings, or "
-            "(of ROBOT) this path by joints, as 'posture' writes it.",
-        ),
-    ] = None,
-    between: Annotated[
-        str | None,
-        typer.Option(
-            metavar="EFFECT,EFFECT",
-            help="Tell these two apart: 'name' or 'name:where' each.",
-            show_default="make the parameters well known",
-        ),
-    ] = None,
-    wanted: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--for",
-            metavar="PARAM",
-            help="Make this well known: a parameter, or an effect with all it has.",
-            show_default="all free ones",
-        ),
-    ] = None,
-    data: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="CSV", help="Readings there are already; points and noise are theirs."
-        ),
-    ] = None,
-    force: Annotated[
-        str,
-        typer.Option(
-            metavar="FORCE", help="Size of the loads, less where the motors cannot hold it."
-        ),
-    ] = "400 N",
-    noise: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH",
-            help="Standard uncertainty of one reading.",
-            show_default="the data's, else 10 um",
-        ),
-    ] = None,
-    point: Annotated[
-        str | None,
-        typer.Option(
-            metavar="XYZ",
-            help="Measured and loaded point in the tool frame, e.g. '0,50,120 mm'.",
-            show_default="the data's, else the tool frame's origin",
-        ),
-    ] = None,
-    lowest: Annotated[
-        str | None,
-        typer.Option(
-            "--floor",
-            "--lowest",
-            metavar="LENGTH",
-            help="Height in the base frame below which nothing may go: '-0.3 m'.",
-            show_default="as low as --data went, else none",
-        ),
-    ] = None,
-    box: Annotated[
-        str | None,
-        typer.Option(
-            metavar="XYZXYZ",
-            help="Box in the base frame for the measured point: '0.8,-1,0, 2.2,1,1.5 m'.",
-        ),
-    ] = None,
+    robot: Annotated[str | None, typer.Argument()] = None,
+    model: Path | None = None,
+    count: Annotated[int | None, typer.Option(min=1)] = None,
+    loads: Annotated[int, typer.Option(min=1)] = 1,
+    check: Path | None = None,
+    between: str | None = None,
+    wanted: Annotated[list[str] | None, typer.Option("--for")] = None,
+    data: Path | None = None,
+    force: str = "400 N",
+    noise: str | None = None,
+    point: str | None = None,
+    lowest: Annotated[str | None, typer.Option("--floor", "--lowest")] = None,
+    box: str | None = None,
     cell: CellOption = None,
-    candidates: Annotated[
-        int, typer.Option(min=10, max=MOST_CANDIDATES, help="Poses to choose from.")
-    ] = 400,
-    directions: Annotated[
-        int, typer.Option(min=1, max=10_000, help="Load directions at each pose.")
-    ] = 12,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="CSV", help="Where to write them, for the measurement."),
-    ] = None,
-    program: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Order the poses for least driving and write the way through them, free of "
-            "collisions: .src (KUKA), .mod (ABB), .ls (FANUC), .jbi (Motoman), .script (UR).",
-        ),
-    ] = None,
-    places: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="CSV",
-            help="Poses that put the point at these places, one at each; with --count so many of "
-            "them all. Columns point, x[mm], y[mm], z[mm] in the base, with roll[deg], pitch, yaw "
-            "of the tool or not.",
-            show_default="poses all over the joints' ranges",
-        ),
-    ] = None,
-    axis: Annotated[
-        str | None,
-        typer.Option(
-            "--tool-axis",
-            metavar="X,Y,Z",
-            help="Direction of the tool's z axis at the places, rotation about it free.",
-            show_default="any, or that of the file",
-        ),
-    ] = None,
-    page: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="HTML",
-            help="Write a page: the arm in 3-D at every pose of the plan, in order, with its "
-            "loads.",
-            show_default="none",
-        ),
-    ] = None,
+    candidates: Annotated[int, typer.Option(min=10, max=MOST_CANDIDATES)] = 400,
+    directions: Annotated[int, typer.Option(min=1, max=10_000)] = 12,
+    out: Path | None = None,
+    program: Path | None = None,
+    places: Path | None = None,
+    axis: Annotated[str | None, typer.Option("--tool-axis")] = None,
+    page: Path | None = None,
     seed: SeedOption = 0,
 ) -> Answer:
     """The poses and loads to measure next.
@@ -180,6 +75,38 @@ def command(
     Example: sk120stiff plan --model model.yaml --places reach.csv --page plan.html
     Example: sk120stiff plan --check plan.csv --cell cell.yaml
     Example: sk120stiff plan --check best.csv --model model.yaml
+
+    Args:
+        robot (ROBOT): Robot or model file; --model does as well.
+        model (MODEL): Model file (YAML), or a robot.
+        count: Number of poses.
+        loads: Number of loads at each pose.
+        check (CSV): Plan nothing: say row by row what is wrong with this plan, these readings, or
+            (of ROBOT) this path by joints, as 'posture' writes it.
+        between (EFFECT,EFFECT): Tell these two apart: 'name' or 'name:where' each. [default: make
+            the parameters well known]
+        wanted (PARAM): Make this well known: a parameter, or an effect with all it has. [default:
+            all free ones]
+        data (CSV): Readings there are already; points and noise are theirs.
+        force (FORCE): Size of the loads, less where the motors cannot hold it.
+        noise (LENGTH): Standard uncertainty of one reading. [default: the data's, else 10 um]
+        point (XYZ): Measured and loaded point in the tool frame, e.g. '0,50,120 mm'. [default: the
+            data's, else the tool frame's origin]
+        lowest (LENGTH): Height in the base frame below which nothing may go: '-0.3 m'. [default: as
+            low as --data went, else none]
+        box (XYZXYZ): Box in the base frame for the measured point: '0.8,-1,0, 2.2,1,1.5 m'.
+        candidates: Poses to choose from.
+        directions: Load directions at each pose.
+        out (CSV): Where to write them, for the measurement.
+        program (FILE): Order the poses for least driving and write the way through them, free of
+            collisions: .src (KUKA), .mod (ABB), .ls (FANUC), .jbi (Motoman), .script (UR).
+        places (CSV): Poses that put the point at these places, one at each; with --count so many of
+            them all. Columns point, x[mm], y[mm], z[mm] in the base, with roll[deg], pitch, yaw of
+            the tool or not. [default: poses all over the joints' ranges]
+        axis (X,Y,Z): Direction of the tool's z axis at the places, rotation about it free.
+            [default: any, or that of the file]
+        page (HTML): Write a page: the arm in 3-D at every pose of the plan, in order, with its
+            loads. [default: none]
     """
     if check is not None:
         return checked(
