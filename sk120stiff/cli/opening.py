@@ -199,6 +199,7 @@ def open_data(path: Path, base: str | None = None, tool: str | None = None) -> O
         place = f"{path.with_suffix('.yaml')}: {error.where}" if error.where else None
         where = place or str(path.with_suffix(".yaml"))
         raise InputError(error.what, where=where, remedy=error.remedy) from error
+    robot = robot.under(data.gravity)
     return Opened(data.with_joints(robot.actuated, robot.kinds), robot)
 
 

@@ -19,7 +19,6 @@ from sk120stiff.explain.absolute.next_step import headline, next_step_of_positio
 from sk120stiff.explain.absolute.run import Explained, explain_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.files import csv_text, write_atomically
-from sk120stiff.identify.absolute.start import in_gravity
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model
@@ -78,7 +77,7 @@ def predicted_positions(model: Model, readings: Measurements, out: Path | None) 
             "the model does not know where the tracker stands",
             remedy="Give a model that 'identify' or 'explain' wrote from readings of this tracker.",
         )
-    model = in_gravity(model, readings.absolute.gravity)
+    model = model.under(readings.gravity)
     columns = gaps_table(model, readings)
     if out is not None:
         write_atomically(out, csv_text(columns.items()))

@@ -53,7 +53,7 @@ def fit(
         17.2 µm rms
     """
     refuse_unusable(model, measurements)
-    used = measurements.masked()
+    model, used = model.under(measurements.gravity), measurements.masked()
     open_ = [noise] if noise is not None else candidates(used)
     fits = [solve(Problem(model, used, each), method=method) for each in open_]
     found = fits[likelier([2.0 * each.log_likelihood for each in fits])]

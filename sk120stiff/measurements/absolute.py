@@ -49,7 +49,6 @@ class Absolute:
             tool frame [m], and whether mass and centre are in doubt.
         temperature: (N,) [degC], or None.
         series: N labels of what may have changed in between, or None.
-        gravity: (3,) acceleration in base axes [m/s²] where the file says it.
     """
 
     channels: Channels
@@ -62,7 +61,6 @@ class Absolute:
     fit_payload: bool = False
     temperature: Array | None = None
     series: tuple[str, ...] | None = None
-    gravity: Array | None = None
 
     def select(self, index: Index) -> Absolute:
         """Some of the rows."""
@@ -136,9 +134,6 @@ def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
     hung = np.zeros(3)
     if settings.payload is not None and settings.payload.point is not None:
         hung = np.array(settings.payload.point.in_metres(file.place("payload.point.unit")))
-    gravity = None
-    if settings.gravity is not None:
-        gravity = np.zeros(3) if settings.gravity == 0 else np.array(settings.gravity, dtype=float)
     return Absolute(
         channels=channels,
         frame="base" if settings.position is None else settings.position.frame,
@@ -150,7 +145,6 @@ def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
         fit_payload=settings.payload is not None and settings.payload.fit,
         temperature=_temperature(table) if "temperature" in roles.has else None,
         series=table.cells["series"] if "series" in roles.has else None,
-        gravity=gravity,
     )
 
 

@@ -79,6 +79,7 @@ class Measurements(Tabular):
             otherwise than under load, rad or m; None: the same.
         line: (N,) line in the file, 0 where there is none.
         absolute: Readings of where markers stand, in the place of displacements, or None.
+        gravity: (3,) acceleration of weight in base axes, m/s², or None: as the robot has it.
         extra: Further columns as text, under their header as written.
         notes: What reading the file decided, in sentences.
         data_hash: SHA-256 of the bytes of both files.
@@ -120,6 +121,7 @@ class Measurements(Tabular):
     zero_joints: Array | None = None
     line: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     absolute: Absolute | None = None
+    gravity: Array | None = None
     spare: tuple[str, ...] = ()
     source: str = ""
     extra: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -139,6 +141,7 @@ class Measurements(Tabular):
         self._array("wrench", (count, 6))
         self._array("point", (3,))
         self._array("force_point", (3,), default=self.point)
+        self._array("gravity", (3,))
         for name in ("displacement", "sigma"):
             self._array(name, (count, 3))
         for name in ("order", "time"):
@@ -361,12 +364,7 @@ class Measurements(Tabular):
         if self.sigma is not None and np.any(self.sigma <= 0):
             raise InputError("a standard uncertainty is not positive", where="sigma")
         for label in self.poses:
-            if (
-                not label
-                or label != label.strip()
-                or label[0] == "#"
-                or len(label.splitlines()) > 1
-            ):
+            if label != label.strip() or label[:1] in ("", "#") or len(label.splitlines()) > 1:
                 raise InputError(f"{label!r} cannot be a pose label")
         extra = {key: tuple(value) for key, value in self.extra.items()}
         if any(len(value) != count for value in extra.values()):

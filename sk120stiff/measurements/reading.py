@@ -152,6 +152,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         branch=None if branch is None else tuple(branch[i] for i in kept),
         repeat=None if rows.repeat is None else rows.repeat[kept],
         line=np.array(table.lines)[kept],
+        gravity=None if settings.gravity is None else np.array(settings.gravity or (0.0,) * 3),
         source=settings.source.strip(),
         extra={
             table.headers[name]: tuple(table.cells[name][i] for i in kept) for name in roles.extra

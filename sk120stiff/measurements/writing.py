@@ -176,6 +176,8 @@ def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
         noise["growth"] = m.noise.growth
     if noise:
         settings["noise"] = noise
+    if m.gravity is not None:
+        settings["gravity"] = m.gravity.tolist()
     if m.source:
         settings["source"] = m.source
     return settings

@@ -5,6 +5,7 @@
     robot: motoman_sk120            # or a path, relative to this file
     base_frame: base_link           # default, as of tool_frame: the robot's own
     tool_frame: tool0
+    gravity: [9.81, 0, 0]           # base axes, m/s²; default: as of an arm that stands on a floor
     effects:
       - name: joint_springs
         where: joint_1_s
@@ -21,8 +22,9 @@ import os
 import re
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+import numpy as np
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -48,6 +50,9 @@ _EFFECT = (
 LIKE = dict.fromkeys(("effects", "name", "where", "parameters"), f"effects: [{_EFFECT}]")
 
 
+_Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=True)
 
@@ -70,6 +75,7 @@ class _File(_Strict):
     robot: str
     base_frame: str | None = None
     tool_frame: str | None = None
+    gravity: tuple[_Finite, _Finite, _Finite] | None = None
     effects: list[_Effect] = Field(default_factory=list)
     provenance: dict[str, str] = Field(default_factory=dict)
     uncertainty: UncertaintySection | None = None
@@ -85,6 +91,7 @@ def model_text(model: Model, *, folder: Path | None = None) -> str:
         "robot": str(named if folder is None else named.seen_from(folder)),
         "base_frame": model.robot.base_frame,
         "tool_frame": model.robot.tool_frame,
+        **_weight(model.robot),
         "effects": [
             {
                 "name": item.name,
@@ -102,6 +109,13 @@ def model_text(model: Model, *, folder: Path | None = None) -> str:
         document["uncertainty"] = known
     text = yaml.dump(document, Dumper=ModelDumper, sort_keys=False, allow_unicode=True, width=100)
     return _commented(str(text), model)
+
+
+def _weight(robot: Robot) -> dict[str, list[float]]:
+    """Where weight pulls, of a robot that was told; one that was not stands on a floor."""
+    if robot.on_a_floor:
+        return {}
+    return {"gravity": [float(g) for g in np.round(robot.gravity_in_base, 12)]}
 
 
 def _commented(text: str, model: Model) -> str:
@@ -197,6 +211,8 @@ def model_from_text(
     else:
         arm = robot
         _warn_of_another_robot(content.robot, arm, folder, where)
+    if content.gravity is not None and arm.on_a_floor:  # what the readings say holds over it
+        arm = arm.under(np.array(content.gravity))
     parameters: list[Parameter] = []
     model = Model(arm, provenance=content.provenance)
     for entry in content.effects:

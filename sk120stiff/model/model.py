@@ -149,6 +149,10 @@ class Model:
                 )
         return replace(self, parameters=self.parameters + added, uncertainty=None)
 
+    def under(self, gravity: Array | None) -> Model:
+        """The model where weight accelerates so, (3,) in base axes [m/s²]; see `Robot.under`."""
+        return self if gravity is None else replace(self, robot=self.robot.under(gravity))
+
     def without(self, effect_id: str) -> Model:
         """The model without one effect (``name:where``).
 

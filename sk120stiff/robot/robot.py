@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING
@@ -232,6 +232,28 @@ class Robot:
         swept = chain.sweep(np.zeros(chain.m))
         T_root = self.tree.body(root)[1]
         return np.asarray(swept.rotation.T @ T_root[:3, :3].T @ self.gravity)
+
+    @property
+    def on_a_floor(self) -> bool:
+        """Does the URDF alone say where weight pulls, along -z of its root?"""
+        return np.array_equal(self.gravity, [0.0, 0.0, -STANDARD_GRAVITY])
+
+    def under(self, gravity: Array | None) -> Robot:
+        """The robot where weight accelerates so, (3,) in base axes [m/s²]; None: as it does here.
+
+        A URDF is taken as it stands on a floor; an arm on a wall or a ceiling is told so.
+
+        Examples:
+            >>> import numpy as np
+            >>> import sk120stiff as sk
+            >>> on_a_wall = sk.load_robot("ur5e").under(np.array([9.81, 0.0, 0.0]))
+            >>> on_a_wall.gravity_torque([0, -1.57, 0, 0, 0, 0]).round(1).tolist()  # N·m
+            [14.3, -59.8, -18.4, 0.0, -0.0, 0.0]
+        """
+        if gravity is None:
+            return self
+        turns = [replace(self, gravity=axis).gravity_in_base for axis in np.eye(3)]
+        return replace(self, gravity=np.asarray(np.array(turns) @ gravity, dtype=np.float64))
 
     def closes(self, a: ArrayLike, margin: float | None = None) -> Mask:
         """(...,) where the closed loops can be closed; everywhere if there are none.

@@ -11,7 +11,6 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.effects import load_cases_of
-from sk120stiff.identify.absolute.start import in_gravity
 from sk120stiff.model.pose_reading import read_poses
 from tests.absolute.arm import Array, urdf
 from tests.absolute.test_bad_input import PUBLIC
@@ -92,7 +91,7 @@ def test_sag_under_weight_and_payload_is_mujocos(name: str, mass: float, tmp_pat
     readings = sk.read(data).with_joints(robot.actuated)
     springs = np.full(robot.n, 1.0 / SOFT[name])
     assert readings.absolute is not None
-    model = in_gravity(sk.joint_spring_model(robot, springs), readings.absolute.gravity)
+    model = sk.joint_spring_model(robot, springs).under(readings.gravity)
     found = read_poses(model, load_cases_of(robot, readings))
     stiff = robot.screws(a).frame_position + robot.screws(a).rotation @ MARKER
     sag = np.linalg.norm(found.position - stiff, axis=1)

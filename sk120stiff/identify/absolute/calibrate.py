@@ -18,7 +18,7 @@ from sk120stiff.identify.absolute.left_out import doubted
 from sk120stiff.identify.absolute.model_form import ModelForm, model_form, widened
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.selection import waves_that_show
-from sk120stiff.identify.absolute.start import in_gravity, loaded, started
+from sk120stiff.identify.absolute.start import loaded, started
 from sk120stiff.identify.absolute.waves_left_out import beside_waves
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
@@ -117,7 +117,7 @@ def calibrate(
     said = readings.absolute
     if said is None:
         raise InputError("there are no positions", where=str(readings.path or "measurements"))
-    model = in_gravity(model, said.gravity)
+    model = model.under(readings.gravity)
     sizes = doubtful_sizes(model.robot, readings)
     placed = place(model.robot, readings)
     if placed is not None or said.frame == "base":

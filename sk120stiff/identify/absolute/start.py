@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from sk120stiff.arrays import Array
@@ -14,21 +12,6 @@ from sk120stiff.measurements.placing import Placing
 from sk120stiff.model import Model, Parameter
 
 REGISTERED = "registered"
-
-
-def in_gravity(model: Model, gravity: Array | None) -> Model:
-    """The model under the acceleration (3,) that a file states in base axes [m/s²]."""
-    if gravity is None:
-        return model
-    robot = model.robot
-    own = robot.gravity_in_base
-    scale = float(np.linalg.norm(own))
-    if not gravity.any() or scale == 0.0:
-        return replace(model, robot=replace(robot, gravity=np.zeros(3)), uncertainty=None)
-    # `Robot.gravity` is in axes of the root: turn what the file says as the root is turned.
-    columns = [replace(robot, gravity=axis).gravity_in_base for axis in np.eye(3)]
-    turned = np.asarray(np.linalg.solve(np.array(columns).T, gravity), dtype=np.float64)
-    return replace(model, robot=replace(robot, gravity=turned), uncertainty=None)
 
 
 def options_of(readings: Measurements) -> Options:
