@@ -17,6 +17,8 @@ from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 
 COURSES = (0.1, 0.3, 1.0)  # of the series: over which a drift may die away
+BRIEF = 0.03  # of the series: the same of what warms up at once
+FEWEST = 2.0  # readings: what dies away faster is an error of single readings
 OVER = "_over_"  # rate_x_over_40: at first, dying away over 40 readings
 
 
@@ -87,14 +89,23 @@ class ReadingDrift(ReadingError):
         return self._clock(load_cases)[0] is not None
 
     def other_laws(self, load_cases: LoadCases) -> tuple[ReadingDrift, ...]:
-        """Drifts that die away over `COURSES` of the series, and all of these together."""
+        """Drifts that die away over `BRIEF` or `COURSES` of the series, and the latter together."""
+        shortest, whole = self._span(load_cases)
+        if not whole:
+            return ()
+        brief, *times = (float(f"{share * whole:.3g}") for share in (BRIEF, *COURSES))
+        at_once = [(brief,)] if brief >= shortest else []
+        laws = [(0.0,), *at_once, *((T,) for T in times), (0.0, *times)]
+        return tuple(replace(self, over=own) for own in laws if own != self.over)
+
+    def _span(self, load_cases: LoadCases) -> tuple[float, float]:
+        """`FEWEST` usual steps of the clock, and the whole series; zeros where nothing tells."""
         elapsed, begun = self._clock(load_cases)
         if elapsed is None or begun is None:
-            return ()
-        whole = float((begun + elapsed).max())
-        times = tuple(float(f"{share * whole:.3g}") for share in COURSES)
-        laws = [(0.0,), *((T,) for T in times), (0.0, *times)] if whole > 0.0 else []
-        return tuple(replace(self, over=own) for own in laws if own != self.over)
+            return 0.0, 0.0
+        clock = np.unique(begun + elapsed)
+        steps = np.diff(clock)
+        return (FEWEST * float(np.median(steps)), float(clock[-1])) if len(steps) else (0.0, 0.0)
 
     def _clock(self, load_cases: LoadCases) -> tuple[Array | None, Array | None]:
         """Since the zero reading, and when that one was taken."""
@@ -117,6 +128,20 @@ class ReadingDrift(ReadingError):
             for T in self.over
         ]
         return np.concatenate([c[:, None, None] * np.eye(3) for c in courses], axis=2)
+
+
+def warm_ups(load_cases: LoadCases) -> tuple[Array, ...]:
+    """(N, 3, 3) each: readings of drifts along x, y, z that die away over longer and longer times.
+
+    From `FEWEST` readings on, by doubling, up to the whole series; none where nobody says in which
+    order or when the readings were taken.
+    """
+    drift = ReadingDrift("tracker", 1.0, load_cases.time is not None)
+    shortest, whole = drift._span(load_cases)
+    if not shortest:
+        return ()
+    times = shortest * 2.0 ** np.arange(int(np.log2(max(whole / shortest, 1.0))) + 1)
+    return tuple(replace(drift, over=(float(T),)).offsets(load_cases) for T in times)
 
 
 def _time(name: str) -> float:

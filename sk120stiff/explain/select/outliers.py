@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
@@ -14,13 +17,26 @@ LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to te
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
 
 
-def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> Index:
+def outlying_rows(
+    regression: Regression,
+    whitener: Whitener | FormWhitener,
+    courses: Sequence[Array] = (),
+) -> Index:
     """Rows (readings) whose own shift would be significant beyond the whole catalogue together.
 
     The catalogue is fitted with every parameter drawn towards zero by its plausible range, which is
     flexible enough for any cause like those in it. A reading stands out if a shift of one of its
     axes would still take more than `LIMIT` standard errors (`NEXT`, once one was found). The worst
     is taken out first, and the rest judged again.
+
+    An outlier is a slip at a single reading. Where readings stand out, each of the `courses` is
+    fitted beside the catalogue too: if it leaves less than the shifts do, each at the price of its
+    parameters (BIC), no slip is needed for what it explains.
+
+    Args:
+        regression: The readings linearised at the base model.
+        whitener: Their noise.
+        courses: (N, 3, 3) each: what a drift that dies away makes of the readings, along x, y, z.
     """
     # one law of each effect: all of them together would follow any single reading
     columns = np.concatenate([regression.base, *regression.columns])
@@ -29,10 +45,43 @@ def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> 
     prior[: len(regression.base)] = 0.0
     own = np.diag(X.T @ X)
     prior = np.where(own > 0.0, prior, 1.0)
-    count = len(y) // 3
-    shifts = _shift_columns(whitener, count, regression.group[::3])
+    shifts = _shift_columns(whitener, len(y) // 3, regression.group[::3])
+    found = _searched(X, prior, y, shifts, regression.sigma_known)
+    if not len(found.rows):
+        return found.rows
+    each = np.log(len(y))  # the price of a parameter
+    ways = [(found.left + 3.0 * each * len(found.rows), found.rows)]
+    for course in courses:
+        beside = whitener.apply(course)
+        size = np.sqrt((beside**2).sum(0))
+        if (size > 0.0).all():
+            other = _searched(
+                np.hstack([X, beside / size]), np.concatenate([prior, np.zeros(3)]), y, shifts,
+                regression.sigma_known, noise=found.noise,
+            )  # fmt: skip
+            ways.append((other.left + (3.0 * len(other.rows) + 4.0) * each, other.rows))
+    return min(ways, key=lambda way: way[0])[1]
+
+
+class _Searched(NamedTuple):
+    """Rows that stand out, what is left beside them (χ²), and the noise that this was held to."""
+
+    rows: Index
+    left: float
+    noise: float
+
+
+def _searched(
+    X: Array,
+    prior: Array,
+    y: Array,
+    shifts: Sequence[tuple[Index, Array]],
+    sigma_known: bool,
+    noise: float | None = None,
+) -> _Searched:
+    """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,)."""
     out: list[int] = []
-    while len(out) <= LARGEST_SHARE * count:
+    while len(out) <= LARGEST_SHARE * len(shifts):
         extra = np.zeros((len(y), 3 * len(out)))
         for k, row in enumerate(out):
             rows, block = shifts[row]
@@ -44,21 +93,24 @@ def outlying_rows(regression: Regression, whitener: Whitener | FormWhitener) -> 
         factor = np.linalg.cholesky(gram * np.outer(scale, scale) + 1e-12 * np.eye(len(gram)))
         half = np.linalg.solve(factor, (full * scale).T)  # (P, R)
         residual = y - half.T @ (half @ y)
-        noise = 1.0 if regression.sigma_known else _robust_scale(residual, (half**2).sum(0))
+        size = noise
+        if size is None:
+            size = 1.0 if sigma_known else _robust_scale(residual, (half**2).sum(0))
         worst, where = 0.0, -1
         for row, (rows, block) in enumerate(shifts):
             if row in out:
                 continue
             total = (block**2).sum(0)
             left = total - ((half[:, rows] @ block) ** 2).sum(0)
-            score = np.abs(block.T @ residual[rows]) / (noise * np.sqrt(np.maximum(left, 1e-9)))
+            score = np.abs(block.T @ residual[rows]) / (size * np.sqrt(np.maximum(left, 1e-9)))
             highest = float(score[left > LEAST_LEFT * total].max(initial=0.0))
             if highest > worst:
                 worst, where = highest, row
         if worst <= (NEXT if out else LIMIT):
-            return np.array(sorted(out), dtype=np.intp)
+            left_over = float(y @ residual) / size**2
+            return _Searched(np.array(sorted(out), dtype=np.intp), left_over, size)
         out.append(where)
-    return np.zeros(0, dtype=np.intp)
+    return _Searched(np.zeros(0, dtype=np.intp), np.inf, np.nan)
 
 
 def _shift_columns(

@@ -11,6 +11,7 @@ from scipy.optimize import lsq_linear
 
 from sk120stiff.arrays import Index
 from sk120stiff.effects import Effect
+from sk120stiff.effects.reading_drift import warm_ups
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search
@@ -83,7 +84,8 @@ def select(
     ids = tuple(effect.id for effect in model.effects)
     regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
     whole = base.problem.whitener.logdet
-    outliers = outlying_rows(regression, base.problem.whitener)
+    slow = warm_ups(base.problem.load_cases)
+    outliers = outlying_rows(regression, base.problem.whitener, slow)
     if len(outliers):
         keep = np.ones(measurements.n_readings, dtype=bool)
         keep[outliers] = False

@@ -1,0 +1,82 @@
+"""Which readings are set aside: slips at single readings, never what a tracker does as it warms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff.effects.reading_drift import ReadingDrift, warm_ups
+from sk120stiff.explain import explain
+from sk120stiff.explain.candidates.regression import regression_at
+from sk120stiff.explain.options import Options, candidates_for
+from sk120stiff.explain.select.outliers import outlying_rows
+from sk120stiff.measurements import Measurements
+from tests.explain.readings import SIGMA, base_fit, hidden
+
+WAY = np.array([0.6, -0.5, 0.62])
+
+
+def set_aside(readings: Measurements) -> tuple[list[int], list[int]]:
+    """Rows that stand out where nothing is known of warming up, and where it is."""
+    base = base_fit(readings)
+    candidates = candidates_for(base.model, readings, Options())
+    regression = regression_at(base, candidates, ("joint_springs",), alpha=0.01)
+    whitener, courses = base.problem.whitener, warm_ups(base.problem.load_cases)
+    assert courses
+    return (
+        outlying_rows(regression, whitener).tolist(),
+        outlying_rows(regression, whitener, courses).tolist(),
+    )
+
+
+def off(readings: Measurements, rows: list[int], by: float) -> Measurements:
+    """Single readings that slipped, each another way [m]."""
+    moved = np.array(readings.displacement)
+    rng = np.random.default_rng(3)
+    for row in rows:
+        way = rng.normal(size=3)
+        moved[row] += by * way / np.linalg.norm(way)
+    return replace(readings, displacement=moved)
+
+
+def warming(readings: Measurements, over: float, by: float) -> Measurements:
+    """The same read by a tracker that wanders by so much [m] at first, dying away over so many."""
+    at, zero = np.array(readings.order), np.array(readings.zero_order)
+    course = np.exp(-zero / over) - np.exp(-at / over)
+    moved = np.array(readings.displacement) + by * course[:, None] * WAY
+    return replace(readings, displacement=moved)
+
+
+@pytest.mark.parametrize("seed", [7, 8, 9])
+@pytest.mark.parametrize("over", [2.0, 5.0])
+def test_the_first_poses_of_a_warming_tracker_are_no_outliers(seed: int, over: float):
+    readings = warming(hidden(poses=36, seed=seed), over, 40 * SIGMA)
+    before, after = set_aside(readings)
+    assert before
+    assert after == []
+
+
+@pytest.mark.parametrize("rows", [[0], [1], [4], [0, 1], [37], [0, 60, 61, 110]])
+def test_slips_at_single_readings_are_outliers_wherever_they_are(rows: list[int]):
+    _, after = set_aside(off(hidden(poses=36), rows, 25 * SIGMA))
+    assert after == rows
+
+
+def test_a_slip_is_found_beside_a_tracker_that_warms_up():
+    readings = off(warming(hidden(poses=36), 3.0, 40 * SIGMA), [90], 25 * SIGMA)
+    assert set_aside(readings)[1] == [90]
+
+
+def test_a_drift_may_die_away_at_once_where_the_series_is_long():
+    for poses, times in ((36, 5), (6, 4)):
+        case = base_fit(hidden(poses=poses)).problem.load_cases
+        laws = ReadingDrift("tracker", 1.0).other_laws(case)
+        assert len(laws) == times
+        assert min(T for law in laws for T in law.over if T) >= 2.0
+
+
+def test_a_tracker_that_warms_up_over_two_poses_of_many_is_named():
+    readings = warming(hidden(poses=36), 6.0, 40 * SIGMA)
+    answer = explain(base_fit(readings).model, readings)
+    assert [finding.effect.id for finding in answer.findings] == ["reading_drift:tracker"]
+    assert answer.set_aside == ()
