@@ -43,6 +43,7 @@ from sk120stiff.model.uncertainty_file import (
 )
 from sk120stiff.robot import Robot, find_robot, load_robot
 from sk120stiff.robot.naming import robot_name
+from sk120stiff.units import is_same_unit
 
 _EFFECT = (
     "{name: joint_springs, where: joint_1, parameters: {stiffness: {value: 1e6, unit: N*m/rad}}}"
@@ -318,7 +319,7 @@ def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:
             remedy=f"Write: {name}: {{value: ..., unit: {spec.unit}}}",
         )
     given = entry.parameters[name]
-    if given.unit != spec.unit:
+    if not is_same_unit(given.unit, spec.unit):
         raise InputError(
             f"the parameter {name!r} is given in {given.unit!r}, not in {spec.unit!r}",
             where=place,

@@ -107,6 +107,13 @@ def test_gears_in_steps_come_back_from_the_names_of_their_parameters():
     assert again.effects[-1] == gear and np.array_equal(again.values, model.values)
 
 
+@pytest.mark.parametrize("unit", ["Nm/rad", "N·m/rad", "N m/rad"])
+def test_a_unit_may_be_spelled_another_way(unit):
+    model = model_from_text(GOOD.replace("N*m/rad", unit))
+    assert np.array_equal(model.values, model_from_text(GOOD).values)
+    assert "unit: N*m/rad" in model_text(model)
+
+
 BAD = {
     "no YAML": ("robot: [", "not YAML.*"),
     "a list": ("- robot", "key"),
