@@ -28,6 +28,7 @@ from sk120stiff.model import (
 from sk120stiff.model.prediction_table import blame_reason
 from sk120stiff.stiffness import Definiteness
 
+ROUNDING = 1e-12
 UNITS = {
     "pose": "rad (m for joints that slide)",
     "wrench": "N, N*m; [force; moment], base axes",
@@ -74,6 +75,7 @@ def command(
         "at": frame,
         "coordinates": found.coordinates,
         "soft": found.soft,
+        "soft_under_load": found.soft_under_load,
         "pose": a,
         "wrench": load,
         "jacobian": found.jacobian,
@@ -152,6 +154,11 @@ def _cells(std: Array) -> list[str]:
     return [f"{x * 1e6:.2g}" if np.isfinite(x) else "?" for x in std]
 
 
+def _seen(values: Array) -> Array:
+    """The same without what is rounding beside the largest of them."""
+    return np.where(np.abs(values) > ROUNDING * np.abs(values).max(), values, 0.0)
+
+
 def _if_it_exists(matrix: Array) -> Array | None:
     return matrix if np.isfinite(matrix).all() else None
 
@@ -166,7 +173,7 @@ def _parts(
     axes = ("x", "y", "z")
     stiffness: object = "K_X does not exist here: in a direction the arm cannot yield."
     if np.isfinite(found.K_X_enhanced).all() and np.isfinite(found.K_X_conventional).all():
-        both = np.hstack([found.K_X_conventional, found.K_X_enhanced])
+        both = np.hstack([_seen(found.K_X_conventional), _seen(found.K_X_enhanced)])
         stiffness = table(
             "Stiffness K_X [N/µm], conventional | enhanced",
             ["", *axes, *axes],
@@ -192,7 +199,7 @@ def _parts(
         "at equilibrium": found.deflection_equilibrium,
     }
     rows: list[tuple[object, ...]] = [
-        (label, *(1e6 * component for component in (*x, np.linalg.norm(x))))
+        (label, *(1e6 * component for component in (*_seen(x), np.linalg.norm(x))))
         for label, x in deflections.items()
         if np.isfinite(x).all()
     ]
@@ -203,8 +210,10 @@ def _parts(
     ):
         rows.append(("  ± (one standard deviation)", *_cells(uncertainty.deflection.std[0]), ""))
     deflection = table("Deflection [µm]", ["", *axes, "length"], rows)
+    besides = "; under this load also: " if found.soft_under_load else ""
     parts: list[object] = [
-        f"{name}, {frame}; what yields: {', '.join(found.soft)}",
+        f"{name}, {frame}; what yields: {', '.join(found.soft)}{besides}"
+        + ", ".join(found.soft_under_load),
         stiffness,
         principal,
     ]

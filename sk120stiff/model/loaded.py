@@ -43,6 +43,7 @@ class LoadedStiffness:
     Attributes:
         coordinates: Names of the n coordinates: actuated joints, then the model's virtual joints.
         soft: Those of them that yield; K_X, compliance and definiteness are about these.
+        soft_under_load: Those besides that yield under this load and not under a small one.
         jacobian: (6, n) at the loaded point.
         K_theta: (n, n) tangent stiffness at zero torque [N·m/rad or N/m]; infinite where rigid, NaN
             where soft coordinates yield only together and no such matrix exists.
@@ -68,6 +69,7 @@ class LoadedStiffness:
 
     coordinates: tuple[str, ...]
     soft: tuple[str, ...]
+    soft_under_load: tuple[str, ...]
     jacobian: Array
     K_theta: Array
     K_C: Array
@@ -141,12 +143,15 @@ def loaded_stiffness(
             f"at the unloaded pose K_theta - K_C is {stable}: eq. (10) points to a balance that "
             "does not hold"
         )
+    _, slopes = arm.law(rows, load)(screws.torques(load)[None])
+    soft, under = C_theta.any(axis=0), slopes.reshape(-1, n, n)[0].any(axis=0)
     names = (*model.robot.actuated, *(joint.name for joint in arm.mechanism.virtual))
     C_conventional = found.of("compliance_conventional")
     C_enhanced = found.of("compliance_enhanced")
     return LoadedStiffness(
         coordinates=names,
-        soft=tuple(names[k] for k in np.flatnonzero(C_theta.any(axis=0))),
+        soft=tuple(names[k] for k in np.flatnonzero(soft)),
+        soft_under_load=tuple(names[k] for k in np.flatnonzero(under & ~soft)),
         jacobian=found.of("jacobian"),
         K_theta=stiffness_of(C_theta),
         K_C=complementary_stiffness(screws, load),

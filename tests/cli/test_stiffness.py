@@ -13,6 +13,7 @@ UPPER, FORE = 0.5, 0.4  # m
 K_1, K_2 = 2.0e5, 1.0e5  # N·m/rad
 POSE = ("--pose", "30, -50 deg")
 LOAD = ("--wrench", "1200, -900, 0 N")
+PUSH = ("--wrench", "0, 0, -300 N")
 
 URDF = f"""
 <robot name="two_links">
@@ -253,3 +254,32 @@ def test_a_load_that_nothing_can_hold(run, tmp_path: Path) -> None:
     assert outcome.document["definiteness"]["K_theta_minus_K_C"] == "indefinite"
     assert outcome.stderr.startswith("Warning: no static equilibrium: followed from zero")
     assert len(outcome.stderr.splitlines()) == 1
+
+
+def test_what_yields_under_the_load_alone_is_told_too(run, two_links, tmp_path: Path) -> None:
+    """A floor that is rigid until it is loaded, on an arm without masses."""
+    _, model = two_links
+    stiffer = ", ".join(
+        f"stiffness_{axis}_at_{load}: {{value: {value}, unit: N*m/rad}}"
+        for axis in "xy"
+        for load, value in ((0, ".inf"), (100, "1e6"))
+    )
+    held = tmp_path / "held.yaml"
+    text = Path(model).read_text(encoding="utf-8")
+    held.write_text(
+        f"{text}  - {{name: base_rocking, where: ground, parameters: {{{stiffer}}}}}\n",
+        encoding="utf-8",
+    )
+    loaded = run("stiffness", str(held), *POSE, *PUSH, "--json")
+    assert loaded.document["soft"] == ["shoulder", "elbow"]
+    (first, *_) = loaded.document["soft_under_load"]
+    assert first.startswith("base_rocking:ground")
+    said = run("stiffness", str(held), *POSE, *PUSH).stdout
+    assert f"under this load also: {first}" in said
+    unloaded = run("stiffness", str(held), *POSE, "--json").document
+    assert unloaded["soft_under_load"] == []
+
+
+def test_rounding_is_printed_as_zero(run, two_links) -> None:
+    said = run("stiffness", two_links[1], "--pose", "0, 90 deg", "--wrench", "0,100,0 N").stdout
+    assert "e-1" not in said
