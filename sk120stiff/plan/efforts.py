@@ -58,7 +58,7 @@ def held_loads_of(robot: Robot, cell: Cell, a: Array, wrench: Array, point: Arra
     rows = np.flatnonzero(~fallen & (kept > 0.0))
     scaled = wrench[rows] * (kept[rows] / size[rows])[:, None]
     remarks = []
-    largest = rows[size[rows] == size[rows].max()] if len(rows) else rows
+    largest = rows[np.isclose(size[rows], size[rows].max(initial=0.0))]
     if (share[largest] < 1.0).any():
         asked, sizes = size[largest].max(), kept[largest]
         remarks.append(

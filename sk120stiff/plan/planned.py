@@ -20,6 +20,7 @@ from sk120stiff.robot import Robot
 
 POSES = 400  # to choose from
 DIRECTIONS = 12  # of the load at each of them
+LITTLE = 0.5  # of a variance: readings that leave more of it tell less than was plausible before
 
 
 def plan(
@@ -85,7 +86,8 @@ def plan(
 def promised(
     model: Model, plan: Measurements, sigma: float, known: Measurements | None = None
 ) -> Array:
-    """(P_free,) standard errors that a plan will leave, internal values.
+    """(P_free,) standard errors that a plan will leave, internal values; infinite where it leaves
+    what was plausible before.
 
     From the very covariance of the readings that the fit will have: rows that subtract one zero
     reading share its error, where nobody said otherwise.
@@ -108,7 +110,9 @@ def promised(
         derivative = model.predict_with_sensitivities(load_cases)[1][:, :, model.free] * span
         A = whitener.apply(derivative)
         total += A.T @ A
-    return np.asarray(np.sqrt(np.diag(np.linalg.inv(total))) * span)
+    share = np.diag(np.linalg.inv(total))  # of the plausible range's variance: 1, nothing is told
+    told = share < LITTLE
+    return np.where(told, span * np.sqrt(share / np.where(told, 1.0 - share, 1.0)), np.inf)
 
 
 def to_be_taken(

@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sk120stiff.effects import effect
 from sk120stiff.measurements import read_measurements
+from sk120stiff.model import base_model, write_model
 from sk120stiff.plan import NoWay, Pool
 from sk120stiff.robot import load_robot
 from tests.plan.test_cell import ARM
@@ -294,3 +296,26 @@ def test_rows_are_followed_in_the_order_in_which_they_were_read(run, posted: Pat
     )
     found = run("plan", "--check", str(file), "--json").document
     assert [jump["poses"] for jump in found["jumps"]] == [["p3", "p2"]]
+
+
+def test_what_no_plan_shows_has_no_promise_and_spoils_no_other(run, tmp_path: Path) -> None:
+    """A drift goes by the order of the readings: its prior is no standard error."""
+    held = tmp_path / "model.yaml"
+    model = base_model(load_robot("motoman_sk120"))
+    write_model(model + effect(model.robot, "reading_drift", "tracker"), held)
+    plain = run("plan", MODEL, "--count", "4", *FEW, "--json").document
+    outcome = run("plan", str(held), "--count", "4", *FEW, "--json")
+    assert outcome.code == 0, outcome.stderr
+    found = outcome.document
+    *springs, drift, _, last = found["expected"]
+    assert [p["std"] for p in springs] == pytest.approx([p["std"] for p in plain["expected"]])
+    assert found["gain"] == pytest.approx(plain["gain"])
+    assert drift["name"] == "reading_drift:tracker.rate_x"
+    for p in (drift, last):
+        assert p["std"] is p["internal_std"] is None
+        assert "a column order or time[s]" in p["reason"]
+    for asked in (("--for", "reading_drift"), ("--between", "reading_drift,force_bias")):
+        refused = run("plan", str(held), "--count", "4", *FEW, *asked, "--json")
+        assert refused.code == 2
+        assert refused.error["where"] == asked[0]
+        assert "order or time[s]" in refused.error["message"]

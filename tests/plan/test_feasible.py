@@ -166,3 +166,12 @@ def test_an_arm_on_a_rail_has_no_column() -> None:
     )
     told = feasible_pool(rail, poses=5, directions=1, force=1.0, point=np.zeros(3)).remarks
     assert any("does not turn" in said for said in told)
+
+
+def test_the_range_that_motors_hold_is_that_of_all_loads_of_that_size():
+    """Loads are drawn as unit vectors: no two of them are of exactly the same size."""
+    robot = load_robot("ur5e")
+    pool = feasible_pool(robot, poses=60, directions=6, force=400.0, point=np.zeros(3), seed=2)
+    size = np.linalg.norm(pool.load_cases.wrench[:, :3], axis=1)
+    (said,) = (text for text in pool.remarks if "the motors hold" in text)
+    assert f"{size.min():.3g} to {size.max():.3g} N" in said

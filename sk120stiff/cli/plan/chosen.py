@@ -8,7 +8,8 @@ import numpy as np
 
 from sk120stiff.cli.plan.effects import named_parameters, two_effects
 from sk120stiff.cli.tables import table
-from sk120stiff.effects import load_cases_of
+from sk120stiff.effects import Effect, load_cases_of
+from sk120stiff.errors import InputError
 from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -32,20 +33,20 @@ def precise(
     model: Model,
     pool: Pool,
     known: Measurements | None,
-    wanted: Sequence[str] | None,
+    asked: Sequence[str] | None,
     count: tuple[int, int],
     sigma: float,
     seed: int,
 ) -> Chosen:
     """Readings that make parameters well known."""
     names: list[str] = []
-    for text in wanted or ():
+    for text in asked or ():
         model, found = named_parameters(model, text)
         names += found
+    wanted, untold = _of_a_plan(model, pool, names)
     before = None if known is None else Pool(load_cases_of(model.robot, known.masked()))
     design = d_optimal(
-        model, pool, count=count[0], loads=count[1], sigma=sigma, parameters=names or None,
-        known=before,
+        model, pool, count=count[0], loads=count[1], sigma=sigma, parameters=wanted, known=before,
     )  # fmt: skip
     random, spread = _held_against(design.gain_over, pool, len(design.rows), seed)
     zero = "unknown" if known is None else known.zero
@@ -57,11 +58,13 @@ def precise(
     rows: list[tuple[object, ...]] = []
     chosen = pool.load_cases.rows(np.array(design.rows, dtype=np.intp))
     blind: list[object] = []
-    for name in design.parameters:
+    for name in (*design.parameters, *untold):
         std = every[name]
         p = model.parameter(name)
         public, unit = p.spec.public_std(p.internal, float(std)), p.spec.unit
         why = why_unseen(chosen, p)
+        if why is None and not np.isfinite(std):
+            why = untold.get(name, "these readings tell less of it than is plausible of any arm")
         expected.append(
             {
                 "name": name,
@@ -81,7 +84,7 @@ def precise(
         rows.append((name, p.value, *shown))
     document: dict[str, object] = {
         "criterion": "D-optimal",
-        "for": design.parameters,
+        "for": [*design.parameters, *untold],
         "gain": random,
         "gain_over_spread": spread,
         "expected": expected,
@@ -95,6 +98,35 @@ def precise(
     return design.rows, document, said
 
 
+def _of_a_plan(model: Model, pool: Pool, asked: list[str]) -> tuple[list[str], dict[str, str]]:
+    """Parameters that a plan can be made for, all free ones by default, and why others cannot.
+
+    A plan has no clock: what goes by the order of the readings is known once they are taken.
+
+    Raises:
+        InputError: There is nothing to plan for.
+    """
+    names = list(dict.fromkeys(asked or (model.names[k] for k in model.free)))
+    untold = {}
+    for name in names:
+        if why := _why_untold(model.parameter(name).effect, pool):
+            untold[name] = why
+    if names and len(untold) == len(names):
+        raise InputError(
+            f"nothing to plan for: {names[0]}: {untold[names[0]]}",
+            where="--for" if asked else model.robot.name,
+            remedy="Plan for other parameters; write that down when you measure.",
+        )
+    return [name for name in names if name not in untold], untold
+
+
+def _why_untold(effect: Effect, pool: Pool) -> str | None:
+    """Why no plan shows an effect, in words; None: one may."""
+    if effect.applies_to(pool.load_cases):
+        return None
+    return f"it shows only in readings with {effect.needs}, which no plan holds"
+
+
 def telling(
     model: Model,
     pool: Pool,
@@ -106,6 +138,13 @@ def telling(
 ) -> Chosen:
     """Readings that tell two effects apart."""
     first, second = two_effects(model, between)
+    for effect in (first, second):
+        if why := _why_untold(effect, pool):
+            raise InputError(
+                f"no plan tells {effect.id} from anything: {why}",
+                where="--between",
+                remedy="Ask 'explain', once the readings with it are there.",
+            )
     rivals = rivalry(model, first, second, pool, sigma=sigma, known=before)
     refuse_count(pool, *count)
     choice = rivals.best(count[0], pool.pose, count[1])
