@@ -137,12 +137,6 @@ def is_kind(unit: str, kind: str) -> bool:
     return True
 
 
-def is_same_unit(unit: str, other: str) -> bool:
-    """Whether two spellings mean one unit: ``Nm/rad`` and ``N*m/rad``; what is unknown, as text."""
-    here = _quantity(unit)
-    return unit == other or (here is not None and here == _quantity(other))
-
-
 def is_unit(unit: str) -> bool:
     """Whether `unit` is known at all."""
     return _quantity(unit) is not None

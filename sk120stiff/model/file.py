@@ -43,7 +43,7 @@ from sk120stiff.model.uncertainty_file import (
 )
 from sk120stiff.robot import Robot, find_robot, load_robot
 from sk120stiff.robot.naming import robot_name
-from sk120stiff.units import is_same_unit
+from sk120stiff.units import to_si
 
 _EFFECT = (
     "{name: joint_springs, where: joint_1, parameters: {stiffness: {value: 1e6, unit: N*m/rad}}}"
@@ -319,7 +319,7 @@ def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:
             remedy=f"Write: {name}: {{value: ..., unit: {spec.unit}}}",
         )
     given = entry.parameters[name]
-    if not is_same_unit(given.unit, spec.unit):
+    if not _same_unit(given.unit, spec.unit):
         raise InputError(
             f"the parameter {name!r} is given in {given.unit!r}, not in {spec.unit!r}",
             where=place,
@@ -337,6 +337,14 @@ def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:
         )
     std = None if given.std is None else _internal_std(spec, internal, given.std)
     return Parameter(found, spec, internal, std, given.free, given.origin)
+
+
+def _same_unit(given: str, unit: str) -> bool:
+    """Whether a unit is this one, as spelled here or another way: ``Nm/rad`` for ``N*m/rad``."""
+    try:
+        return given == unit or float(to_si(1.0, given, unit)) == 1.0
+    except (InputError, ValueError):  # neither is a mass one of the known units
+        return False
 
 
 def _internal_std(spec: Any, internal: float, public_std: float) -> float:

@@ -280,6 +280,6 @@ def test_what_yields_under_the_load_alone_is_told_too(run, two_links, tmp_path: 
     assert unloaded["soft_under_load"] == []
 
 
-def test_rounding_is_printed_as_zero(run, two_links) -> None:
-    said = run("stiffness", two_links[1], "--pose", "0, 90 deg", "--wrench", "0,100,0 N").stdout
-    assert "e-1" not in said
+def test_rounding_is_printed_as_zero(run) -> None:
+    options = ("--pose", "0,-90,90,0,90,0 deg", "--wrench", "0,0,-50 N")
+    assert "e-1" not in run("stiffness", "ur5e", *options).stdout
