@@ -296,3 +296,29 @@ def test_a_name_that_takes_less_than_remains_may_imitate_part_of_it(springs, sha
     assert reason is None or "remain without a name" in reason[1]
     exact = fit(springs, found.problem.measurements, noise=NOISE)
     assert outweighed(SimpleNamespace(base=exact, final=found), [named(found)]) is None
+
+
+@pytest.mark.parametrize(
+    ("alike", "falls"),
+    [((), True), (("link_bending:link_2_l",), True), (("tool_compliance:tool0",), False)],
+)
+def test_the_free_form_of_what_cannot_be_told_from_a_name_is_no_reason_against_it(
+    springs, alike, falls
+):
+    """Tilt of the last bearing or a tool that turns: the moment on the tool says the same."""
+    names = [effect(springs.robot, "joint_tilt", "joint_2_l")]
+    found = refit(fit(springs, hidden(TILT), noise=NOISE), names)
+    columns = np.array([[1.0, 0.9], [0.0, np.sqrt(0.19)]])
+    law = Suspect("law", "it", np.zeros((1, 3, 1)), columns[0], "", frees=("tool_compliance",))
+    line = Lineup(
+        suspects=(law,),
+        gram=columns.T @ columns,
+        moment=columns.T @ (30.0 * columns[:, 1]),
+        names=[np.array([0])],
+        parts=[np.array([1])],
+        unit=4.0,
+        drawn={},
+    )
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(imitation, "_line_up", lambda *_: line)
+        assert (imitated(found, names, [alike]) is not None) == falls

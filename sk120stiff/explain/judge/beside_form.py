@@ -89,7 +89,8 @@ def unless_imitating(found: Selection, named: Named, seed: int) -> tuple[Selecti
     so beside whatever is left.
     """
     effects = [finding.effect for finding in named.findings]
-    reason = imitated(found.final, effects) or outweighed(found, effects)
+    alike = [finding.alternatives for finding in named.findings]
+    reason = imitated(found.final, effects, alike) or outweighed(found, effects)
     if reason is None:
         return found, named
     kept = [effect for effect in effects if effect.id != reason[0]]

@@ -107,14 +107,16 @@ def _spread(fit: Fit, signature: Array) -> tuple[float, float]:
     return spread, least(0.0)[0] - value
 
 
-def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
+def instead_of(
+    fit: Fit, names: Sequence[Effect], alternatives: Sequence[Sequence[str]] = ()
+) -> Instead | None:
     """The best of all suspects in the place of some of the names; None where none does better.
 
     With every suspect in the model those names leave it, one at a time, to which it leaves no
     evidence, or hardly any of their length. What a name does not do beside the other names alone,
     no suspect takes from it: nothing is said of such a name. A suspect that is the free form of a
-    name's own law says what the name says, and is no reason against it. The strongest name has to
-    be beaten clearly, also by all names beside any other suspect: a cause without a name may stand
+    name's own law, or of the law of an effect that the readings do not tell from it, says what the
+    name says, and is no reason against it. The strongest name has to be beaten clearly, also by all names beside any other suspect: a cause without a name may stand
     beside them. Beside model-form error such a cause is at work for certain and needs no evidence
     of its own: a further name has to do better than it, and it may stand for several. Where laws
     seem exact it takes the place of one.
@@ -122,8 +124,12 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
     Args:
         fit: The fitted model.
         names: Effects that were added to it, the strongest first.
+        alternatives: Ids of the effects that the readings do not tell from each of them.
     """
     line = _line_up(fit, names)
+    own = [{name.id, name.name} for name in names]
+    for said, others in zip(own, alternatives, strict=False):
+        said.update(others, (other.partition(":")[0] for other in others if ":" in other))
     everything = range(len(names))
     whole = line.score(everything)
     alone = [line.takes(everything) - line.takes(set(everything) - {e}) for e in everything]
@@ -140,7 +146,7 @@ def instead_of(fit: Fit, names: Sequence[Effect]) -> Instead | None:
             idle = [
                 e
                 for e, loss in losses.items()
-                if not {names[e].id, names[e].name} & set(suspect.frees)
+                if not own[e] & set(suspect.frees)
                 and loss < max(line.price(e), NOTHING**2 * alone[e])
             ]
             if not idle or (len(kept) < len(names) and not certain):
@@ -247,14 +253,17 @@ def _precision(sizes: Array, length: Array, scale: float) -> float:
     return 1.0 / max(spread, 1.0 / NEGLIGIBLE)
 
 
-def imitated(fit: Fit, names: Sequence[Effect]) -> tuple[str, str] | None:
+def imitated(
+    fit: Fit, names: Sequence[Effect], alternatives: Sequence[Sequence[str]] = ()
+) -> tuple[str, str] | None:
     """The weakest name that may be no cause of its own, and why, in a sentence; None: no name.
 
     Args:
         fit: The fitted model.
         names: Effects that were added to it, the strongest first.
+        alternatives: Ids of the effects that the readings do not tell from each of them.
     """
-    other = instead_of(fit, names) if names else None
+    other = instead_of(fit, names, alternatives) if names else None
     if other is not None:
         return other.effects[-1], (
             f"{other.effects[-1]} fits, but the gap goes better with {other.name}, beside which "
