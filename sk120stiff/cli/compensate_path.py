@@ -22,6 +22,9 @@ from sk120stiff.units import parse_size, parse_wrench
 from sk120stiff.workspace import LoadedPath, read_path
 
 CHORD = "10 um"
+FREE_TOOL = (
+    "The tool's orientation is free: it is not stated, and stays near that of the point before."
+)
 
 
 class LoadAxes(StrEnum):
@@ -81,7 +84,10 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
                     remedy="Paths in G-code end in .nc, .ngc, .tap, … and APT in .apt, .cls.",
                 )
         moved = None if options.frame is None else part
-        return OpenedPath(read_path(file, robot, wrench=wrench, part=moved), part, facts)
+        read_in = read_path(file, robot, wrench=wrench, part=moved)
+        if read_in.joints is None and read_in.rotation is None:
+            facts = (*facts, FREE_TOOL)
+        return OpenedPath(read_in, part, facts)
     if wrench is None:
         raise InputError(
             "a machining program holds no load",
@@ -108,7 +114,7 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
     for sentence in read.assumed:
         warnings.warn(sentence.removesuffix("."), ToolkitWarning, stacklevel=2)
     said = (
-        "The tool's orientation is free."
+        FREE_TOOL
         if tool is None
         else f"Tool in the part's axes: roll, pitch, yaw {options.tool_rpy or TOOL_DOWN}"
         + (", turned to the axis that the path states." if read.axis is not None else ".")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 
 import numpy as np
 
@@ -224,7 +225,8 @@ def parts(document: dict[str, object], path: LoadedPath, found: Compensation) ->
     told: list[object] = [
         f"{document['rows']} points. Off its place before: {document['before_um']:.1f} µm rms, "
         f"{document['before_max_um']:.1f} at most; after: {um_or_less(rms(found.after))} µm "
-        f"rms, {um_or_less(largest(after))} at most (judged by {document['judged_by']}).",
+        f"rms, {um_or_less(largest(after))} at most (judged by "
+        f"{Path(str(document['judged_by'])).name}).",
         f"Written: {document['out']}" + (f" and {document['sheet']}" if document["sheet"] else ""),
     ]
     left = [k for k, reason in enumerate(found.reasons) if reason]

@@ -22,6 +22,7 @@ from sk120stiff.files import will_write
 from sk120stiff.model import Model, seen_from
 from sk120stiff.plan import Verdict, feasible, lowest_points
 from sk120stiff.programs.orientation import fixed_xyz
+from sk120stiff.robot import Robot
 from sk120stiff.units import from_si, parse_values
 from sk120stiff.workspace import (
     BestPosture,
@@ -37,6 +38,7 @@ from sk120stiff.workspace import (
 )
 
 _PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
+_LOADS = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
 class Minimise(StrEnum):
@@ -55,7 +57,7 @@ def command(
     axis: Annotated[str | None, typer.Option("--tool-axis")] = None,
     place: str | None = None,
     limit_margin: str | None = None,
-    singularity_margin: float = 0.02,
+    singularity_margin: Annotated[float, typer.Option(min=0.0, max=1.0)] = 0.02,
     picture: Path | None = None,
     page: Path | None = None,
     cell: CellOption = None,
@@ -117,15 +119,16 @@ def command(
     margin = 0.0
     if limit_margin is not None:
         (margin,) = parse_values(limit_margin, "angle", where="--limit-margin", like="5 deg")
+        _refuse_margin(robot, float(margin))
     arm = elastic_arm(believed, frame=at)
     freedom = None if place is None else _placement(place, given.position)
     around = at_work(opened_cell(robot, cell, path))
 
-    turned_with_it = freedom is not None and bool((freedom.upper > freedom.lower)[3:].any())
-    load = given.wrench if at in (None, robot.tool_frame) and not turned_with_it else None
+    seen = seen_from(believed, at or robot.tool_frame, np.zeros(3))
+    at_tool = seen[0].robot.tool_frame == robot.tool_frame
 
-    def admits(a: Array) -> Verdict:
-        return feasible(robot, around, a, load)
+    def admits(a: Array, load: Array) -> Verdict:
+        return feasible(robot, around, a, load if at_tool else None, force_point=seen[1])
 
     with progress_bar("Searching") as report:
         found = best_posture(
@@ -146,9 +149,13 @@ def command(
     }
     # The path as it was placed and turned, not as it came.
     stands = robot.placement(found.a, at)
+    loads = found.judge.loads(found.placement)
     columns: list[tuple[str, str, Array]] = []
+    if found.placement[3:].any():
+        has = [(name, "force" if k < 3 else "moment", loads[:, k]) for k, name in enumerate(_LOADS)]
+        columns = [column for column in has if column[0] in given.table.headers]
     if found.placement.any():
-        columns = [(name, "length", stands[:, k, 3]) for k, name in enumerate("xyz")]
+        columns += [(name, "length", stands[:, k, 3]) for k, name in enumerate("xyz")]
     if given.rotation is not None:
         angles = np.deg2rad(fixed_xyz(stands[:, :3, :3]))
         columns += [(name, "angle", angles[:, k]) for k, name in enumerate(_PLACES[3:])]
@@ -161,7 +168,7 @@ def command(
         _draw(picture, found, turned, minimise)
     if page is not None:
         _write_page(
-            page, *seen_from(believed, at or robot.tool_frame, np.zeros(3)), found, task, freedom,
+            page, *seen, found, task, freedom, loads,
             compliance=minimise == Minimise.compliance,
         )  # fmt: skip
     kept = replace(around, angle_margin=max(around.angle_margin, float(margin)))
@@ -169,6 +176,8 @@ def command(
     lines = [f"line {line}" for line in given.table.lines]
     low = height_words(heights, lines, around.floor, give="floor: in cell.yaml")
     assumed = (low, *assumed_at_work(robot, kept))
+    if not at_tool:
+        assumed += (f"The load acts at {at}: that the motors hold it was not asked.",)
     document = {
         "robot": robot.name,
         "rows": given.count,
@@ -199,6 +208,19 @@ def command(
     return Answer(document, [*said, *assumed])
 
 
+def _refuse_margin(robot: Robot, margin: float) -> None:
+    """Raise an `InputError` where a margin from the limits is negative or leaves nothing."""
+    room = 0.5 * float(np.min(robot.upper - robot.lower))
+    if 0.0 <= margin < room:
+        return
+    raise InputError(
+        f"{np.degrees(margin):g} deg is no distance from the joint limits",
+        where="--limit-margin",
+        remedy=f"Give zero or more, below {np.degrees(room):.4g} deg: then the narrowest range has "
+        "nothing left.",
+    )
+
+
 def _draw(file: Path, found: BestPosture, turned: Landscape | None, minimise: Minimise) -> None:
     from sk120stiff.show import save_figure
     from sk120stiff.show.figures import posture_choice
@@ -221,6 +243,7 @@ def _write_page(
     found: BestPosture,
     task: PathTask,
     place: Placement | None,
+    loads: Array,
     *,
     compliance: bool,
 ) -> None:
@@ -241,7 +264,7 @@ def _write_page(
         subtitle=f"{what} at the weakest point: {best}; with a posture chosen blindly {blind} "
         f"(median of {len(found.admissible)})",
         a=found.a[worst],
-        wrench=task.each().wrench[worst],
+        wrench=loads[worst],
     )
     poses = [ScenePose(f"point {k + 1}", a) for k, a in enumerate(found.a)]
     poses += [ScenePose(f"chosen blindly, point {k + 1}", a) for k, a in enumerate(found.usual)]

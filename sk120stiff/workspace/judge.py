@@ -14,6 +14,9 @@ from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, near, solve_inverse
 
+#: poses along the path (N, n) with the part at (6,) → which of them can be
+Admits = Callable[[Array, Array], Verdict]
+
 
 @dataclass(frozen=True, eq=False)
 class PathTask:
@@ -77,19 +80,17 @@ class Pool:
     placement: Array
     objective: Array
 
-    def best(self, count: int, admits: Callable[[Array], Verdict] | None = None) -> Pool:
+    def best(self, count: int, admits: Admits | None = None) -> Pool:
         """The first `count` that pass, the best first."""
         order = np.argsort(self.objective)
         order = order[np.isfinite(self.objective[order])]
         if admits is not None:
-            fair = (int(k) for k in order if admits(self.path[k]).ok.all())
+            fair = (int(k) for k in order if admits(self.path[k], self.placement[k]).ok.all())
             order = np.fromiter(islice(fair, count), dtype=np.intp)
         order = order[:count]
         return Pool(self.path[order], self.placement[order], self.objective[order])
 
-    def improve(
-        self, trial: Pool, children: int, admits: Callable[[Array], Verdict] | None = None
-    ) -> _Improved:
+    def improve(self, trial: Pool, children: int, admits: Admits | None = None) -> _Improved:
         """Each posture or the best of its children, which stand one after the other in `trial`."""
         k = len(self.objective)
         objectives = trial.objective.reshape(children, k)
@@ -98,7 +99,8 @@ class Pool:
         improved = trial.objective[pick] < self.objective
         if admits is not None:  # dear, so asked of those alone that would be kept
             for row in np.flatnonzero(improved):
-                improved[row] = admits(trial.path[pick[row]]).ok.all()
+                one = pick[row]
+                improved[row] = admits(trial.path[one], trial.placement[one]).ok.all()
         return _Improved(
             Pool(
                 np.where(improved[:, None, None], trial.path[pick], self.path),
@@ -154,7 +156,7 @@ class Judge:
         before = starts
         for point in range(self.path.count):
             turn, shift = self.moves(placement[alive])
-            reached = solve_inverse(self.arm, self._task(point, turn, shift), before[alive])
+            reached = solve_inverse(self.arm, self.task(point, turn, shift), before[alive])
             a = near(self.arm, reached.a, before[alive]) if point else reached.a
             ok = reached.found & self.arm.within_limits(a)
             if point:
@@ -179,7 +181,13 @@ class Judge:
         turns = np.stack([rotation_from_rpy(row) for row in placement[:, 3:]])
         return turns, placement[:, :3]
 
-    def _task(self, point: int, turn: Array, shift: Array) -> Task:
+    def loads(self, placement: Array) -> Array:
+        """(N, 6) the loads along the path, which turn with the part at (6,), base axes [N, N·m]."""
+        turn = rotation_from_rpy(placement[3:])
+        return np.concatenate([self.path.wrench[:, k : k + 3] @ turn.T for k in (0, 3)], axis=1)
+
+    def task(self, point: int, turn: Array, shift: Array) -> Task:
+        """A point of the path as the part is turned (k, 3, 3) and shifted (k, 3)."""
         path = self.path
         origin = np.zeros(3) if self.place is None else np.asarray(self.place.origin, dtype=float)
         position = turn @ (path.position[point] - origin) + origin + shift

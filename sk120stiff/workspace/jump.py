@@ -1,4 +1,4 @@
-"""Why no posture passes a path, where the jump of a joint between two points is all that is wrong.
+"""Why no posture passes a path: a point out of reach, or the jump of a joint between two points.
 
 Either the points lie too far from each other, which inverse kinematics in small steps shows, or the
 branch ends: at a joint limit, at a singular pose.
@@ -13,7 +13,9 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
+from sk120stiff.workspace.inverse import solve_inverse
 from sk120stiff.workspace.judge import Judge, PathTask
+from sk120stiff.workspace.reach import why_unreached
 
 PIECES, FINE = 32, 1000  # of a move that is looked at again in small steps, and of the whole path
 
@@ -57,6 +59,25 @@ def refuse_jump(judge: Judge, starts: Array, placement: Array) -> None:
         remedy="Turn the tool another way or leave its rotation free (--tool-axis), move or turn "
         "the part (--place), or divide the path there.",
     )
+
+
+def refuse_unreached(judge: Judge, starts: Array, placement: Array) -> None:
+    """Name the first point that no posture reaches, if there is one.
+
+    Raises:
+        Refusal: Which point, and whether reach or a joint's limit is what stands in the way.
+    """
+    turn, shift = judge.moves(placement)
+    for point in range(judge.path.count):
+        target = judge.task(point, turn, shift)
+        if solve_inverse(judge.arm, target, starts).found.any():
+            continue
+        raise Refusal(
+            f"point {point + 1} cannot be reached: "
+            + why_unreached(judge.arm, target.rows(np.array([0]))),
+            remedy="Move the point or the part (--place), leave the tool's rotation free "
+            "(--tool-axis), or lower the margins.",
+        )
 
 
 def finer(path: PathTask, pieces: int) -> PathTask:

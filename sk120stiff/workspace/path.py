@@ -31,7 +31,9 @@ from sk120stiff.robot.rotations import rotation_from_rpy, rotation_vector
 from sk120stiff.units import from_si, is_kind, to_si
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, near, solve_inverse, starting_poses
+from sk120stiff.workspace.reach import why_unreached
 
+FIRST = np.array([0])
 FORCES, MOMENTS = ("fx", "fy", "fz"), ("mx", "my", "mz")
 POSITIONS, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 STARTS = 32  # poses from which the first point of a path is sought
@@ -185,15 +187,16 @@ def joints_along(
         raise ValueError("a path has joints or positions")
     task = Task(path.position, rotation=path.rotation)
     lost = 0
-    for first in _branches(arm, task.rows(np.array([0])), start, (stands, stays_above)):
+    for first in _branches(arm, task.rows(FIRST), start, (stands, stays_above)):
         joints, end = _followed(arm, task, first, progress)
         if end == path.count:
             return without_turns(arm, joints)
         lost = max(lost, end)
         if start is not None:
             break
+    why = "from the one before it" if lost else f"({why_unreached(arm, task.rows(FIRST))})"
     raise Refusal(
-        "the arm cannot reach this point" + (" from the one before it" if lost else ""),
+        f"the arm cannot reach this point {why}",
         where=f"{path.table.path}, line {path.table.lines[lost]}",
         remedy="Look at what can be reached with 'sk120stiff map', or give the path by joints."
         if start is None

@@ -12,6 +12,7 @@ import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -20,8 +21,8 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.plan.feasible import Verdict
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import middle_of, near, starting_poses
-from sk120stiff.workspace.judge import Judge, PathTask, Placement, Pool
-from sk120stiff.workspace.jump import refuse_jump
+from sk120stiff.workspace.judge import Admits, Judge, PathTask, Placement, Pool
+from sk120stiff.workspace.jump import refuse_jump, refuse_unreached
 
 FIRST_STEP, LAST_STEP = 0.5, 1e-6  # rad: radius of the random steps
 GROW, SHRINK = 1.6, 0.6
@@ -71,7 +72,7 @@ def best_posture(
     children: int = 8,
     rounds: int = 60,
     seed: int = 0,
-    admits: Callable[[Array], Verdict] | None = None,
+    admits: Callable[[Array, Array], Verdict] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> BestPosture:
     """Search the posture that serves a path best; the worst point of the path counts.
@@ -90,7 +91,8 @@ def best_posture(
         starts, kept, children, rounds: Effort: random postures in the beginning, those that go on,
             steps of each in a round.
         seed: Of the random numbers.
-        admits: Which of the poses (N, n) can be, by `plan.feasible`; all by default.
+        admits: Which of the poses (N, n) can be under the loads (N, 6) as the part lies, by
+            `plan.feasible`; all by default.
 
     Raises:
         InputError: Nothing to minimise, or shapes that do not fit.
@@ -115,17 +117,22 @@ def best_posture(
     moved[0] = np.clip(0.0, judge.lower, judge.upper)
     first = judge(a, moved)
     if not np.isfinite(first.objective).any():
+        refuse_unreached(judge, a, moved)
         refuse_jump(judge, a, moved)
         raise Refusal(
-            f"none of {starts} postures passes all {path.count} points within limits and margins",
-            remedy="Check that the points are reachable (sk120stiff map), lower the margins, or "
-            "leave more freedom.",
+            f"none of {starts} postures passes all {path.count} points far enough from singular "
+            "poses",
+            remedy="Lower --singularity-margin, or leave more freedom.",
         )
-    passing = first.best(len(first.objective), admits)
-    if not len(passing.objective) and admits is not None:
+    asked: Admits | None = None
+    if admits is not None:
+        asked = partial(_asked, admits, judge)
+    passing = first.best(len(first.objective), asked)
+    if not len(passing.objective) and asked is not None:
         count = int(np.isfinite(first.objective).sum())
         best = np.argsort(first.objective)[: min(count, ASKED)]
-        faults = [why for k in best for row in admits(first.path[k]).faults for why in set(row)]
+        told = (asked(first.path[k], first.placement[k]) for k in best)
+        faults = [why for verdict in told for row in verdict.faults for why in set(row)]
         kinds = Counter(re.sub(r"[-\d.]+", "", why) for why in faults)
         (worst, _), *_ = kinds.most_common(1)
         why = next(each for each in faults if re.sub(r"[-\d.]+", "", each) == worst)
@@ -141,12 +148,18 @@ def best_posture(
             (pool.path[:, 0] + noise[..., : arm.n]).reshape(-1, arm.n),
             judge.inside(pool.placement + noise[..., arm.n :] * judge.span).reshape(-1, 6),
         )
-        better = pool.improve(trial, children, admits)
+        better = pool.improve(trial, children, asked)
         pool = better.pool
         radius = np.clip(radius * np.where(better.improved, GROW, SHRINK), LAST_STEP, FIRST_STEP)
         if progress:
             progress(done + 1, rounds)
     return _report(judge, pool, passing.objective, passing.path[len(passing.path) // 2])
+
+
+def _asked(
+    admits: Callable[[Array, Array], Verdict], judge: Judge, a: Array, placement: Array
+) -> Verdict:
+    return admits(a, judge.loads(placement))
 
 
 def _report(judge: Judge, pool: Pool, admissible: Array, usual: Array) -> BestPosture:

@@ -221,3 +221,16 @@ def test_points_that_run_into_the_cell_are_told(run, tmp_path: Path) -> None:
     (wrong,) = found.document["infeasible"]
     assert wrong["line"] == 3 and any("table" in fault for fault in wrong["faults"])
     assert "cannot stand so" in found.stderr
+
+
+def test_an_orientation_that_nobody_stated_is_told_to_be_free(run, tmp_path) -> None:
+    path = tmp_path / "path.csv"
+    for turned, told in (("", True), (",roll[deg],pitch[deg],yaw[deg]", False)):
+        angles = "" if told else ",180,0,0"
+        path.write_text(
+            f"x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]{turned}\n1500,0,300,0,0,-300{angles}\n"
+        )
+        found = run("compensate", MODEL, str(path), "--out", str(tmp_path / "a.csv"))
+        assert found.code == 0, found.stderr
+        assert ("The tool's orientation is free" in found.stdout) is told
+        assert "(judged by model.yaml)" in found.stdout

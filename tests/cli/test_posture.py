@@ -93,9 +93,11 @@ def test_bad_input(
 
 
 def test_no_posture_is_an_explained_refusal(run: Run, path: str, tmp_path: Path) -> None:
-    found = run("posture", MODEL, path, "--limit-margin", "80 deg", "--out", str(tmp_path / "b"))
+    found = run(
+        "posture", MODEL, path, "--singularity-margin", "0.99", "--out", str(tmp_path / "b")
+    )
     assert found.code == 1
-    assert "margins" in found.stderr
+    assert "singular poses" in found.stderr
 
 
 @pytest.mark.parametrize(
@@ -190,3 +192,61 @@ def test_rig_and_tracker_are_asked_of_measurements_alone(
     found = run(*words)
     assert found.code == 1
     assert "crate" in found.stderr
+
+
+def test_loads_turn_with_the_part_and_are_written_so(run: Run, tmp_path: Path) -> None:
+    """What the file says of the best posture is what `stiffness` says there under its load."""
+    path, out = tmp_path / "path.csv", tmp_path / "best.csv"
+    path.write_text("x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n1500,-200,300,400,0,-300\n")
+    options = ("--tool-axis", "0,0,-1", "--minimise", "deflection", "--place", "yaw=20:40 deg")
+    found = run("posture", MODEL, str(path), *options, "--out", str(out), "--json")
+    assert found.code == 0, found.stderr
+    with out.open(newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    yaw = found.document["placement"]["yaw"]
+    assert np.radians(20.0) <= yaw <= np.radians(40.0)
+    force = [float(row[f"{name}[N]"]) for name in ("fx", "fy", "fz")]
+    np.testing.assert_allclose(force, [400 * np.cos(yaw), 400 * np.sin(yaw), -300], atol=1e-6)
+    pose = ",".join(row[f"{joint}[deg]"] for joint in load_robot("motoman_sk120").actuated)
+    load = ",".join(map(str, force))
+    bent = run("stiffness", MODEL, "--pose", f"{pose} deg", "--wrench", f"{load} N", "--json")
+    length = np.linalg.norm(bent.document["deflection"]["enhanced"])
+    assert length == pytest.approx(found.document["worst"], rel=1e-6)
+
+
+def test_motors_hold_the_load_however_the_part_may_turn(run: Run, tmp_path: Path) -> None:
+    path, out = tmp_path / "path.csv", tmp_path / "best.csv"
+    path.write_text("x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n500,-200,300,0,900,-900\n")
+    for place in ((), ("--place", "yaw=-5:5 deg")):
+        refused = run("posture", "ur5e", str(path), *place, "--out", str(out), "--json")
+        assert refused.code == 1 and not out.exists()
+        assert "N*m" in refused.error["message"]
+
+
+def test_margins_that_are_none_are_refused(run: Run, path: str, tmp_path: Path) -> None:
+    out = ("--out", str(tmp_path / "b.csv"), "--json")
+    for margin in ("-5 deg", "200 deg"):
+        refused = run("posture", MODEL, path, "--limit-margin", margin, *out)
+        assert refused.code == 2 and refused.error["where"] == "--limit-margin"
+        assert "narrowest range" in refused.error["remedy"]
+    for ratio in ("-0.1", "2"):
+        assert run("posture", MODEL, path, "--singularity-margin", ratio, *out).code == 2
+    assert not (tmp_path / "b.csv").exists()
+
+
+def test_what_is_out_of_reach_is_told_with_the_joint_that_stands_in_the_way(
+    run: Run, tmp_path: Path
+) -> None:
+    """A narrow range of the upper arm stands in the way; five metres off nothing helps."""
+    path, out = tmp_path / "path.csv", ("--out", str(tmp_path / "b.csv"), "--json")
+    far, near = (f"x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n{x},0,300,0,0,-300\n" for x in (5000, 2400))
+    path.write_text(far)
+    for command in ("posture", "compensate"):
+        refused = run(command, MODEL, str(path), *out)
+        assert refused.code == 1
+        assert "no posture puts the tool there" in refused.error["message"]
+    path.write_text(near)
+    refused = run("posture", MODEL, str(path), "--limit-margin", "65 deg", *out)
+    assert refused.code == 1
+    assert "joint_2_l would have to stand at" in refused.error["message"]
+    assert "has -5 to 5 deg" in refused.error["message"]
