@@ -144,6 +144,7 @@ def _unheard(error: OSError) -> int:
 
 def _misused(error: Any, *, as_json: bool) -> int:
     """Say what is wrong with the command line, on stderr and where wanted as JSON."""
+    error.message = error.message.replace("Value error, ", "")  # the parser's own words
     error.show()
     if as_json:
         from sk120stiff.cli.frame import Failure

@@ -144,3 +144,10 @@ def complete(environment: dict[str, str]) -> str:
         text=True,
         check=True,
     ).stdout
+
+
+def test_a_word_that_is_no_choice_is_told_without_the_parser(run) -> None:
+    refused = run("posture", "ur5e", "p.csv", "--out", "b.csv", "--minimise", "stiffness", "--json")
+    assert refused.code == 2
+    assert "Value error" not in refused.stderr + refused.error["message"]
+    assert "'compliance', 'deflection'" in refused.error["message"]
