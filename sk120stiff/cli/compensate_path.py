@@ -72,7 +72,10 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
     wrench = None if options.wrench is None else parse_wrench(options.wrench, where="--wrench")
     load = "that of the file" if wrench is None else f"{options.wrench} at every point"
     lies = "that of the base" if options.frame is None else options.frame
-    facts = (f"Part's frame: {lies}.", f"Load: {load}, {options.load_axes.value} axes.")
+    facts: tuple[str, ...] = (
+        f"Part's frame: {lies}.",
+        f"Load: {load}, {options.load_axes.value} axes.",
+    )
     reader = READERS.get(file.suffix.lower())
     if reader is None:
         for option, value in (("--tool-rpy", options.tool_rpy), ("--chord", options.chord),
