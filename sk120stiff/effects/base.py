@@ -351,8 +351,8 @@ class Misreading(Effect):
         proportional = np.einsum("pij,nj->nip", self.generators, x)
         return np.asarray(proportional + self.offsets(load_cases))
 
-    def matrix(self, values: Array) -> Array:
-        """(d, d) derivative of the output by the input."""
+    def matrix(self, values: Array, load_cases: LoadCases) -> Array:
+        """(d, d) derivative of the output by the input; (N, d, d) where poses differ."""
         identity = np.eye(self.generators.shape[-1])
         return np.asarray(identity + np.tensordot(values, self.generators, axes=1))
 

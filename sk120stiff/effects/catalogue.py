@@ -23,7 +23,13 @@ from types import MethodType
 from sk120stiff.effects.approach_side import ApproachSide
 from sk120stiff.effects.base import Effect, Options
 from sk120stiff.effects.closure import ClosureCoupling, ClosureRod
-from sk120stiff.effects.force_sensor import ForceBias, ForceCrosstalk, ForceRotation, ForceScale
+from sk120stiff.effects.force_sensor import (
+    ForceBias,
+    ForceCrosstalk,
+    ForcePoint,
+    ForceRotation,
+    ForceScale,
+)
 from sk120stiff.effects.foundation import BaseRocking, BaseSliding
 from sk120stiff.effects.gear import FrictionHysteresis, GearHardening, LostMotion
 from sk120stiff.effects.geometry import JointOffset, LinkLength, ToolOffset
@@ -65,6 +71,7 @@ OWN: tuple[type[Effect], ...] = (
     ForceBias,
     ForceRotation,
     ForceCrosstalk,
+    ForcePoint,
     ReadingRotation,
     ReadingScale,
     ReadingDrift,

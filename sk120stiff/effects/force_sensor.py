@@ -1,20 +1,23 @@
-"""The force sensor misreads. Everything is stated in the sensor's axes, those of the tool frame.
+"""The load is not what was reported: the force sensor misreads, or the load acts elsewhere.
 
+A sensor sits on the tool, and its axes are those of the tool frame. What a rig of weights, cables
+or cylinders gets wrong is constant in axes of the base instead: the hook that nobody weighed, the
+pulley that rubs. So an error has two laws, one in each frame.
 An error of the sensor is what it adds to the truth: reported minus true.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError
+from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot
@@ -22,6 +25,7 @@ from sk120stiff.robot.anatomy import sample_poses
 from sk120stiff.robot.rotations import crossed
 
 AXES = "xyz"
+OF_RIG = "base_"
 
 
 class _SensorError(LoadError):
@@ -30,7 +34,63 @@ class _SensorError(LoadError):
 
 
 @dataclass(frozen=True)
-class ForceScale(_SensorError):
+class _RigError(_SensorError):
+    """An error in axes of the tool, as of a sensor, or of the base, as of a rig of weights."""
+
+    of_rig: bool = False
+    also: ClassVar[str] = (
+        f"..._{OF_RIG}x and so on: along axes of the base, as of a rig of weights, cables or "
+        "cylinders"
+    )
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The error in the frame that the names of the parameters tell."""
+        return cls(where, scale_of(robot), any(f"_{OF_RIG}" in name for name in options.shape))
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The names of the parameters tell the frame."""
+        return Options(shape=tuple(parameters))
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[Self, ...]:
+        """The same in the other frame."""
+        return (replace(self, of_rig=not self.of_rig),)
+
+    @property
+    def _along(self) -> str:
+        return f"{OF_RIG}{{}}" if self.of_rig else "{}"
+
+    @property
+    def _frame(self) -> str:
+        return "base" if self.of_rig else "tool frame"
+
+    def columns(self, x: Array, load_cases: LoadCases) -> Array:
+        """(N, 6, P) derivative of the true load by the parameters."""
+        if not self.of_rig:
+            return super().columns(x, load_cases)
+        turn = _of_wrench(load_cases.rotation)
+        there = super().columns(np.einsum("nij,nj->ni", turn, x), load_cases)
+        return np.asarray(np.swapaxes(turn, 1, 2) @ there)
+
+    def matrix(self, values: Array, load_cases: LoadCases) -> Array:
+        """(6, 6) derivative of the true load by the reported one, or (N, 6, 6) if poses differ."""
+        here = super().matrix(values, load_cases)
+        if not self.of_rig:
+            return here
+        turn = _of_wrench(load_cases.rotation)
+        return np.asarray(np.swapaxes(turn, 1, 2) @ here @ turn)
+
+
+def _of_wrench(rotation: Array) -> Array:
+    """(N, 6, 6) what turns force and moment as (N, 3, 3) turns vectors."""
+    out = np.zeros((len(rotation), 6, 6))
+    out[:, :3, :3] = out[:, 3:, 3:] = rotation
+    return out
+
+
+@dataclass(frozen=True)
+class ForceScale(_RigError):
     """Each force axis reads too much or too little by a share of its own."""
 
     name: ClassVar[str] = "force_scale"
@@ -42,9 +102,9 @@ class ForceScale(_SensorError):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Relative errors of the three force axes."""
         return of_axes(
-            "scale_{}", "1", plausible=0.12, typical=0.01,
-            meaning="(reported - true) / reported force along {} of the tool frame; positive: the "
-            "sensor reads too much",
+            f"scale_{self._along}", "1", plausible=0.12, typical=0.01,
+            meaning=f"(reported - true) / reported force along {{}} of the {self._frame}; positive:"
+            " the sensor reads too much",
         )  # fmt: skip
 
     def aliases(self, robot: Robot) -> tuple[Alias, ...]:
@@ -55,6 +115,8 @@ class ForceScale(_SensorError):
         """
         every = "+".join(spec.name for spec in self.parameters)
         found = [Alias(f"{self.id}[{every}]", SPRINGS, PURE_FORCES)]
+        if self.of_rig:
+            return tuple(found)
         screws = robot.screws(sample_poses(robot, 12))
         columns = screws.linear_jacobian  # (12, 3, n)
         for k, spec in enumerate(self.parameters):
@@ -74,7 +136,7 @@ class ForceScale(_SensorError):
 
 
 @dataclass(frozen=True)
-class ForceBias(_SensorError):
+class ForceBias(_RigError):
     """The sensor adds a constant force that the unloaded reading did not have."""
 
     name: ClassVar[str] = "force_bias"
@@ -87,9 +149,9 @@ class ForceBias(_SensorError):
         """What the sensor adds to the true force."""
         size = self.scale**2
         return of_axes(
-            "offset_{}", "N", plausible=50.0 * size, typical=5.0 * size,
-            meaning="reported minus true force along {} of the tool frame; positive: the sensor "
-            "reads too much",
+            f"offset_{self._along}", "N", plausible=50.0 * size, typical=5.0 * size,
+            meaning=f"reported minus true force along {{}} of the {self._frame}; positive: the "
+            "sensor reads too much",
         )  # fmt: skip
 
     @cached_property
@@ -103,7 +165,7 @@ class ForceBias(_SensorError):
 
 
 @dataclass(frozen=True)
-class ForceRotation(_SensorError):
+class ForceRotation(_RigError):
     """The sensor is mounted turned by a small angle: W_true = W + φ × W."""
 
     name: ClassVar[str] = "force_rotation"
@@ -116,8 +178,8 @@ class ForceRotation(_SensorError):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Mounting angles about the sensor axes."""
         return of_axes(
-            "angle_{}", "rad", plausible=0.15, typical=0.0175,
-            meaning="angle about {} of the tool frame by which the sensor is mounted turned, "
+            f"angle_{self._along}", "rad", plausible=0.15, typical=0.0175,
+            meaning=f"angle about {{}} of the {self._frame} by which the sensor is mounted turned, "
             "right-handed",
         )  # fmt: skip
 
@@ -159,4 +221,30 @@ class ForceCrosstalk(_SensorError):
         out = np.zeros((6, 6, 6))
         for k, (source, target) in enumerate(permutations(range(3), 2)):
             out[k, target, source] = -1.0
+        return out
+
+
+@dataclass(frozen=True)
+class ForcePoint(_SensorError):
+    """The load acts at another point of the tool than stated: M_true = M + o × F."""
+
+    name: ClassVar[str] = "force_point"
+    equation: ClassVar[str] = "M_true = M_reported + o x F"
+    says: ClassVar[str] = "The load acts at another point of the tool than stated."
+    axes: ClassVar[str] = "axes of the tool frame"
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """True place minus stated place."""
+        return of_axes(
+            "offset_{}", "m", plausible=0.1 * self.scale, typical=5e-3 * self.scale,
+            meaning="true minus stated place of the load along {} of the tool frame",
+        )  # fmt: skip
+
+    @cached_property
+    def generators(self) -> Array:
+        """The moment that the force has about the stated place."""
+        out = np.zeros((3, 6, 6))
+        for k in range(3):
+            out[k, 3:, :3] = crossed(np.eye(3)[k])
         return out

@@ -17,7 +17,7 @@ class Misread:
 
     Attributes:
         value: (N, d) what comes out.
-        matrix: (d, d) derivative of the output by the input.
+        matrix: (d, d) derivative of the output by the input; (N, d, d) where poses differ.
         columns: For each effect its part of the vector of values, and (N, d, p) derivatives.
     """
 
@@ -34,7 +34,7 @@ def misread(
     columns: list[tuple[slice, Array]] = []
     for effect, part in effects:
         own = effect.columns(x, load_cases)
-        step = effect.matrix(values[part])
+        step = effect.matrix(values[part], load_cases)
         x = x + own @ values[part]
         columns = [(earlier, step @ found) for earlier, found in columns]
         columns.append((part, own))

@@ -61,26 +61,60 @@ def test_the_words_list_the_catalogue() -> None:
 )
 def test_what_a_sensor_adds_comes_out_with_the_sign_that_is_told(name, reported, expected) -> None:
     """The readings are made by hand: true loads bend the arm, a wrong sensor reports them."""
-    robot = load_robot("motoman_sk120")
-    rng = np.random.default_rng(5)
-    joints = random_poses(robot, 30, rng)
-    force = rng.normal(size=(30, 3)) * 250.0
-    springs = joint_spring_model(robot, STIFF)
+    robot, joints, force = _loaded()
     turn = robot.screws(joints).rotation
     seen = np.einsum("nji,nj->ni", turn, force)  # tool axes
     told = np.einsum("nij,nj->ni", turn, np.asarray(reported(seen)))
+    _recovered(robot, joints, told, np.zeros((30, 3)), force, name, expected)
+
+
+@pytest.mark.parametrize(
+    ("name", "reported", "expected"),
+    [
+        # nobody weighed the hook: 20 N more pull down than were told
+        ("force_bias", lambda f: f + [0.0, 0.0, 20.0], {"offset_base_z": 20.0}),
+        ("force_scale", lambda f: f * [1.04, 1.0, 1.0], {"scale_base_x": 0.04 / 1.04}),
+        ("force_rotation", lambda f: f - 0.02 * np.cross([0, 0, 1.0], f), {"angle_base_z": 0.02}),
+    ],
+)
+def test_what_a_rig_of_weights_and_cables_gets_wrong_lies_in_axes_of_the_base(
+    name, reported, expected
+) -> None:
+    robot, joints, force = _loaded()
+    told = np.asarray(reported(force))
+    _recovered(robot, joints, told, np.zeros((30, 3)), force, name, expected)
+
+
+def test_where_the_load_acts_comes_out() -> None:
+    """It acts 30 mm beside and 20 mm before the stated point: its moment bends the arm too."""
+    robot, joints, force = _loaded()
+    beside = robot.screws(joints).rotation @ np.array([0.03, 0.0, 0.02])
+    expected = {"offset_x": 0.03, "offset_y": 0.0, "offset_z": 0.02}
+    _recovered(robot, joints, force, np.cross(beside, force), force, "force_point", expected)
+
+
+def _loaded():
+    robot = load_robot("motoman_sk120")
+    rng = np.random.default_rng(5)
+    return robot, random_poses(robot, 30, rng), rng.normal(size=(30, 3)) * 250.0
+
+
+def _recovered(robot, joints, told, moment, force, name, expected) -> None:
+    """Fit the effect to an arm that `force` and `moment` bend, while `told` is reported."""
+    springs = joint_spring_model(robot, STIFF)
     point = np.array([-0.06, 0.04, 0.15])
     readings = Measurements(
         pose=tuple(f"p{k}" for k in range(30)),
         joint_names=robot.actuated,
         joints=joints,
         wrench=np.hstack([told, np.zeros((30, 3))]),
-        displacement=springs.deflect(joints, np.hstack([force, np.zeros((30, 3))]), point=point),
+        displacement=springs.deflect(joints, np.hstack([force, moment]), point=point),
         robot=robot.source,
         point=point,
     )
     fixed = replace(springs, parameters=tuple(replace(p, free=False) for p in springs.parameters))
-    found = fit(fixed + effect(robot, name), readings, noise=NoiseModel(1e-6))
+    law = CATALOGUE.effect(robot, name, None, Options(shape=tuple(expected)))
+    found = fit(fixed + law, readings, noise=NoiseModel(1e-6))
     for key, value in expected.items():
         got = found.model.parameter(f"{name}:sensor.{key}").value
         assert got == pytest.approx(value, rel=5e-3, abs=1e-3)
