@@ -11,7 +11,7 @@ from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import Options, explain
-from sk120stiff.explain.judge import imitation
+from sk120stiff.explain.judge import beside_form, imitation
 from sk120stiff.explain.judge.attribution import _objection as objection
 from sk120stiff.explain.judge.attribution import findings_of
 from sk120stiff.explain.judge.beside_form import beside_model_form
@@ -171,6 +171,30 @@ def test_the_search_begins_beside_what_confirmed_names_leave(springs):
             beside_model_form(at, under, names=ids, seed=0)
     assert sizes[0] > 0.01
     assert sizes[1] < 0.1 * sizes[0]
+
+
+def test_a_round_that_takes_the_noise_for_larger_does_not_unsay_a_stated_sigma(springs):
+    """What was stated is asked again in the next round, and stays the yardstick."""
+    base = fit(springs, hidden(TILT), noise=NOISE)
+    asked, names = [], iter(["first", "second", "third"])
+
+    def larger(at):
+        asked.append(at.problem.noise.known)
+        return replace(at.problem.noise, freedom=0)
+
+    def under(noise):
+        final = replace(base, problem=replace(base.problem, noise=noise))
+        return SimpleNamespace(final=final, total=0.0)
+
+    def judged(found, **_):
+        name = SimpleNamespace(effect=SimpleNamespace(id=next(names)))
+        return found, SimpleNamespace(findings=(name,))
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(beside_form, "with_model_form", larger)
+        patched.setattr(beside_form, "judged", judged)
+        beside_form._settled(base, under, (), 0)
+    assert asked == [True, True, True]
 
 
 def test_beside_model_form_error_a_name_is_at_few_places(springs):

@@ -62,15 +62,19 @@ def beside_model_form(
 def _settled(
     at: Fit, under: Try, names: Collection[str], seed: int
 ) -> tuple[Selection, Named, float]:
-    """Selection, names and score, once what they leave is what they were sought beside."""
-    before = set(names)
+    """Selection, names and score, once what they leave is what they were sought beside.
+
+    A round may take the noise for larger than stated; the next asks again whether it is.
+    """
+    before, freedom = set(names), at.problem.noise.freedom
     for _ in range(ROUNDS):
         tried = under(with_model_form(at))
         found, named = judged(tried, seed=seed, least=MARGIN)
         now = {finding.effect.id for finding in named.findings}
         if now == before:
             break
-        at, before = found.final, now
+        noise = replace(found.final.problem.noise, freedom=freedom)
+        at, before = replace(found.final, problem=replace(found.final.problem, noise=noise)), now
     return found, named, tried.total
 
 
