@@ -1,5 +1,7 @@
 """One curve of a gear has one name; what it does is told in micrometres, and what to do next."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -113,6 +115,16 @@ def test_what_to_do_now_says_what_the_model_is_worth(skewed):
     said = next_step(skewed)
     assert said.startswith("Use model.yaml: at poses that no fit saw")
     assert "lost_motion:joint_1_s brings the most" in said
+
+
+@pytest.mark.parametrize(("robot", "weighs"), [("motoman_sk120", False), ("ur5e", True)])
+def test_where_nothing_is_confirmed_the_masses_of_the_urdf_are_put_in_doubt(skewed, robot, weighs):
+    """Gears and bolts are preloaded by them; with wrong ones a clear cause has no name."""
+    model = base_model(load_robot(robot))
+    for gravity, told in ((None, weighs), (np.zeros(3), False)):
+        final = replace(skewed.final, model=model.under(gravity))
+        said = next_step(replace(skewed, verdict="outside", final=final))
+        assert ("write gravity: 0 into the YAML file" in said) == told
 
 
 def test_priors_are_prices(springs):

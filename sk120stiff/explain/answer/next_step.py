@@ -66,7 +66,19 @@ def _outside(answer: Explanation) -> list[str]:
             "best_guess.yaml foretells other poses best; use it at most where poses and loads are "
             "like those measured."
         )
-    return [*said, _of_the_remainder(answer)]
+    return [*said, _of_the_remainder(answer), *_of_the_weight(answer)]
+
+
+def _of_the_weight(answer: Explanation) -> list[str]:
+    """Masses of URDF files are often invented, and gears and bolts are preloaded by them."""
+    robot = answer.final.model.robot
+    if not (robot.total_mass and robot.gravity.any()):
+        return []
+    return [
+        f"What is not in proportion to the load was sought about the preload by the arm's own "
+        f"weight, {robot.total_mass:.3g} kg by the URDF: where these masses are not the arm's, "
+        "write gravity: 0 into the YAML file and run this again."
+    ]
 
 
 def _gain(answer: Explanation) -> str:
