@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from sk120stiff.arrays import Array
-from sk120stiff.cli.drawing import will_draw
+from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.map_postures import postures
 from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
@@ -26,7 +26,7 @@ from sk120stiff.cli.options import (
 from sk120stiff.cli.tables import progress_bars, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.files import will_fill, will_write
+from sk120stiff.files import will_fill
 from sk120stiff.model import Model
 from sk120stiff.robot.rotations import rotation_from_rpy
 from sk120stiff.units import parse_values
@@ -105,7 +105,7 @@ def command(
         overwrite: Replace another map of that name, and nothing else.
     """
     will_fill(out)
-    will_write(page, "--page")
+    will_show(page)
     will_draw(page, figures)
     believed = open_model(robot, model, base=base, tool=tool)
     arm_robot = believed.robot

@@ -17,6 +17,7 @@ from pydantic import ValidationError
 from sk120stiff.cli.cell import opened_cell
 from sk120stiff.cli.frame import Answer, emit, note
 from sk120stiff.cli.opening import open_model
+from sk120stiff.cli.plan.shown import in_newtons
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import schema_error
@@ -172,7 +173,7 @@ def _answer(
     at: Folder, campaign: Campaign, state: State, plan: Measurements | None,
     asked: Confirmation | None, final: bool,
 ) -> Answer:  # fmt: skip
-    names = list(state.belief.probabilities.items())
+    names = list(state.belief.probabilities.items()) if state.belief.linear.effects else []
     rows = [
         (name, f"{value:.5g}", f"± {std:.2g}" if std < abs(value) else "not known yet", unit)
         for name, value, std, unit in state.springs
@@ -183,8 +184,10 @@ def _answer(
             ["spring", "value", "", "unit"],
             rows,
         ),
-        table("Probabilities", ["name", "P"], [(n, f"{p:.3f}") for n, p in names[:SHOWN]]),
     ]
+    if names:
+        shown = [(n, f"{p:.3f}") for n, p in names[:SHOWN]]
+        said.append(table("Probabilities", ["name", "P"], shown))
     if sum(p for _, p in names) > 1.005:
         said.append("A pair of causes counts for both of its names: together they exceed 1.")
     if state.belief.unexplained:
@@ -206,6 +209,7 @@ def _answer(
         "readings": state.count,
         "springs": [
             {"name": name, "value": value, "std": std, "unit": unit}
+            | ({} if np.isfinite(std) else {"reason": "no reading shows it yet"})
             for name, value, std, unit in state.springs
         ],
         "probabilities": [{"name": n, "probability": p} for n, p in names if p > 0.01],
@@ -236,8 +240,8 @@ def _next(plan: Measurements) -> object:
     unit = ["deg" if kind == "angle" else "mm" for kind in plan.joint_kinds]
     columns = ["pose", *(f"{n} [{u}]" for n, u in zip(plan.joint_names, unit, strict=True))]
     row = (plan.pose[0], *(f"{x:.2f}" for x in plan.joints[0] * scale))
-    force = tuple(f"{x:.0f}" for x in plan.wrench[0, :3])
-    return table("Measure next", [*columns, "fx [N]", "fy [N]", "fz [N]"], [(*row, *force)])
+    whole = (*row, *in_newtons(plan.wrench[0]))
+    return table("Measure next", [*columns, "fx [N]", "fy [N]", "fz [N]"], [whole])
 
 
 def _typed(at: Folder, campaign: Campaign, turn: _Turn) -> bool:

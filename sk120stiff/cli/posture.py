@@ -12,7 +12,7 @@ import typer
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, height_words, opened_cell
-from sk120stiff.cli.drawing import will_draw
+from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
@@ -98,7 +98,7 @@ def command(
         )
     will_write(out)
     will_write(picture, "--picture")
-    will_write(page, "--page")
+    will_show(page)
     will_draw(picture, page)
     believed = open_model(model)
     robot = believed.robot

@@ -6,7 +6,7 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from sk120stiff.cli.drawing import will_draw
+from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer, note
 from sk120stiff.cli.opening import model_file, model_for, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
@@ -18,7 +18,6 @@ from sk120stiff.cli.options import (
     WrenchOption,
 )
 from sk120stiff.errors import InputError
-from sk120stiff.files import will_write
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Measurements
@@ -61,7 +60,7 @@ def command(
         port (N): First port to try; 0 takes any that is free.
         host (ADDRESS): Address to listen on. Anything but loopback shows the page to your network.
     """
-    will_write(static, "--static")
+    will_show(static, "--static")
     will_draw(robot)
     measured = None if data is None else _read(data)
     if measured is not None:  # the frames that the readings are about

@@ -129,6 +129,11 @@ def columns_of(
     yield from m.extra.items()
 
 
+def _shortest(si: float, unit: str) -> float:
+    """A length without the rounding of its unit: 0.015 mm, not 0.015000000000000001."""
+    return si if unit == "m" else float(f"{float(units.from_si(si, unit, 'length')):.15g}")
+
+
 def _zero_columns(m: Measurements) -> Iterable[_Column]:
     """What the reader would not guess of the zero readings by itself."""
     plain = np.arange(m.n_readings) if m.zero == "separate" else m.pose_index
@@ -170,7 +175,7 @@ def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
     settings["displacement"] = {"frame": m.displacement_frame, "zero": m.zero}
     noise: dict[str, Any] = {}
     if m.noise.sigma is not None:
-        noise["sigma"] = float(units.from_si(m.noise.sigma, length, "length"))
+        noise["sigma"] = _shortest(m.noise.sigma, length)
         noise["unit"] = length
     if m.noise.growth is not None:
         noise["growth"] = m.noise.growth

@@ -28,6 +28,7 @@ SPARE = 3  # numbers read beyond the parameters of a name: else no misfit could 
 APART = 3.3  # √λ at which two names are told apart
 LITTLE = 0.01  # nat: a reading that brings less about names tells next to nothing
 QUIET, ENOUGH = 0.7, 12  # probability of nothing, and readings, from which silence counts
+LITTLE_LEFT = 0.5  # of a spring's variance beforehand: with more the readings say nothing of it
 ROUNDS = 2  # of putting the linearisation where the readings are
 
 Reason = Literal["named", "class", "none", "target", "hopeless", "most"]
@@ -58,7 +59,7 @@ class State:
         count: Number of readings.
         belief: Probabilities of the names.
         springs: Name, value, standard error and unit of the base model's parameters, as people
-            write them.
+            write them; infinite where the readings say next to nothing.
         row: The pool's reading to take next; None where there is nothing to take.
         decides: What that reading would decide, in words.
         stop: Why to stop, or None.
@@ -183,6 +184,7 @@ class Campaign:
     def _springs(self, belief: Belief) -> tuple[tuple[str, float, float, str], ...]:
         linear, leader = belief.linear, belief.leader
         errors = belief.spring_errors()
+        errors = np.where(errors**2 < LITTLE_LEFT * linear.spread[0] ** 2, errors, np.inf)
         out = []
         for k, column in enumerate(linear.base):
             p = linear.model.parameters[column]
@@ -208,6 +210,9 @@ class Campaign:
 
     def _stop(self, belief: Belief, readings: Measurements | None) -> Stop | None:
         count = _count(readings)
+        left = max(self.most - count, 1)
+        if not belief.linear.effects and not self._within_reach(belief, left):
+            return Stop("hopeless", (), self._blind())
         if belief.sums.count - len(belief.leader.columns) < SPARE:
             return None
         if belief.unexplained:
@@ -217,7 +222,6 @@ class Campaign:
         open_ = [n for n, p in probabilities.items() if OPEN < p < SURE and n != "none"]
         if sure and not open_:
             return Stop("named", sure, f"{' and '.join(sure)}: P = {probabilities[sure[-1]]:.3f}.")
-        left = max(self.most - count, 1)
         alike = self._inseparable(belief, left)
         if len(alike) > 1:
             names_ = tuple(_said(belief, h.members) for h in alike)
@@ -226,22 +230,61 @@ class Campaign:
                 f"hopeless: no reading of this rig separates {' from '.join(names_)}; "
                 f"{_help(belief, alike)} would.",
             )  # fmt: skip
-        if probabilities["none"] >= SURE:
-            return Stop("none", (), "Nothing is missing that these readings could show.")
-        if self.target is not None and all(
-            std <= self.target * abs(value) for _, value, std, _ in self._springs(belief)
-        ):
+        if probabilities["none"] >= SURE and belief.linear.effects:
+            return Stop(
+                "none", (),
+                f"Nothing is missing that these readings could show.{self._open_words(belief)}",
+            )  # fmt: skip
+        if self.target is not None and not self._open(belief):
             return Stop("target", (), f"Every spring is known to {100 * self.target:g} %.")
-        if count >= ENOUGH:
+        if count >= ENOUGH and belief.linear.effects:
             names = expected(belief, self.X[~self._taken(readings)]).names
             if probabilities["none"] >= QUIET and float(names.max(initial=0.0)) < LITTLE:
                 return Stop(
                     "none", (),
-                    "Nothing missing shows, and no reading of this rig is expected to tell more.",
+                    "Nothing missing shows, and no reading of this rig is expected to tell more "
+                    f"about that.{self._open_words(belief)}",
                 )  # fmt: skip
             if float(np.sort(names)[-left:].sum()) < LITTLE:
                 return Stop("hopeless", (), "No reading of this rig would tell more about names.")
         return None if count < self.most else self._enough(count)
+
+    def _open(self, belief: Belief) -> list[tuple[str, float]]:
+        """Springs that are not known to the target, and how well they are."""
+        shares = [(name, std / abs(value)) for name, value, std, _ in self._springs(belief)]
+        return [] if self.target is None else [each for each in shares if each[1] > self.target]
+
+    def _open_words(self, belief: Belief) -> str:
+        """What is said of them beside a stop that is not for their sake."""
+        found = self._open(belief)
+        if not found or self.target is None:
+            return ""
+        names = ", ".join(
+            f"{name} ({f'{100 * share:.2g} %' if share < 1.0 else 'unknown'})"
+            for name, share in found
+        )
+        return f" Not known to {100 * self.target:g} % yet: {names}; next.csv goes on for those."
+
+    def _within_reach(self, belief: Belief, left: int) -> bool:
+        """Could so many readings, each the best of all for it, bring every spring to the target?"""
+        if self.target is None:
+            return False
+        base = belief.linear.base
+        most = left * (self.X[:, :, base] ** 2).sum(axis=1).max(axis=0)
+        least = 1.0 / np.sqrt(belief.spring_errors() ** -2.0 + most)
+        parameters = [belief.linear.model.parameters[column] for column in base]
+        size = np.abs([p.internal for p in parameters]) / belief.linear.scale[base]
+        return bool((least <= self.target * size).all())
+
+    def _blind(self) -> str:
+        """Why it is hopeless where no effect of the catalogue could show."""
+        return (
+            "Of its usual size no effect of the catalogue moves the point by half the noise of a "
+            f"reading ({1e3 * self.sigma:.3g} mm) at any pose and load of this rig: nothing that "
+            "is missing would show"
+            + (", nor would all springs come to the target" if self.target is not None else "")
+            + ". Larger loads (--force) would help, or an instrument with less noise."
+        )
 
     def _enough(self, count: int) -> Stop:
         return Stop("most", (), f"{count} readings were the most that were asked for.")

@@ -319,3 +319,28 @@ def test_what_no_plan_shows_has_no_promise_and_spoils_no_other(run, tmp_path: Pa
         assert refused.code == 2
         assert refused.error["where"] == asked[0]
         assert "order or time[s]" in refused.error["message"]
+
+
+@pytest.mark.parametrize("command", ["plan", "posture", "map", "view"])
+def test_a_page_that_no_browser_would_open_is_refused(run, command: str, tmp_path: Path) -> None:
+    """A page named like a picture is one that opens in no program."""
+    page, path = str(tmp_path / "page.pdf"), tmp_path / "path.csv"
+    path.write_text("x[mm],y[mm],z[mm],fx[N],fy[N],fz[N]\n1500,0,300,0,0,-300\n")
+    options = {
+        "plan": ("--count", "3", *FEW, "--page", page),
+        "posture": (str(path), "--out", str(tmp_path / "b.csv"), "--page", page),
+        "map": ("--grid", "joint_1_s=0 deg", "--out", str(tmp_path / "m.zarr"), "--page", page),
+        "view": ("--static", page),
+    }[command]
+    refused = run(command, MODEL, *options, "--json")
+    assert refused.code == 2 and "page.html" in refused.error["remedy"]
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_small_loads_are_shown_with_their_tenths(run) -> None:
+    said = run("plan", MODEL, "--count", "3", "--force", "5 N", *FEW).stdout
+    rows = re.findall(r"^ p\d .*$", said, re.MULTILINE)
+    assert len(rows) == 3
+    for row in rows:
+        force = [float(word) for word in row.split()[-3:]]
+        assert np.linalg.norm(force) == pytest.approx(5.0, abs=0.1)

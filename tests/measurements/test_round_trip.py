@@ -213,3 +213,11 @@ def test_unlike_parts_are_not_joined(tmp_path: Path, change: dict[str, object], 
         join_measurements([m, dataclasses.replace(m, **change)])  # type: ignore[arg-type]
     with pytest.raises(InputError):
         join_measurements([])
+
+
+def test_a_noise_is_written_without_the_rounding_of_its_unit(tmp_path: Path) -> None:
+    file = tmp_path / "made.csv"
+    file.write_text("pose,a[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm]\n1,0,0,0,1,0,0,1\n")
+    file.with_suffix(".yaml").write_text("robot: arm\nnoise: {sigma: 15, unit: um}\n")
+    write_measurements(read_measurements(file, ("a",)), tmp_path / "again.csv")
+    assert "sigma: 0.015\n" in (tmp_path / "again.yaml").read_text(encoding="utf-8")

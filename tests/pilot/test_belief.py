@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from sk120stiff.model import base_model
 from sk120stiff.pilot.belief import NOTHING, SIZES, TWO, Belief
 from sk120stiff.pilot.campaign import Campaign
 from sk120stiff.pilot.choosing import best, expected
 from sk120stiff.pilot.linear import Sums
 from sk120stiff.plan import Cell, Rig, feasible_pool
+from sk120stiff.robot import load_robot
 from tests.pilot.simulated import SIGMA, Bench, campaigns
 
 
@@ -193,3 +195,31 @@ def test_no_rounding_leaves_less_than_nothing() -> None:
         y = X[:, made.linear.base] @ np.array([300.0, -20.0, 1.0])
         belief = Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
         assert min(h.misfit for h in belief.hypotheses) >= 0.0
+
+
+def test_a_rig_that_shows_nothing_is_called_hopeless_before_the_first_reading() -> None:
+    """One newton and two millimetres: neither a name nor a spring comes of it."""
+    made = bench().campaign
+    robot, point = made.model.robot, made.pool.load_cases.point
+    pool = feasible_pool(robot, poses=20, directions=3, force=1.0, point=point)
+    for target, told in ((None, "would show."), (0.01, "nor would all springs")):
+        campaign = Campaign.of(made.model, pool, 2e-3, target=target)
+        assert not campaign.linear.effects
+        stop = campaign.state(None).stop
+        assert stop is not None and stop.reason == "hopeless"
+        assert told in stop.sentence and "2 mm" in stop.sentence
+    assert Campaign.of(made.model, pool, 2e-3, target=1e4).state(None).stop is None
+
+
+def test_what_a_spring_was_taken_to_be_is_no_standard_error() -> None:
+    """On the tool's own axis the last joint's spring shows in no reading."""
+    robot = load_robot("ur5e")
+    pool = feasible_pool(robot, poses=30, directions=4, force=80.0, point=np.zeros(3))
+    campaign = Campaign.of(base_model(robot), pool, SIGMA, target=0.05)
+    X = campaign.X[:40].reshape(-1, campaign.X.shape[2])
+    y = np.random.default_rng(2).normal(size=len(X))
+    belief = Belief(campaign.linear, Sums.none(X.shape[1]).plus(X, y))
+    *known, last = campaign._springs(belief)
+    assert last[0].startswith("joint_springs:wrist_3_joint") and np.isinf(last[2])
+    assert all(np.isfinite(std) for _, _, std, _ in known)
+    assert "wrist_3_joint.stiffness (unknown)" in campaign._open_words(belief)

@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.cell import CellOption, as_measured, height_words, opened_cell
-from sk120stiff.cli.drawing import will_draw
+from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
@@ -125,7 +125,7 @@ def command(
         raise InputError("this says how the tool stands at --places", where="--tool-axis")
     declare_readings(out)
     will_write(program, "--program")
-    will_write(page, "--page")
+    will_show(page)
     will_draw(None, page)
     language = None if program is None else language_for(program)
     known, start = _opened(robot, model, data)
