@@ -7,6 +7,7 @@ or the work was done and its honest answer is "no" (`Refusal`, exit code 1).
 from __future__ import annotations
 
 import importlib.util
+import warnings
 from collections.abc import Sequence
 from typing import ClassVar, Final
 
@@ -122,6 +123,11 @@ class ToolkitWarning(UserWarning):
         >>> print(said[0].message)
         motoman_sk120 states no masses: its gravity torques are all zero
     """
+
+
+def warn(text: str, *, stacklevel: int = 2) -> None:
+    """A `ToolkitWarning` that points at the caller's caller, or as many calls up as is said."""
+    warnings.warn(text, ToolkitWarning, stacklevel=stacklevel + 1)
 
 
 def listed(words: Sequence[str], joint: str = "and") -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -12,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.errors import InputError, Refusal, warn
 from sk120stiff.programs import READERS
 from sk120stiff.programs.bad_targets import turned_over
 from sk120stiff.programs.placing import TOOL_DOWN, part_frame, placed, tool_rotation
@@ -108,14 +107,12 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
             f"{word} (line {line})" for word, line in list(read.left_out.items())[:12]
         )
         more = len(read.left_out) - 12
-        warnings.warn(
+        warn(
             f"words that do not move the tool are not carried over: {words}"
-            + (f" and {more} more" if more > 0 else ""),
-            ToolkitWarning,
-            stacklevel=2,
+            + (f" and {more} more" if more > 0 else "")
         )
     for sentence in read.assumed:
-        warnings.warn(sentence.removesuffix("."), ToolkitWarning, stacklevel=2)
+        warn(sentence.removesuffix("."))
     said = (
         FREE_TOOL
         if tool is None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import warnings
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 from sk120stiff import __version__
 from sk120stiff.arrays import Array
 from sk120stiff.cli.opening import model_file
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.files import read_bytes, write_atomically
 from sk120stiff.model import Model, typical_parameters
 from sk120stiff.programs import Language
@@ -96,7 +95,7 @@ def write_program(
             f"Straight moves state the tool's place alone, which this arm of {robot.n} joints can "
             "hold in many postures: the correction is that of the joint values beside each target"
         ) + ("; --by-joints moves by those." if language.joint_moves else ".")
-        warnings.warn(free, ToolkitWarning, stacklevel=2)
+        warn(free)
         facts = [*facts, free]
     program = build(
         language, out, path, robot, found.a, frame=frame, part=part, feed=feed, rapid=rapid,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.model import Model
 from sk120stiff.model.prediction_table import blame_reason
 from sk120stiff.plan import Cell, feasible
@@ -50,11 +49,9 @@ def infeasible(
     ]
     if wrong:
         first = verdict.faults[int(np.argmin(verdict.ok))][0]
-        warnings.warn(
+        warn(
             f"at {len(wrong)} of {len(rows)} points asked the arm cannot stand so or hold the "
-            f"load, first in line {wrong[0]['line']}: {first}",
-            ToolkitWarning,
-            stacklevel=2,
+            f"load, first in line {wrong[0]['line']}: {first}"
         )
     return wrong
 
@@ -130,21 +127,17 @@ def warn_of_branch(branch: Branch, path: LoadedPath) -> None:
     """Warn of joints below the floor, and of jumps between points."""
     lines = path.table.lines
     if branch.below:
-        warnings.warn(
+        warn(
             f"at {branch.below} of {path.count} points a joint of the arm lies below the floor "
             f"({1e3 * branch.floor:.0f} mm): {branch.lowest_joint} at "
             f"{1e3 * branch.lowest:.0f} mm, line {lines[branch.lowest_point]}. Choose another "
-            "branch with --start, or say where the floor is with --floor",
-            ToolkitWarning,
-            stacklevel=2,
+            "branch with --start, or say where the floor is with --floor"
         )
     for k in branch.jumps[:1]:
         more = f" (and {len(branch.jumps) - 1} more pairs)" if len(branch.jumps) > 1 else ""
-        warnings.warn(
+        warn(
             f"between lines {lines[k]} and {lines[k + 1]}{more} a joint moves by more "
-            "than 30 deg (or 0.5 m): the arm changes its posture there",
-            ToolkitWarning,
-            stacklevel=2,
+            "than 30 deg (or 0.5 m): the arm changes its posture there"
         )
 
 

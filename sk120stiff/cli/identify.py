@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from enum import StrEnum
@@ -19,7 +18,7 @@ from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
 from sk120stiff.effects import effect
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.files import will_write
 from sk120stiff.identify import (
     Compared,
@@ -106,15 +105,15 @@ def command(
     doubts = look(plain, readings)
     refuse_unbelievable(doubts, plain, readings)
     for said in doubts.sentences:
-        warnings.warn(said, ToolkitWarning, stacklevel=2)
+        warn(said)
     readings, told = without_copies(readings)
     if told:
-        warnings.warn(told, ToolkitWarning, stacklevel=2)
+        warn(told)
     with progress_bar("identify"):
         found = fit(start, readings, method=method.value, robust=robust)
     wrong = contradiction(found)
     if wrong is not None:
-        warnings.warn(wrong, ToolkitWarning, stacklevel=2)
+        warn(wrong)
     intervals: Sequence[Interval] | None = None
     if profile:
         with progress_bar("profile") as report:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import warnings
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -14,7 +13,7 @@ from sk120stiff.cli.frame import Answer, ahead
 from sk120stiff.cli.import_preview import document_of, doubts_of, preview_of
 from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements.importers import Told, import_readings
 from sk120stiff.units import parse_values
 
@@ -139,7 +138,7 @@ def command(
     )
     doubts = doubts_of(found, arm)
     for sentence in doubts:
-        warnings.warn(sentence, ToolkitWarning, stacklevel=2)
+        warn(sentence)
     parts = preview_of(found, arm)
     if preview or out is None:
         parts.append("Nothing was written (--preview).")

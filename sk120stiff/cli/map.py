@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -25,7 +24,7 @@ from sk120stiff.cli.options import (
 )
 from sk120stiff.cli.tables import progress_bars, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.files import will_fill
 from sk120stiff.model import Model
 from sk120stiff.robot.rotations import rotation_from_rpy
@@ -258,11 +257,9 @@ def _warn_beyond_limits(grid: Grid, limits: dict[str, tuple[float, float, str]])
         low, high, _ = limits[axis.name]
         slack = 1e-9 * max(1.0, float(np.abs(axis.values).max()))
         if axis.values.min() < low - slack or axis.values.max() > high + slack:
-            warnings.warn(
+            warn(
                 f"the grid goes beyond the limits of {axis.name}, {low:.4g} to {high:.4g}; "
-                "those points are computed as if the joint could go there",
-                ToolkitWarning,
-                stacklevel=2,
+                "those points are computed as if the joint could go there"
             )
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.errors import ToolkitWarning
+from sk120stiff.errors import warn
 from sk120stiff.robot import Robot
 from sk120stiff.workspace import elbow_sides, joint_heights, open_map
 
@@ -49,11 +48,9 @@ def postures(robot: Robot, store: Path, *, led: bool) -> tuple[dict[str, object]
         "below_base_and_point": sunk,
     }
     if sunk:
-        warnings.warn(
+        warn(
             f"at {sunk} points a joint lies below the base plane and below the point itself "
-            f"({name} down to {1e3 * low.min():.0f} mm): choose the branch with --start",
-            ToolkitWarning,
-            stacklevel=2,
+            f"({name} down to {1e3 * low.min():.0f} mm): choose the branch with --start"
         )
     how = "the branch of the start pose" if led else "at each point the stiffest branch found"
     text = (

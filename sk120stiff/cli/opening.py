@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 import sys
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import note
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.files import will_write
 from sk120stiff.robot import Robot, find_robot, load_robot
 from sk120stiff.units import parse_pose, parse_wrench
@@ -141,11 +140,9 @@ def tell_doubts(model: Model) -> Model:
 
     if assumed := typical_parameters(model):
         places = ", ".join(dict.fromkeys(p.effect.where for p in assumed))
-        warnings.warn(
+        warn(
             f"The springs of {places} are typical of an arm of this size, not measured: results "
-            "are orders of magnitude. Identify them (sk120stiff identify), or give --model.",
-            ToolkitWarning,
-            stacklevel=2,
+            "are orders of magnitude. Identify them (sk120stiff identify), or give --model."
         )
     return model
 
@@ -160,11 +157,9 @@ def pose_of(robot: Robot, text: str | None, option: str = "--pose") -> Array:
         low, here, high = robot.lower[k], a[k], robot.upper[k]
         if not robot.prismatic[k]:
             low, here, high = np.degrees((low, here, high))
-        warnings.warn(
+        warn(
             f"{robot.actuated[k]} stands at {here:g} {'m' if robot.prismatic[k] else 'deg'}, "
-            f"beyond its limits {low:g} .. {high:g}.",
-            ToolkitWarning,
-            stacklevel=2,
+            f"beyond its limits {low:g} .. {high:g}."
         )
     return a
 

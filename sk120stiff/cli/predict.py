@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,7 +15,7 @@ from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.data_checks import look
 from sk120stiff.effects import load_cases_of
-from sk120stiff.errors import ToolkitWarning
+from sk120stiff.errors import warn
 from sk120stiff.files import csv_text, will_write, write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import (
@@ -47,7 +46,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     if readings.absolute is not None:
         return predicted_positions(believed, readings, out)
     for said in look(believed, readings).sentences:
-        warnings.warn(said, ToolkitWarning, stacklevel=2)
+        warn(said)
     with progress_bar("predict"):
         predicted = predict_what_holds(believed, load_cases_of(robot, readings))
     columns = prediction_table(readings, predicted)

@@ -13,7 +13,6 @@ has its effects in `CATALOGUE` from the start.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from functools import cached_property
@@ -48,7 +47,7 @@ from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingRotation, ReadingScale, ZeroOffset
 from sk120stiff.effects.tracker_frame import TrackerFrame
 from sk120stiff.effects.transmission_error import TransmissionError
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.robot import Robot
 
 GROUP = "sk120stiff.effects"  # of the entry points by which packages bring effects
@@ -228,11 +227,9 @@ def with_installed(
             _checked((*found, kind))
         except Exception as error:  # noqa: BLE001  what others install must not stop the program
             whose = f" of {point.dist.name}" if point.dist else ""
-            warnings.warn(
+            warn(
                 f"the effect {point.name!r}{whose} ({point.value}) is left out: "
-                f"{type(error).__name__}: {error}",
-                ToolkitWarning,
-                stacklevel=2,
+                f"{type(error).__name__}: {error}"
             )
         else:
             found = (*found, kind)

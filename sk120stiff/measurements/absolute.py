@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
@@ -13,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from sk120stiff import units
 from sk120stiff.arrays import Array, Index
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.columns import (
     ANCHORS,
@@ -178,11 +177,9 @@ def _payload(table: Table) -> Array:
     blank = np.flatnonzero(~np.isfinite(mass))
     if len(blank):
         cells = "1 blank cell counts" if len(blank) == 1 else f"{len(blank)} blank cells count"
-        warnings.warn(
+        warn(
             f"{table.place('payload', int(blank[0]))}: {cells} as no payload. Write 0 where none "
-            "hangs on the tool, the mass where one does.",
-            ToolkitWarning,
-            stacklevel=2,
+            "hangs on the tool, the mass where one does."
         )
     return np.where(np.isfinite(mass), mass, 0.0)
 

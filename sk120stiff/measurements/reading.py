@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff import files, units
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements import columns
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute, is_absolute, read_absolute
 from sk120stiff.measurements.branches import branches_by_order
@@ -247,9 +246,8 @@ def _doubt_units(measurements: Measurements) -> None:
         row = int(np.argmax(size))
         if size.flat[row] > limit:
             line = f", line {measurements.line[row]}" if values.ndim == 2 else ""
-            warnings.warn(
+            warn(
                 f"{measurements.path}{line}: {name} is {size.flat[row]:.4g} {unit}. "
                 "Check the unit in the header.",
-                ToolkitWarning,
                 stacklevel=3,
             )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Elastic, LinearElastic, LoadCases, load_case
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ConstantCompliance, ElasticLaw, Weight, symmetric_part
@@ -88,11 +87,10 @@ class ModelCompliance:
             ToolkitWarning: Something does not yield in proportion to the load.
         """
         if self.curved:
-            warnings.warn(
+            warn(
                 f"not in proportion to the load: {', '.join(self.curved)}. A stiffness, and what "
                 "it foretells, holds for small loads beside the arm's weight; 'predict', "
                 "'compensate' and the equilibrium of 'stiffness' follow the whole law",
-                ToolkitWarning,
                 stacklevel=3,
             )
 

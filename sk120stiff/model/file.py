@@ -20,7 +20,6 @@ from __future__ import annotations
 import math
 import os
 import re
-import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -29,7 +28,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sk120stiff.effects import CATALOGUE, Catalogue, comment_lines
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.files import parse_yaml, read_text, schema_error, write_atomically
 from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model
@@ -243,18 +242,16 @@ def _warn_of_untrusted(model: Model, where: str) -> None:
     unseen = [p.name for p in model.untrusted if not p.seen]
     shared = [p.name for p in model.untrusted if p.seen]
     if unseen:
-        warnings.warn(
+        warn(
             f"{where}: the readings behind this model do not show {', '.join(unseen)}. Its value "
             "stands in the file all the same, and what rests on it is not to be trusted. Measure "
             "poses and loads that show it, or write a value that you know, with its origin.",
-            ToolkitWarning,
             stacklevel=4,
         )
     if shared:
-        warnings.warn(
+        warn(
             f"{where}: the readings behind this model tell {', '.join(shared)} together only, not "
             "each by itself. At other poses, what rests on them is not to be trusted.",
-            ToolkitWarning,
             stacklevel=4,
         )
 
@@ -284,9 +281,8 @@ def base_model(robot: Robot) -> Model:
 def _warn_of_another_robot(said: str, robot: Robot, folder: Path | None, where: str) -> None:
     if said in (robot.source, robot.name) or _same_file(said, robot.source, folder):
         return
-    warnings.warn(
+    warn(
         f"{where}: this model is of the robot {said!r}; here it is used with {robot.source!r}.",
-        ToolkitWarning,
         stacklevel=4,
     )
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TypeVar
 
 from pydantic import BaseModel
 
 from sk120stiff.effects import Effect
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 
 Value = TypeVar("Value", bound=BaseModel)
 
@@ -43,11 +42,10 @@ def translated(kind: type[Effect], parameters: dict[str, Value], place: str) -> 
         found[now] = item.model_copy(update={"value": turned})
     if found.keys() != parameters.keys():
         old = ", ".join(key for key in parameters if key in former)
-        warnings.warn(
+        warn(
             f"{place}: {old} was written by an earlier version, as true minus reported. It is read "
             f"as {', '.join(former[key] for key in parameters if key in former)}, reported minus "
             f"true, with the other sign. 'sk120stiff effects {kind.name}' says what it means.",
-            ToolkitWarning,
             stacklevel=5,
         )
     return found

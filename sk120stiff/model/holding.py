@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import LoadCases
-from sk120stiff.errors import Refusal, ToolkitWarning
+from sk120stiff.errors import Refusal, warn
 from sk120stiff.model.model import Model
 from sk120stiff.robot.anatomy import arm_length
 
@@ -25,11 +23,9 @@ def warn_of_far_bend(model: Model, displacement: Array) -> None:
     largest = float(np.max(size, initial=0.0, where=np.isfinite(size)))
     share = largest / max(arm_length(model.robot), 1e-9)
     if share > FAR:
-        warnings.warn(
+        warn(
             f"the arm bends by {largest:.3g} m, {100 * share:.0f} % of the arm's length: no arm "
-            "does. Check the units of springs and loads",
-            ToolkitWarning,
-            stacklevel=2,
+            "does. Check the units of springs and loads"
         )
 
 

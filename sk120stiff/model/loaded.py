@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import Refusal, ToolkitWarning
+from sk120stiff.errors import Refusal, warn
 from sk120stiff.model.compliance import model_compliance
 from sk120stiff.model.holding import warn_of_far_bend
 from sk120stiff.model.model import Model
@@ -128,7 +127,7 @@ def loaded_stiffness(
         warn_of_far_bend(model, equilibrium)
     except Refusal as refusal:
         found = under_load(arm, rows[0], load, _WANTED)
-        warnings.warn(str(refusal), ToolkitWarning, stacklevel=2)
+        warn(str(refusal))
         missing["equilibrium"] = refusal.what
     if np.isnan(found.of("compliance")).any():
         raise Refusal(

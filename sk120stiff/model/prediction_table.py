@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from sk120stiff.effects import LoadCases
-from sk120stiff.errors import Refusal, ToolkitWarning
+from sk120stiff.errors import Refusal, warn
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
@@ -30,11 +29,9 @@ def predict_what_holds(model: Model, load_cases: LoadCases) -> Predicted:
         held = held_loads(model, load_cases)
         if not held.any():
             raise
-    warnings.warn(
+    warn(
         f"{int((~held).sum())} of {len(held)} loads are beyond what the springs can hold; their "
-        "rows are left empty and say so.",
-        ToolkitWarning,
-        stacklevel=2,
+        "rows are left empty and say so."
     )
     return predict_with_uncertainty(model, load_cases.rows(held)).among(held)
 

@@ -17,14 +17,13 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
 import yaml
 from pydantic import BaseModel, ConfigDict, Field
 
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.model.model import Model
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
@@ -149,10 +148,9 @@ def uncertainty_of(section: UncertaintySection | None, model: Model, where: str)
     place = f"{where}, uncertainty"
     changed = _changed(section, model)
     if changed:
-        warnings.warn(
+        warn(
             f"{place}: dropped, because {changed} Predictions have no ± until the model is "
             "identified again.",
-            ToolkitWarning,
             stacklevel=4,
         )
         return model

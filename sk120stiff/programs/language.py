@@ -8,7 +8,6 @@ gets it: a slip of a template is an error here, not a motion of a robot.
 from __future__ import annotations
 
 import re
-import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cache
@@ -19,7 +18,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.programs.program import Program, Setting, Targets, positive
 from sk120stiff.robot.rotations import rotation_vector
 
@@ -159,10 +158,9 @@ class Language(ABC):
                 raise RuntimeError(f"{self.title}: a {what} is written {size:.3g} off its target")
         off = np.abs(found.speed / program.speed - 1.0)[said].max(initial=0.0)
         if off > NOTICED:
-            warnings.warn(
+            warn(
                 f"{self.title} states speeds in steps of {1e3 * self.speed_digit:.3g} mm/s: one is "
                 f"rounded by {100 * off:.2g} %",
-                ToolkitWarning,
                 stacklevel=3,
             )
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.robot.bundled import bundled_robots
 from sk120stiff.robot.description import RobotDescription, read_description, xacro_value
 from sk120stiff.robot.kinematics.coupling import Coupling, Follower, linear_coupling
@@ -275,12 +274,10 @@ def _tell(document: UrdfDocument, on_way: Sequence[Finding]) -> None:
     """Warn of every repair that touches kinematics or masses; `check` tells the rest."""
     told = [finding for finding in (*document.warnings, *on_way) if finding.code not in HARMLESS]
     for finding in told[:_MOST_WARNINGS]:
-        warnings.warn(f"{document.place}: {finding}", ToolkitWarning, stacklevel=4)
+        warn(f"{document.place}: {finding}", stacklevel=4)
     if len(told) > _MOST_WARNINGS:
         more = len(told) - _MOST_WARNINGS
-        warnings.warn(
-            f"{document.place}: {more} more findings; see check", ToolkitWarning, stacklevel=4
-        )
+        warn(f"{document.place}: {more} more findings; see check", stacklevel=4)
 
 
 def _check_actuated(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
@@ -12,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.robot.description import ControllerRule
 from sk120stiff.robot.kinematics.coupling import Coupling, Follower
 from sk120stiff.robot.kinematics.screws import Mechanism, Screws
@@ -287,11 +286,7 @@ class Robot:
         """
         coordinates = self.coordinates(a)
         if self.total_mass == 0.0:
-            warnings.warn(
-                f"{self.name} states no masses: its gravity torques are all zero",
-                ToolkitWarning,
-                stacklevel=2,
-            )
+            warn(f"{self.name} states no masses: its gravity torques are all zero")
         flat = coordinates.reshape(-1, self.n)
         torques = np.empty_like(flat)
         for k, row in enumerate(flat):

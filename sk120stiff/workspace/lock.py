@@ -5,12 +5,11 @@ from __future__ import annotations
 import fcntl
 import os
 import socket
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 
 
 @contextmanager
@@ -67,10 +66,9 @@ def _locked(handle: int, beside: Path, path: Path) -> bool:
             remedy="Wait for it or stop it, then give the command again; or choose another name.",
         ) from error
     except OSError as error:
-        warnings.warn(
+        warn(
             f"{path}: this file system knows no locks ({error.strerror}); see to it that no other "
             "run writes here",
-            ToolkitWarning,
             stacklevel=4,
         )
     try:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, warn
 from sk120stiff.robot.description import RobotDescription
 from sk120stiff.robot.kinematics.chain import Chain
 from sk120stiff.robot.kinematics.coupling import Follower, LinearCoupling, linear_coupling
@@ -283,11 +282,10 @@ def _started(
         moved = ", ".join(
             f"{name}: {value:.6g}" for name, value in zip(names[n:], d[0], strict=True)
         )
-        warnings.warn(
+        warn(
             f"closure {loops}: the loop is open with all joints at zero; it was closed with "
             f"{moved}. If that is the wrong assembly mode, write these joints' values at a right "
             "one as start: under the closure in robot.yaml",
-            ToolkitWarning,
             stacklevel=4,
         )
     if turns[n:].any():

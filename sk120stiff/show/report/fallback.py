@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import logging
-import warnings
 from collections.abc import Callable
 
-from sk120stiff.errors import MissingPart, ToolkitWarning
+from sk120stiff.errors import MissingPart, warn
 from sk120stiff.show.report.blocks import Note, Section
 
 _LOG = logging.getLogger(__name__)
@@ -31,10 +30,10 @@ def failure(what: str, error: Exception) -> str:
         ToolkitWarning: Always.
     """
     if isinstance(error, MissingPart):
-        warnings.warn(str(error), ToolkitWarning, stacklevel=3)  # one sentence for all pictures
+        warn(str(error), stacklevel=3)  # one sentence for all pictures
         return f"Left out: {what}. {error}"
     reason = " ".join(str(error).split()) or "no message"
     said = f"{what[0].upper()}{what[1:]} could not be made ({type(error).__name__}: {reason})."
     _LOG.debug("%s", said, exc_info=error)
-    warnings.warn(f"{said} Everything else is as it should be.", ToolkitWarning, stacklevel=3)
+    warn(f"{said} Everything else is as it should be.", stacklevel=3)
     return said
