@@ -35,7 +35,7 @@ def check_sheet(sheet: Path | None) -> None:
         InputError: Its name does not end in .html.
         MissingPart: What draws is not installed.
     """
-    from sk120stiff.cli.drawing import will_draw
+    from sk120stiff.cli.outputs import will_draw
 
     if sheet is not None and sheet.suffix.lower() not in (".html", ".htm"):
         raise InputError(

@@ -7,17 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sk120stiff.cli.explain_output import (
-    Task,
-    check_folder,
-    findings,
-    page_or_warning,
-    said,
-    write_answer,
-)
+from sk120stiff.cli.explain_output import Task, check_folder, findings, said, write_answer
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
+from sk120stiff.cli.outputs import write_pages
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import all_effects, load_cases_of
 from sk120stiff.explain import explain, verdict_document
@@ -41,9 +35,7 @@ HIDDEN = "hidden_cause"  # the campaign's files, and the folder of its answer
 Told = Callable[[int, int], None]
 
 
-def command(
-    out: Path = Path("sk120stiff-demo"),
-) -> Answer:
+def command(out: Path = Path("sk120stiff-demo")) -> Answer:
     """The main job on measured data, and on a hidden cause.
 
     Puts the paper's springs to its measured deflections, identifies springs, asks what is missing,
@@ -144,7 +136,7 @@ def _write(
     tell: Told,
 ) -> dict[str, object]:
     """Verdict and model first; a page that cannot be made is a warning."""
-    from sk120stiff.show import reproducibility, scene_html
+    from sk120stiff.show import reproducibility
     from sk120stiff.show.stories import demo_report, identify_scene
     from sk120stiff.show.stories.demo_facts import OURS, PAPER
 
@@ -156,40 +148,29 @@ def _write(
         if following is not None:
             write_measurements(plan_of(made.answer, readings), out / following)
         write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
-    written: dict[str, object] = {"model": out / "model.yaml"}
     tell(85, 100)
-    scene = page_or_warning(
-        "scene.html",
-        lambda: scene_html(
-            identify_scene(
-                made.found,
-                made.paper,
-                names=(PAPER, OURS),
-                subtitle="Table II of the 2005 paper, measured",
-                model_file="model.yaml",
-            )
-        ),
-    )
-    if scene is not None:
-        written["scene"] = write_atomically(out / "scene.html", scene)
-    tell(90, 100)
     inputs = [data, data.with_suffix(".yaml"), data.parent.parent / "sk120.urdf"]
-    report = page_or_warning(
-        "report.html",
-        lambda: demo_report(
+    pages = write_pages(
+        out,
+        lambda: identify_scene(
+            made.found,
+            made.paper,
+            names=(PAPER, OURS),
+            subtitle="Table II of the 2005 paper, measured",
+            model_file="model.yaml",
+        ),
+        lambda scene: demo_report(
             made,
             cause,
             cause_link=f"{HIDDEN}/report.html" if (out / HIDDEN / "report.html").exists() else "",
             next_poses=following or "",
-            scene=scene or "",
+            scene=scene,
             scene_link="scene.html" if scene else "",
             reproducibility=reproducibility(where["command"], inputs),
-        ).html(),
+        ),
     )
-    if report is not None:
-        written["report"] = write_atomically(out / "report.html", report)
     tell(100, 100)
-    return written
+    return {"model": out / "model.yaml", **pages}
 
 
 def _document(made: Demo) -> dict[str, object]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +10,12 @@ import numpy as np
 
 from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
+from sk120stiff.cli.outputs import refuse_foreign, will_write_into, write_pages
 from sk120stiff.cli.tables import table
-from sk120stiff.errors import InputError
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
-from sk120stiff.files import will_write, write_atomically
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -49,32 +47,10 @@ class Task:
 
 
 def check_folder(out: Path) -> None:
-    """Complain before the work, not after it.
-
-    Raises:
-        InputError: `out` is a file, or no folder that may be written to; a file of it that would be
-            replaced is an input, or is not of an earlier run.
-    """
-    if out.exists() and not out.is_dir():
-        raise InputError(
-            "this is a file, not a folder", where=str(out), remedy="Name another folder."
-        )
-    there = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(
-            f"cannot write into {there}",
-            where=str(out),
-            remedy="Choose a folder that you may write to.",
-        )
-    foreign = [name for name in RESULTS if (out / name).exists()]
-    if foreign and not (out / VERDICT).exists():  # every result of ours holds a verdict
-        raise InputError(
-            f"{foreign[0]} is here and is not of an earlier run, so it is not replaced",
-            where=f"--out {out}",
-            remedy="Choose another folder, or move the file.",
-        )
-    for name in RESULTS:
-        will_write(out / name)
+    """Complain before the work, not after it; every result of ours holds a verdict."""
+    will_write_into(out, ())
+    refuse_foreign(out, RESULTS, ours=(out / VERDICT).exists())
+    will_write_into(out, RESULTS)
 
 
 def write_answer(
@@ -94,56 +70,30 @@ def write_answer(
     """
     tell = progress or (lambda _done, _total: None)
     document = answer.save(out, provenance=provenance(task.data, task.readings))
-    following = None if answer.next_poses is None else NEXT_POSES
-    pages = _write_pages(answer, task, following, out, tell) if report else {}
+    tell(88, 100)
+    pages = _write_pages(answer, task, out) if report else {}
     tell(100, 100)
     return {**document, "out": out, "model": out / "model.yaml", **pages}
 
 
-def _write_pages(
-    answer: Explanation,
-    task: Task,
-    following: str | None,
-    out: Path,
-    tell: Callable[[int, int], None],
-) -> dict[str, Path]:
+def _write_pages(answer: Explanation, task: Task, out: Path) -> dict[str, Path]:
     """Scene and report, each where it can be made."""
-    from sk120stiff.show import reproducibility, scene_html
+    from sk120stiff.show import reproducibility
     from sk120stiff.show.stories import explain_scene
 
-    tell(88, 100)
-    scene = page_or_warning(
-        "scene.html",
-        lambda: scene_html(explain_scene(answer, subtitle=task.data.name, model_file="model.yaml")),
-    )
-    written = {} if scene is None else {"scene": write_atomically(out / "scene.html", scene)}
-    tell(91, 100)
     command = provenance(task.data, task.readings)["command"]
-    report = page_or_warning(
-        "report.html",
-        lambda: answer.report(
+    return write_pages(
+        out,
+        lambda: explain_scene(answer, subtitle=task.data.name, model_file="model.yaml"),
+        lambda scene: answer.report(
             data=task.data.name,
-            scene=scene or "",
+            scene=scene,
             scene_link="scene.html" if scene else "",
-            next_poses=following or "",
+            next_poses="" if answer.next_poses is None else NEXT_POSES,
             reproducibility=reproducibility(command, task.inputs, seed=task.seed),
             **({} if task.holdout is None else {"heldout": _heldout(task.holdout)}),
-        ).html(),
+        ),
     )
-    if report is not None:
-        written["report"] = write_atomically(out / "report.html", report)
-    return written
-
-
-def page_or_warning(name: str, make: Callable[[], str]) -> str | None:
-    """Text of a page; None, with a warning, where it cannot be made."""
-    from sk120stiff.show.report import failure
-
-    try:
-        return make()
-    except Exception as error:  # noqa: BLE001  (an answer is never lost to its page)
-        failure(f"the page {name}", error)
-        return None
 
 
 def _heldout(file: Path) -> str:

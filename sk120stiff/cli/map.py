@@ -10,7 +10,6 @@ import numpy as np
 import typer
 
 from sk120stiff.arrays import Array
-from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.map_postures import postures
 from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
@@ -22,6 +21,7 @@ from sk120stiff.cli.options import (
     RobotOrModelArgument,
     ToolOption,
 )
+from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.cli.tables import progress_bars, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.errors import InputError, warn

@@ -9,12 +9,11 @@ from rich import box
 from rich.padding import Padding
 from rich.table import Table
 
-from sk120stiff.cli.drawing import will_draw
 from sk120stiff.cli.frame import Answer, note
 from sk120stiff.cli.options import OutFolderOption
-from sk120stiff.cli.tables import progress_bar
-from sk120stiff.errors import InputError
-from sk120stiff.files import together, will_write, write_atomically
+from sk120stiff.cli.outputs import refuse_foreign, will_draw, will_write_into
+from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.files import together, write_atomically
 from sk120stiff.paper import Reproduction, Verdict, reproduce
 from sk120stiff.paper.document import as_document
 from sk120stiff.paper.tables import SideBySide, side_by_side
@@ -36,7 +35,7 @@ def command(out: OutFolderOption = None) -> Answer:
     Example: sk120stiff paper --out paper
     """
     if out is not None:
-        _check_writable(out)
+        will_write_into(out, [REPORT])
         will_draw(out)
     with progress_bar("recomputing the paper") as report:
         found = reproduce(report)
@@ -44,38 +43,15 @@ def command(out: OutFolderOption = None) -> Answer:
     files = [] if out is None else _write(found, tables, out)
     document = {**as_document(found), "files": files}
     parts: list[object] = []
-    for table in tables:
-        if table.name == "claims":
+    for each in tables:
+        if each.name == "claims":
             parts.append(_claims(found))
             continue
-        parts += [_printable(table), Padding(table.note, (0, 0, 1, 0))]
+        parts += [_printable(each), Padding(each.note, (0, 0, 1, 0))]
     parts.append(_summary(found))
     if out is not None:
         parts.append(f"Report: {out / 'report.html'}")
     return Answer(document, parts)
-
-
-def _check_writable(out: Path) -> None:
-    """Complain before the work, not after it."""
-    if out.exists() and not out.is_dir():
-        raise InputError(
-            "this is a file, not a folder", where=str(out), remedy="Name another folder."
-        )
-    will_write(out / REPORT)
-
-
-def _refuse_foreign(out: Path, names: list[str]) -> None:
-    """Replace the files of an earlier run alone: such a folder holds a report of ours."""
-    report = out / REPORT
-    if report.is_file() and MARK in report.read_bytes()[:2000]:
-        return
-    for name in (REPORT, *names):
-        if (out / name).exists():
-            raise InputError(
-                f"{name} is here and is not of an earlier run, so it is not replaced",
-                where=f"--out {out}",
-                remedy="Choose another folder, or move the file.",
-            )
 
 
 def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> list[Path]:
@@ -85,27 +61,24 @@ def _write(found: Reproduction, tables: tuple[SideBySide, ...], out: Path) -> li
     with progress_bar("writing the report") as report, together(last=out / REPORT):
         figures = figures_of(found)
         names = [f"{name}.{end}" for name in figures for end in ("svg", "png")]
-        _refuse_foreign(out, [*names, *(f"{table.name}.csv" for table in tables)])
+        ours = (out / REPORT).is_file() and MARK in (out / REPORT).read_bytes()[:2000]
+        made = [REPORT, *names, *(f"{each.name}.csv" for each in tables)]
+        refuse_foreign(out, made, ours=ours)
         total, files = len(names) + 1, []
         for name in names:
             files.append(save_figure(figures[Path(name).stem].drawn, out / name))
             report(len(files), total)
-        files += [write_atomically(out / f"{table.name}.csv", table.csv()) for table in tables]
+        files += [write_atomically(out / f"{each.name}.csv", each.csv()) for each in tables]
         files.append(report_of(found, tables, figures).write(out / REPORT))
         report(total, total)
     note(f"{len(files)} files written to {out}.")
     return files
 
 
-def _printable(table: SideBySide) -> Table:
+def _printable(shown: SideBySide) -> Table:
     """Numbers that belong together share a column, and some columns are left to the CSV file."""
-    made = Table(title=table.title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False)
-    for k, column in enumerate(table.brief):
-        head = column.name + (f"\n{column.shown_unit}" if column.unit else "")
-        made.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
-    for row in zip(*(column.texts for column in table.brief), strict=True):
-        made.add_row(*row)
-    return made
+    heads = [c.name + (f"\n{c.shown_unit}" if c.unit else "") for c in shown.brief]
+    return table(shown.title, heads, zip(*(c.texts for c in shown.brief), strict=True))
 
 
 def _claims(found: Reproduction) -> Table:

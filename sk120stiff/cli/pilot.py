@@ -17,8 +17,7 @@ from pydantic import ValidationError
 from sk120stiff.cli.cell import opened_cell
 from sk120stiff.cli.frame import Answer, emit, note
 from sk120stiff.cli.opening import open_model
-from sk120stiff.cli.plan.shown import in_newtons
-from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.cli.tables import plan_table, progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import schema_error
 from sk120stiff.measurements import Measurements
@@ -201,7 +200,7 @@ def _answer(
             f"({asked.verdict if asked else ''}): go on."
         ))  # fmt: skip
     if plan is not None and not final:
-        said += [_next(plan), f"It would tell {state.decides}. {BIT}"]
+        said += [plan_table("Measure next", plan, 2), f"It would tell {state.decides}. {BIT}"]
         said.append(f"Written to {at.path / 'next.csv'}; what is read goes into {READINGS}.")
     if not state.count:
         said += campaign.pool.remarks
@@ -233,15 +232,6 @@ def _answer(
         "out": at.path / "next.csv",
     }  # fmt: skip
     return Answer(document, said)
-
-
-def _next(plan: Measurements) -> object:
-    scale = [180.0 / np.pi if kind == "angle" else 1e3 for kind in plan.joint_kinds]
-    unit = ["deg" if kind == "angle" else "mm" for kind in plan.joint_kinds]
-    columns = ["pose", *(f"{n} [{u}]" for n, u in zip(plan.joint_names, unit, strict=True))]
-    row = (plan.pose[0], *(f"{x:.2f}" for x in plan.joints[0] * scale))
-    whole = (*row, *in_newtons(plan.wrench[0]))
-    return table("Measure next", [*columns, "fx [N]", "fy [N]", "fz [N]"], [whole])
 
 
 def _typed(at: Folder, campaign: Campaign, turn: _Turn) -> bool:

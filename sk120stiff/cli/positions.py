@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.cli.explain_output import page_or_warning
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import provenance
+from sk120stiff.cli.outputs import write_pages
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import InputError
@@ -100,28 +100,17 @@ def predicted_positions(model: Model, readings: Measurements, out: Path | None) 
 
 def _pages(answer: Explained, readings: Measurements, data: Path, out: Path) -> dict[str, Path]:
     """Scene and report, each where it can be made."""
-    from sk120stiff.show import reproducibility, scene_html
+    from sk120stiff.show import reproducibility
     from sk120stiff.show.scene.building import scene_of_model
     from sk120stiff.show.stories import positions_report
 
-    model = yielding(answer.final.fit.model)
-    scene = page_or_warning(
-        "scene.html", lambda: scene_html(scene_of_model(model, title=model.robot.name))
+    model, where = yielding(answer.final.fit.model), provenance(data, readings)
+    facts = reproducibility(where["command"], [data, data.with_suffix(".yaml")])
+    return write_pages(
+        out,
+        lambda: scene_of_model(model, title=model.robot.name),
+        lambda _: positions_report(answer, readings, data=data.name, reproducibility=facts),
     )
-    written = {} if scene is None else {"scene": write_atomically(out / "scene.html", scene)}
-    command = provenance(data, readings)["command"]
-    page = page_or_warning(
-        "report.html",
-        lambda: positions_report(
-            answer,
-            readings,
-            data=data.name,
-            reproducibility=reproducibility(command, [data, data.with_suffix(".yaml")]),
-        ).html(),
-    )
-    if page is not None:
-        written["report"] = write_atomically(out / "report.html", page)
-    return written
 
 
 def yielding(model: Model) -> Model:

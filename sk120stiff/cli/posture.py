@@ -12,10 +12,10 @@ import typer
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, height_words, opened_cell
-from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import direction_of, open_model
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
+from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write

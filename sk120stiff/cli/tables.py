@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from math import pi
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Console
@@ -20,6 +22,10 @@ from rich.table import Table
 from rich.text import Text
 
 from sk120stiff.cli.visible import visible
+
+if TYPE_CHECKING:
+    from sk120stiff.arrays import Array
+    from sk120stiff.measurements import Measurements
 
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Table:
@@ -41,6 +47,26 @@ def cell(value: object) -> str:
     if isinstance(value, float) or hasattr(value, "__float__"):
         return f"{float(value) + 0.0:.5g}"  # + 0.0 takes the sign off zero
     return visible(str(value))
+
+
+def plan_table(title: str, plan: Measurements, digits: int = 1) -> Table:
+    """Poses and forces to be measured: degrees, mm, N."""
+    turns = [kind == "angle" for kind in plan.joint_kinds]
+    scale = [180.0 / pi if turn else 1e3 for turn in turns]
+    joints = zip(plan.joint_names, turns, strict=True)
+    columns = ["pose", *(f"{name} [{'deg' if turn else 'mm'}]" for name, turn in joints)]
+    rows = [
+        (label, *(f"{x:.{digits}f}" for x in a * scale), *_in_newtons(w[:3]))
+        for label, a, w in zip(plan.pose, plan.joints, plan.wrench, strict=True)
+    ]
+    return table(title, [*columns, "fx [N]", "fy [N]", "fz [N]"], rows)
+
+
+def _in_newtons(force: Array) -> Iterator[str]:
+    """A force (3,) for people: whole newtons, of small ones tenths and hundredths."""
+    size = abs(force).max()
+    digits = 0 if size >= 30.0 else 1 if size >= 3.0 else 2
+    return (f"{x:.{digits}f}" for x in force + 0.0)
 
 
 class _Rate(ProgressColumn):

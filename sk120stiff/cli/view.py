@@ -6,7 +6,6 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer, note
 from sk120stiff.cli.opening import model_file, model_for, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
@@ -17,6 +16,7 @@ from sk120stiff.cli.options import (
     ToolOption,
     WrenchOption,
 )
+from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.errors import InputError
 
 if TYPE_CHECKING:

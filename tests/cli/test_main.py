@@ -32,9 +32,9 @@ HEAVY = {
 }
 INFRASTRUCTURE = {
     "__init__", "calibration", "cell", "compensate_path", "compensate_program",
-    "compensate_sheet", "compensate_words", "drawing", "environment", "explain_output", "frame",
+    "compensate_sheet", "compensate_words", "environment", "explain_output", "frame",
     "identify_rows", "import_preview", "main", "map_postures", "opening", "options",
-    "positions", "signature", "tables", "uncertainty", "visible", "xacro_option",
+    "outputs", "positions", "signature", "tables", "uncertainty", "visible", "xacro_option",
 }  # fmt: skip
 
 

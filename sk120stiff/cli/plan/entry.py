@@ -10,16 +10,16 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.cell import CellOption, as_measured, height_words, opened_cell
-from sk120stiff.cli.drawing import will_draw, will_show
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
+from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.cli.plan.check import checked, points_of
 from sk120stiff.cli.plan.chosen import precise, telling
 from sk120stiff.cli.plan.places import Places, places_of
 from sk120stiff.cli.plan.program import in_order, language_for, write_route
-from sk120stiff.cli.plan.shown import as_keys, plan_table, write_page
-from sk120stiff.cli.tables import progress_bar
+from sk120stiff.cli.plan.shown import as_keys, write_page
+from sk120stiff.cli.tables import plan_table, progress_bar
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
@@ -234,7 +234,7 @@ def command(
     if out is not None:
         write_measurements(plan, out)
         said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
-    return Answer(document, [plan_table(plan), *said])
+    return Answer(document, [plan_table("Measure", plan), *said])
 
 
 def _opened(

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.cli.tables import table
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.plan import Route
@@ -66,22 +65,3 @@ def _between(robot: Robot, stops: Array) -> tuple[Array, Index]:
         rows.append(start + np.linspace(0.0, 1.0, count + 1)[1:, None] * (end - start))
         reached.append(reached[-1] + count)
     return np.concatenate(rows), np.array(reached, dtype=np.intp)
-
-
-def in_newtons(wrench: Array) -> tuple[str, ...]:
-    """The force of a wrench (6,) for people: whole newtons, of small ones tenths and hundredths."""
-    size = float(np.abs(wrench[:3]).max())
-    digits = 0 if size >= 30.0 else 1 if size >= 3.0 else 2
-    return tuple(f"{x:.{digits}f}" for x in wrench[:3] + 0.0)
-
-
-def plan_table(plan: Measurements) -> object:
-    """The rows for people: degrees, mm, N."""
-    scale = [180.0 / np.pi if kind == "angle" else 1e3 for kind in plan.joint_kinds]
-    unit = ["deg" if kind == "angle" else "mm" for kind in plan.joint_kinds]
-    columns = ["pose", *(f"{n} [{u}]" for n, u in zip(plan.joint_names, unit, strict=True))]
-    rows = [
-        (label, *(f"{x:.1f}" for x in a * scale), *in_newtons(w))
-        for label, a, w in zip(plan.pose, plan.joints, plan.wrench, strict=True)
-    ]
-    return table("Measure", [*columns, "fx [N]", "fy [N]", "fz [N]"], rows)
