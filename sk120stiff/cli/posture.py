@@ -249,7 +249,7 @@ def _write_page(
 ) -> None:
     """The arm at every point, in the posture that was found and in one chosen blindly."""
     from sk120stiff.show import ScenePose, scene_of_model, static_scene
-    from sk120stiff.show.scene.path import ScenePath
+    from sk120stiff.show.scene.scene import ScenePath
     from sk120stiff.show.wording import um
 
     worst = int(np.argmax(found.per_point))

@@ -1,7 +1,7 @@
 """Which poses and loads to measure next, and what such a measurement would read."""
 
 from sk120stiff.plan.cell import Cell, Tracker, read_cell
-from sk120stiff.plan.design import Design, d_optimal
+from sk120stiff.plan.design import Design, d_optimal, random_choice, well_spread
 from sk120stiff.plan.discriminate import (
     Choice,
     Rivalry,
@@ -16,7 +16,6 @@ from sk120stiff.plan.rig import Rig
 from sk120stiff.plan.route import Jump, NoWay, Route, jumps, route
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
-from sk120stiff.plan.spread import random_choice, well_spread
 from sk120stiff.plan.surroundings import (
     assumed_around,
     assumptions,

@@ -5,6 +5,10 @@ the plausible range of every parameter (Chaloner & Verdinelli 1995): so it is re
 reading on. D-optimal for some of the parameters is what makes the determinant of their own part of
 the covariance least, the others free (D_s, Atkinson, Donev & Tobias 2007). After the greedy choice
 single readings are exchanged as long as that helps (Fedorov 1972).
+
+Beside it stands what people do without a design: random poses, or poses spread well over the
+joints' ranges. The paper's twenty were "well-spaced configurations ... determined heuristically to
+cover the range of motion of all the active joints", loaded along orthogonal axes.
 """
 
 from __future__ import annotations
@@ -17,7 +21,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
-from sk120stiff.plan.pool import Pool
+from sk120stiff.plan.pool import Pool, usable_range
 
 #: information (M, k, k) → what it is worth (M,); more is better
 Worth = Callable[[Array], Array]
@@ -202,3 +206,36 @@ def _open(free: Mask, rows: Sequence[int], pose: Index | None, count: int, loads
 
 def _best(found: Array, free: Mask) -> int:
     return int(np.argmax(np.where(free, found, -np.inf)))
+
+
+def random_choice(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:
+    """Candidates drawn without preference."""
+    return [int(k) for k in rng.choice(pool.count, count, replace=False)]
+
+
+def well_spread(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:
+    """Candidates whose poses lie far apart in the joints' ranges, loaded along x, y, z in turn.
+
+    The first pose is random, each further one is the farthest from those before (Gonzalez 1985);
+    of its loads the one nearest to the axis whose turn it is counts.
+    """
+    load_cases = pool.load_cases
+    lower, upper = usable_range(load_cases.robot)
+    place = (load_cases.a - lower) / np.where(upper > lower, upper - lower, 1.0)
+    along = _directions(load_cases.wrench)
+    distance = np.full(pool.count, np.inf)
+    pick = int(rng.integers(pool.count))
+    rows: list[int] = []
+    for k in range(count):
+        same = np.flatnonzero((load_cases.a == load_cases.a[pick]).all(axis=1))
+        row = int(same[np.argmax(np.abs(along[same, k % 3]))])
+        rows.append(row)
+        distance = np.minimum(distance, np.linalg.norm(place - place[pick], axis=1))
+        pick = int(np.argmax(distance))
+    return rows
+
+
+def _directions(wrench: Array) -> Array:
+    force = wrench[:, :3]
+    length = np.linalg.norm(force, axis=1, keepdims=True)
+    return np.asarray(force / np.where(length > 0.0, length, 1.0))

@@ -13,8 +13,7 @@ import numpy as np
 
 from sk120stiff.errors import InputError, Refusal, require
 from sk120stiff.workspace.field import STATUS, UNKNOWN_CLASS
-from sk120stiff.workspace.manifest import MANIFEST, as_written, read_manifest
-from sk120stiff.workspace.skeleton import zarr_or_explain
+from sk120stiff.workspace.skeleton import MANIFEST, as_written, read_manifest, zarr_or_explain
 from sk120stiff.workspace.store import Progress
 
 if TYPE_CHECKING:

@@ -25,19 +25,17 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.files import write_atomically
 from sk120stiff.workspace.field import MapJob, Variable
 from sk120stiff.workspace.grid import Chunks
-from sk120stiff.workspace.manifest import (
+from sk120stiff.workspace.skeleton import (
     MANIFEST,
+    VERSION,
     Digests,
     Manifest,
     as_written,
+    identity_of,
     read_manifest,
     sha256_of,
-    write_manifest,
-)
-from sk120stiff.workspace.skeleton import (
-    VERSION,
-    identity_of,
     stored_identities,
+    write_manifest,
     write_skeleton,
     zarr_or_explain,
 )

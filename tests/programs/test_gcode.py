@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sk120stiff.errors import InputError
 from sk120stiff.programs import read_gcode
-from sk120stiff.programs.arcs import arc_points
+from sk120stiff.programs.toolpath import arc_points
 
 CHORD = 1e-5
 

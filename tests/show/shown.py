@@ -13,7 +13,7 @@ from sk120stiff.show import (
     Scene,
     scene_of_model,
 )
-from sk120stiff.show.scene.path import ScenePath
+from sk120stiff.show.scene.scene import ScenePath
 from tests.show.scenes import DATA, TWO_SLIDES, sk120, sk120_scene, springs
 from tests.show.test_engine import with_effects
 

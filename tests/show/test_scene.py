@@ -20,10 +20,9 @@ from sk120stiff.show import (
     scene_of_model,
     static_scene,
 )
-from sk120stiff.show.scene.bodies import bodies_of
 from sk120stiff.show.scene.links import link_tree
 from sk120stiff.show.scene.payload import scene_payload
-from sk120stiff.show.scene.shapes import Mesh, capsules, simplified, welded
+from sk120stiff.show.scene.shapes import Mesh, bodies_of, capsules, simplified, welded
 from sk120stiff.show.scene.static import json_for_script, viewer_script
 from tests.show.scenes import DATA, TWO_SLIDES, sk120, sk120_scene
 

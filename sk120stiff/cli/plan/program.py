@@ -13,7 +13,7 @@ from sk120stiff.files import write_atomically
 from sk120stiff.measurements import Measurements
 from sk120stiff.plan import Cell, Route, route
 from sk120stiff.programs import LANGUAGES, Language
-from sk120stiff.programs.controller import controller_axes, convention
+from sk120stiff.programs.building import controller_axes, convention
 from sk120stiff.programs.program import Program
 from sk120stiff.robot import Robot
 

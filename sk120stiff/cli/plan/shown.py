@@ -37,7 +37,7 @@ def write_page(file: Path, model: Model, plan: Measurements, driven: Route | Non
     `driven` where there are any.
     """
     from sk120stiff.show import scene_of_model, static_scene
-    from sk120stiff.show.scene.path import ScenePath
+    from sk120stiff.show.scene.scene import ScenePath
 
     scene = scene_of_model(
         model,

@@ -25,8 +25,7 @@ from sk120stiff.robot.urdf.xacro import (
     refuse_text,
     with_environment,
 )
-from sk120stiff.robot.urdf.xml_text import decode
-from sk120stiff.robot.urdf.xml_tree import parse_robot
+from sk120stiff.robot.urdf.xml_tree import decode, parse_robot
 
 _FOREIGN = frozenset(
     {

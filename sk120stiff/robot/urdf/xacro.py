@@ -19,7 +19,7 @@ from sk120stiff.errors import require
 from sk120stiff.files import note_read
 from sk120stiff.robot.urdf.findings import Notebook, close_name, listed, shown
 from sk120stiff.robot.urdf.source import MAX_BYTES, RawSource
-from sk120stiff.robot.urdf.xml_text import without_comments
+from sk120stiff.robot.urdf.xml_tree import without_comments
 
 TIME_LIMIT = 20.0  # s
 MEMORY_LIMIT = 2 * 1024**3  # bytes of address space

@@ -1,4 +1,4 @@
-"""The page, Meshcat's script and the socket, for browsers on this machine alone."""
+"""The page, Meshcat's script and the socket, for browsers on this machine; what they serve."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from tornado.web import HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from sk120stiff.errors import ToolkitError
-from sk120stiff.show.live.messages import read_request
-from sk120stiff.show.live.served import Served
+from sk120stiff.show.live.messages import Bounds, read_request
+from sk120stiff.show.scene.frame import Request, compute_frame
+from sk120stiff.show.scene.payload import frame_payload, scene_payload
+from sk120stiff.show.scene.scene import Scene
+from sk120stiff.show.scene.static import render_page, viewer_script
 
 MAX_PAGES = 32  # open at the same time
 PAUSE = 0.002  # seconds after an answer in which other pages have their turn
@@ -158,3 +161,23 @@ class SocketHandler(WebSocketHandler):
         self.newest = None
         if self.work is not None:
             self.work.cancel()
+
+
+class Served:
+    """One scene, its page made once; `sockets` are the pages that are open.
+
+    Requests must name one of `hosts`.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        payload = scene_payload(scene, live=True)
+        self.bounds = Bounds.of(payload)
+        self.page = render_page(payload, viewer=None)
+        self.viewer = viewer_script()
+        self.sockets: set[WebSocketHandler] = set()
+        self.hosts: set[str] = set()
+
+    def frame(self, request: Request) -> dict[str, Any]:
+        """What the page draws for a request."""
+        return frame_payload(compute_frame(self.scene.tree, self.scene.elastic, request))

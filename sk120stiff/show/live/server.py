@@ -17,11 +17,11 @@ from sk120stiff.errors import InputError
 from sk120stiff.show.live.handlers import (
     MissingHandler,
     PageHandler,
+    Served,
     SocketHandler,
     ViewerHandler,
 )
 from sk120stiff.show.live.messages import MAX_BYTES
-from sk120stiff.show.live.served import Served
 from sk120stiff.show.scene.scene import Scene
 
 LOOPBACK = "127.0.0.1"

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
-from sk120stiff.show.scene.bodies import bodies_of
 from sk120stiff.show.scene.frame import Frame, Request, compute_frame
 from sk120stiff.show.scene.mechanism import HELD, follows_pose_and_load, serialised
 from sk120stiff.show.scene.scene import Reading, Scene, ScenePose
-from sk120stiff.show.scene.shapes import Body, Mesh, reach_of
+from sk120stiff.show.scene.shapes import Body, Mesh, bodies_of, reach_of
 from sk120stiff.stiffness import CLASSES, POSITIONS, ROTATIONS, Principal, under_load
 
 SAMPLES = 64  # poses from which the scale of the ellipsoids is taken
