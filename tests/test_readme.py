@@ -139,7 +139,7 @@ def test_every_effect_is_listed() -> None:
 
 def test_the_numbers_of_the_paper_are_those_of_the_program() -> None:
     found = reproduce()
-    from sk120stiff.paper.document import as_document
+    from sk120stiff.paper.tables import as_document
 
     document = as_document(found)
     table2, identified = document["table2"], document["identified"]

@@ -15,8 +15,7 @@ from sk120stiff.cli.outputs import refuse_foreign, will_draw, will_write_into
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.files import together, write_atomically
 from sk120stiff.paper import Reproduction, Verdict, reproduce
-from sk120stiff.paper.document import as_document
-from sk120stiff.paper.tables import SideBySide, side_by_side
+from sk120stiff.paper.tables import SideBySide, as_document, side_by_side
 
 REPORT = "report.html"
 MARK = b'name="generator" content="sk120stiff"'

@@ -1,6 +1,5 @@
 """The 2005 paper recomputed: its tables, figures and claims beside ours."""
 
-from sk120stiff.paper.claims import Claim, Verdict
-from sk120stiff.paper.reproduction import Reproduction, reproduce
+from sk120stiff.paper.reproduction import Claim, Reproduction, Verdict, reproduce
 
 __all__ = ["Claim", "Reproduction", "Verdict", "reproduce"]

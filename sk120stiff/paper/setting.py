@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,17 +63,10 @@ class Setting:
         arm = ConstantCompliance.of_springs(self.robot, values, frame=frame, point=point)
         return under_load(arm, straight(joints), wrench_of(force), wanted)
 
-    def deflection(
-        self,
-        joints: Array,
-        force: Array,
-        *,
-        frame: str | None = None,
-        springs: Array | None = None,
-    ) -> Array:
+    def deflection(self, joints: Array, force: Array, **options: Any) -> Array:
         """(..., 3) at exact equilibrium [m]; the arguments are those of `under_load`."""
         exact = "deflection_equilibrium"
-        return self.under_load(joints, force, exact, frame=frame, springs=springs).of(exact)
+        return self.under_load(joints, force, exact, **options).of(exact)
 
 
 def setting() -> Setting:

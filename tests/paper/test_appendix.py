@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sk120stiff.paper.appendix import (
+from sk120stiff.paper.formulation import (
     LENGTHS,
     mended_jacobian,
     paper_angles,

@@ -7,8 +7,7 @@ import json
 import numpy as np
 
 from sk120stiff.files.json_text import as_json_text
-from sk120stiff.paper.document import as_document
-from sk120stiff.paper.tables import Column, SideBySide, side_by_side
+from sk120stiff.paper.tables import Column, SideBySide, as_document, side_by_side
 
 NAMES = [
     "table2_gaps", "table2", "identified", "table3", "table4", "critical", "appendix",
