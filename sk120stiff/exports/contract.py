@@ -6,6 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from lxml import etree
+from lxml.etree import _Element as Element
+
 from sk120stiff.arrays import Array
 from sk120stiff.model import Model
 
@@ -78,3 +81,18 @@ class Format:
 def numbers(values: Array) -> str:
     """Numbers between blanks, each to its last digit."""
     return " ".join(repr(float(value) + 0.0) for value in values)
+
+
+def put(parent: Element, tag: str, text: str | None = None, /, **attributes: object) -> Element:
+    """A new element at the end of another; a number to its last digit."""
+    said = {key: each if isinstance(each, str) else repr(each) for key, each in attributes.items()}
+    element = etree.SubElement(parent, tag, said)
+    element.text = text
+    return element
+
+
+def xml_text(root: Element, *, declared: bool = False) -> str:
+    """The text of an XML file, indented."""
+    etree.indent(root, space="  ")
+    head = '<?xml version="1.0"?>\n' if declared else ""
+    return f"{head}{etree.tostring(root, encoding='unicode')}\n"

@@ -8,13 +8,14 @@ site that bears the name of the frame (``mj_applyFT``, each step).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from lxml import etree
+from lxml.etree import _Element as Element
 
 from sk120stiff.arrays import Array
 from sk120stiff.exports.building import moving_arm, told_of
-from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers
+from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers, put, xml_text
 from sk120stiff.exports.meshes import mesh_files
 from sk120stiff.exports.moving import Body, Joint, MovingArm
 from sk120stiff.model import Model
@@ -23,7 +24,7 @@ from sk120stiff.robot.visuals import Visual, visuals
 STEP = 1e-3  # s
 TINY, TINY_INERTIA = 1e-3, 1e-6  # kg, kg·m²: MuJoCo wants something in every body that moves
 TIED = 100.0  # kg·m² or kg: the heavier a follower and its leader, the less a soft constraint gives
-_FORM = 'solref="0.002 1" solimp="0.9999 0.9999 1"'
+_FORM = {"solref": "0.002 1", "solimp": "0.9999 0.9999 1"}
 
 
 def make(model: Model, request: Request) -> Exported:
@@ -32,7 +33,7 @@ def make(model: Model, request: Request) -> Exported:
     carried, left_out = told_of(model)
     folder = f"{request.out.stem}.meshes"
     files, paths = mesh_files([shape for _, _, shape in arm.shapes], folder)
-    text = "\n".join(_document(arm, left_out, sorted(files), paths)) + "\n"
+    text = xml_text(_document(arm, left_out, sorted(files), paths))
     missing = tuple(finding.message for finding in visuals(model.robot).findings)
     return Exported(
         text, carried, left_out, (*missing, *notes_of(arm)), details_of(arm), files=files,
@@ -108,142 +109,123 @@ def header_of(arm: MovingArm, left_out: Iterable[Told]) -> str:
 
 def _document(
     arm: MovingArm, left_out: Iterable[Told], files: list[str], paths: list[tuple[str, ...]]
-) -> Iterable[str]:
+) -> Element:
     mesh = {name: f"mesh_{k}" for k, name in enumerate(files)}
-    children: dict[int, list[int]] = {}
-    for k, body in enumerate(arm.bodies):
-        children.setdefault(body.parent, []).append(k)
-    yield f"<mujoco model={quoteattr(arm.name)}>"
-    yield f"  <!-- {header_of(arm, left_out)} -->"
-    yield (
-        '  <compiler angle="radian" autolimits="false" inertiafromgeom="false" '
-        'balanceinertia="true"/>'
-    )
-    yield (
-        f'  <option gravity="{numbers(arm.gravity)}" timestep="{STEP!r}" integrator="implicitfast" '
-        'jacobian="dense" iterations="200" tolerance="1e-14">'
-    )
-    yield '    <flag contact="disable"/>'
-    yield "  </option>"
+    root = etree.Element("mujoco", model=arm.name)
+    root.append(etree.Comment(f" {header_of(arm, left_out)} "))
+    put(
+        root, "compiler", angle="radian", autolimits="false", inertiafromgeom="false",
+        balanceinertia="true",
+    )  # fmt: skip
+    option = put(
+        root, "option", gravity=numbers(arm.gravity), timestep=STEP, integrator="implicitfast",
+        jacobian="dense", iterations=200, tolerance="1e-14",
+    )  # fmt: skip
+    put(option, "flag", contact="disable")
     if mesh:
-        yield "  <asset>"
+        asset = put(root, "asset")
         for name, short in mesh.items():
-            yield f'    <mesh name="{short}" file={quoteattr(name)} inertia="shell"/>'
-        yield "  </asset>"
-    yield "  <worldbody>"
-    order: list[Joint] = []
-    leaders = {joint.leader[0] for joint in arm.joints if joint.leader}
+            put(asset, "mesh", name=short, file=name, inertia="shell")
+    world = put(root, "worldbody")
+    _bodies(arm, world, [[mesh[path] for path in own] for own in paths])
+    _ties(arm, root)
+    _actuators(arm, root)
+    values = {joint.name: joint.value for joint in arm.joints}
+    qpos = [values[joint.get("name", "")] for joint in world.iter("joint")]
+    ctrl = [joint.value for joint in arm.motors]
+    keys = {"qpos": numbers(np.array(qpos)), "ctrl": numbers(np.array(ctrl))}
+    put(put(root, "keyframe"), "key", name="commanded", **keys)
+    return root
 
-    def emit(k: int, indent: str) -> Iterable[str]:
-        body = arm.bodies[k]
+
+def _bodies(arm: MovingArm, world: Element, meshes: list[list[str]]) -> None:
+    """Every body in its carrier, with its joint, its shapes, and the frames that lie on it."""
+    leaders = {joint.leader[0] for joint in arm.joints if joint.leader}
+    nodes: list[Element] = []
+    for k, body in enumerate(arm.bodies):
+        node = nodes[body.parent] if k else world
         if body.name != "world":  # MuJoCo has a body of that name
-            own = f"name={quoteattr(body.name)} {_place(body.placement)}"
-            yield f"{indent}<body {own}{_float(body)}>"
+            node = put(node, "body", name=body.name, **_place(body.placement))
+            if body.mass <= 0.0 and body.joint is not None:
+                node.set("gravcomp", "1")  # what only MuJoCo asks to weigh something weighs nothing
+        nodes.append(node)
         if body.joint is not None:
-            order.append(body.joint)
-            yield f"{indent}  {_inertial(body)}"
-            yield f"{indent}  {_joint(body.joint, leads=body.joint.name in leaders)}"
-        for (at, T, shape), named in zip(arm.shapes, paths, strict=True):
+            put(node, "inertial", **_inertial(body))
+            put(node, "joint", **_joint(body.joint, leads=body.joint.name in leaders))
+        for (at, T, shape), named in zip(arm.shapes, meshes, strict=True):
             if at == k:
-                yield from (
-                    f"{indent}  {line}" for line in _geoms(shape, T, [mesh[p] for p in named])
-                )
+                _geoms(node, shape, T, named)
         for name, at, T in arm.frames:
             if at == k and name != "world":
-                yield f"{indent}  <body name={quoteattr(name)} {_place(T)}/>"
+                put(node, "body", name=name, **_place(T))
         for name, at, T in arm.sites:
             if at == k:
-                yield f"{indent}  <site name={quoteattr(name)} {_place(T)}/>"
-        for child in children.get(k, ()):
-            yield from emit(child, indent + "  ")
-        if body.name != "world":
-            yield f"{indent}</body>"
-
-    yield from emit(0, "    ")
-    yield "  </worldbody>"
-    yield from _ties(arm)
-    yield from _actuators(arm)
-    qpos = numbers(np.array([joint.value for joint in order]))
-    ctrl = numbers(np.array([joint.value for joint in arm.motors]))
-    yield f'  <keyframe><key name="commanded" qpos="{qpos}" ctrl="{ctrl}"/></keyframe>'
-    yield "</mujoco>"
+                put(node, "site", name=name, **_place(T))
 
 
-def _float(body: Body) -> str:
-    """What only MuJoCo asks to weigh something weighs nothing."""
-    return "" if body.mass > 0.0 or body.joint is None else ' gravcomp="1"'
-
-
-def _inertial(body: Body) -> str:
+def _inertial(body: Body) -> dict[str, object]:
     if body.mass <= 0.0:
-        tiny = " ".join([repr(TINY_INERTIA)] * 3)
-        return f'<inertial pos="0 0 0" mass="{TINY!r}" diaginertia="{tiny}"/>'
+        return {"pos": "0 0 0", "mass": TINY, "diaginertia": numbers(np.full(3, TINY_INERTIA))}
     values, axes = np.linalg.eigh(body.inertia)
     values = np.maximum(values, TINY_INERTIA)  # real files state tensors that no body has
-    axes = axes * np.sign(np.linalg.det(axes))
     T = np.eye(4)
-    T[:3, :3], T[:3, 3] = axes, body.centre
-    return f'<inertial {_place(T)} mass="{body.mass!r}" diaginertia="{numbers(values)}"/>'
+    T[:3, :3], T[:3, 3] = axes * np.sign(np.linalg.det(axes)), body.centre
+    return {**_place(T), "mass": body.mass, "diaginertia": numbers(values)}
 
 
-def _joint(joint: Joint, *, leads: bool) -> str:
-    armature = max(joint.armature, TIED if leads or joint.leader else TINY)
-    spring = f' stiffness="{joint.stiffness!r}" springref="0"' if joint.stiffness else ""
-    damping = f' damping="{joint.damping!r}"' if joint.stiffest else ""
-    return (
-        f'<joint name={quoteattr(joint.name)} type="{"slide" if joint.slides else "hinge"}" '
-        f'axis="{numbers(joint.axis)}" armature="{armature!r}"{spring}{damping}/>'
-    )
+def _joint(joint: Joint, *, leads: bool) -> dict[str, object]:
+    return {
+        "name": joint.name,
+        "type": "slide" if joint.slides else "hinge",
+        "axis": numbers(joint.axis),
+        "armature": max(joint.armature, TIED if leads or joint.leader else TINY),
+        **({"stiffness": joint.stiffness, "springref": 0} if joint.stiffness else {}),
+        **({"damping": joint.damping} if joint.stiffest else {}),
+    }
 
 
-def _geoms(shape: Visual, T: Array, meshes: list[str]) -> Iterable[str]:
-    colour = f' rgba="{numbers(np.array(shape.rgba))}"' if shape.rgba is not None else ""
-    look = f'{_place(T)} contype="0" conaffinity="0" group="2"{colour}/>'
+def _geoms(node: Element, shape: Visual, T: Array, meshes: list[str]) -> None:
+    look: dict[str, object] = {**_place(T), "contype": 0, "conaffinity": 0, "group": 2}
+    if shape.rgba is not None:
+        look["rgba"] = numbers(np.array(shape.rgba))
     if shape.kind == "mesh":
-        yield from (f'<geom type="mesh" mesh="{mesh}" {look}' for mesh in meshes)
+        for mesh in meshes:
+            put(node, "geom", type="mesh", mesh=mesh, **look)
         return
     half = {"box": (0.5, 0.5, 0.5), "sphere": (1.0,)}.get(shape.kind, (1.0, 0.5))
-    size = numbers(np.array(shape.size) * half)
-    yield f'<geom type="{shape.kind}" size="{size}" {look}'
+    put(node, "geom", type=shape.kind, size=numbers(np.array(shape.size) * half), **look)
 
 
-def _ties(arm: MovingArm) -> Iterable[str]:
+def _ties(arm: MovingArm, root: Element) -> None:
     if arm.springs:
-        yield "  <tendon>"
+        tendon = put(root, "tendon")
         for k, tied in enumerate(arm.springs):
-            yield f'    <fixed name="spring_{k}" stiffness="{tied.stiffness!r}" springlength="0">'
+            fixed = put(
+                tendon, "fixed", name=f"spring_{k}", stiffness=tied.stiffness, springlength=0
+            )
             for joint, weight in tied.weights.items():
-                yield f'      <joint joint={quoteattr(joint)} coef="{weight!r}"/>'
-            yield "    </fixed>"
-        yield "  </tendon>"
+                put(fixed, "joint", joint=joint, coef=weight)
     followers = [(joint.name, joint.leader) for joint in arm.joints if joint.leader]
     if followers:
-        yield "  <equality>"
+        equality = put(root, "equality")
         for name, (leader, factor, offset) in followers:
-            yield (
-                f"    <joint joint1={quoteattr(name)} joint2={quoteattr(leader)} "
-                f'polycoef="{offset!r} {factor!r} 0 0 0" {_FORM}/>'
-            )
-        yield "  </equality>"
+            law = f"{offset!r} {factor!r} 0 0 0"
+            put(equality, "joint", joint1=name, joint2=leader, polycoef=law, **_FORM)
 
 
-def _actuators(arm: MovingArm) -> Iterable[str]:
-    yield "  <actuator>"
+def _actuators(arm: MovingArm, root: Element) -> None:
+    actuators = put(root, "actuator")
     for joint in arm.motors:
-        limit = ""
+        name, gains = joint.name, {"kp": joint.servo, "kv": joint.damping}
+        node = put(actuators, "position", name=name, joint=name, **gains)
         if np.isfinite(joint.limits).all():
             low, high = min(joint.limits[0], joint.value), max(joint.limits[1], joint.value)
-            limit = f' ctrllimited="true" ctrlrange="{low!r} {high!r}"'
-        name = quoteattr(joint.name)
-        yield (
-            f'    <position name={name} joint={name} kp="{joint.servo!r}" '
-            f'kv="{joint.damping!r}"{limit}/>'
-        )
-    yield "  </actuator>"
+            node.set("ctrllimited", "true")
+            node.set("ctrlrange", f"{low!r} {high!r}")
 
 
-def _place(T: Array) -> str:
-    return f'pos="{numbers(T[:3, 3])}" quat="{numbers(quaternion(T[:3, :3]))}"'
+def _place(T: Array) -> dict[str, str]:
+    return {"pos": numbers(T[:3, 3]), "quat": numbers(quaternion(T[:3, :3]))}
 
 
 def quaternion(R: Array) -> Array:

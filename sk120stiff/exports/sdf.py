@@ -8,14 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from xml.sax.saxutils import escape, quoteattr
+from itertools import combinations_with_replacement
 
 import numpy as np
+from lxml import etree
+from lxml.etree import _Element as Element
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LinearElastic, load_case
 from sk120stiff.exports.building import moving_arm, told_of
-from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers
+from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers, put, xml_text
 from sk120stiff.exports.meshes import mesh_files
 from sk120stiff.exports.mjcf import TINY, TINY_INERTIA, details_of, header_of, notes_of, rows_of
 from sk120stiff.exports.moving import Body, Joint, MovingArm
@@ -24,10 +26,10 @@ from sk120stiff.robot.urdf.clean import rpy_from_rotation
 from sk120stiff.robot.visuals import Visual, visuals
 
 UNLIMITED = 1e16  # SDF's word for no limit
-_PLUGIN = (
-    '    <plugin filename="gz-sim-joint-position-controller-system" '
-    'name="gz::sim::systems::JointPositionController">'
-)
+_PLUGIN = {
+    "filename": "gz-sim-joint-position-controller-system",
+    "name": "gz::sim::systems::JointPositionController",
+}
 
 
 def make(model: Model, request: Request) -> Exported:
@@ -46,7 +48,7 @@ def make(model: Model, request: Request) -> Exported:
             f"Gravity is the world's in SDF. Of this arm it points along {numbers(down.round(6))} "
             "in axes of the base: set it in the world."
         )
-    text = "\n".join(_document(arm, [*left_out, *lost], paths)) + "\n"
+    text = xml_text(_document(arm, [*left_out, *lost], paths), declared=True)
     return Exported(
         text, carried, (*left_out, *lost), (*notes, *notes_of(arm)), details_of(arm), files=files,
         title="Joints that yield", header=("joint", "stiffness", "", "servo"), rows=rows_of(arm),
@@ -84,127 +86,102 @@ def _ties(model: Model) -> list[str]:
     return found
 
 
-def _document(
-    arm: MovingArm, left_out: Iterable[Told], paths: list[tuple[str, ...]]
-) -> Iterable[str]:
-    yield '<?xml version="1.0"?>'
-    yield '<sdf version="1.11">'
-    yield f"  <!-- {header_of(arm, left_out)} -->"
-    yield f"  <model name={quoteattr(arm.name)}>"
+def _document(arm: MovingArm, left_out: Iterable[Told], paths: list[tuple[str, ...]]) -> Element:
+    root = etree.Element("sdf", version="1.11")
+    root.append(etree.Comment(f" {header_of(arm, left_out)} "))
+    model = put(root, "model", name=arm.name)
     names = [_name(body.name) for body in arm.bodies]
     for k, body in enumerate(arm.bodies):
-        looks = [
-            line
-            for n, ((at, T, shape), own) in enumerate(zip(arm.shapes, paths, strict=True))
-            if at == k
-            for line in _visual(f"visual_{n}", shape, T, own)
-        ]
-        yield from _link(body, names, looks, heavy=arm.heavy)
-    base = escape(names[0])
-    yield f'    <joint name={quoteattr(f"{names[0]}.ground")} type="fixed">'
-    yield f"      <parent>world</parent><child>{base}</child>"
-    yield "    </joint>"
+        link = _link(model, body, names, heavy=arm.heavy)
+        for n, ((at, T, shape), own) in enumerate(zip(arm.shapes, paths, strict=True)):
+            if at == k:
+                _visual(link, f"visual_{n}", shape, T, own)
+    ground = put(model, "joint", name=f"{names[0]}.ground", type="fixed")
+    put(ground, "parent", "world")
+    put(ground, "child", names[0])
     for k, body in enumerate(arm.bodies):
         if body.joint is not None:
-            yield from _joint(body.joint, names[body.parent], names[k])
+            _joint(model, body.joint, names[body.parent], names[k])
     taken = set(names)
     for name, at, T in (*arm.frames, *arm.sites):
-        if name in taken or name == "world":
-            continue
-        taken.add(name)
-        yield f"    <frame name={quoteattr(name)} attached_to={quoteattr(names[at])}>"
-        yield f"      <pose>{_pose(T)}</pose>"
-        yield "    </frame>"
+        if name not in taken and name != "world":
+            taken.add(name)
+            frame = put(model, "frame", name=name, attached_to=names[at])
+            put(frame, "pose", _pose(T))
     for joint in arm.motors:
-        yield from _controller(joint)
-    yield "  </model>"
-    yield "</sdf>"
+        plugin = put(model, "plugin", **_PLUGIN)
+        put(plugin, "joint_name", joint.name)
+        for key, value in {
+            "p_gain": joint.servo, "i_gain": 0, "d_gain": joint.damping,
+            "initial_position": joint.value,
+        }.items():  # fmt: skip
+            put(plugin, key, repr(value))
+    return root
 
 
 def _name(name: str) -> str:
     return "world_link" if name == "world" else name  # SDF's own word for the ground
 
 
-def _link(body: Body, names: list[str], looks: list[str], *, heavy: bool) -> Iterable[str]:
+def _link(model: Element, body: Body, names: list[str], *, heavy: bool) -> Element:
     own = body.mass > 0.0
     mass, inertia = (body.mass, body.inertia) if own else (TINY, np.zeros((3, 3)))
     turning = body.joint.armature if body.joint is not None and body.joint.servo else 0.0
     inertia = inertia + max(turning, TINY_INERTIA) * np.eye(3)
-    keys = (
-        ("ixx", 0, 0),
-        ("ixy", 0, 1),
-        ("ixz", 0, 2),
-        ("iyy", 1, 1),
-        ("iyz", 1, 2),
-        ("izz", 2, 2),
-    )
-    moments = "".join(f"<{key}>{float(inertia[i, j])!r}</{key}>" for key, i, j in keys)
-    yield f"    <link name={quoteattr(_name(body.name))}>"
+    link = put(model, "link", name=_name(body.name))
     if body.joint is not None:
-        parent = quoteattr(names[body.parent])
-        yield f"      <pose relative_to={parent}>{_pose(body.placement)}</pose>"
+        put(link, "pose", _pose(body.placement), relative_to=names[body.parent])
     if not (own and heavy):
-        yield "      <gravity>false</gravity>"
-    yield (
-        f"      <inertial><pose>{numbers(body.centre)} 0 0 0</pose><mass>{mass!r}</mass>"
-        f"<inertia>{moments}</inertia></inertial>"
-    )
-    yield from looks
-    yield "    </link>"
+        put(link, "gravity", "false")
+    inertial = put(link, "inertial")
+    put(inertial, "pose", f"{numbers(body.centre)} 0 0 0")
+    put(inertial, "mass", repr(mass))
+    moments = put(inertial, "inertia")
+    for i, j in combinations_with_replacement(range(3), 2):
+        put(moments, f"i{'xyz'[i]}{'xyz'[j]}", repr(float(inertia[i, j])))
+    return link
 
 
-def _joint(joint: Joint, parent: str, child: str) -> Iterable[str]:
+def _joint(model: Element, joint: Joint, parent: str, child: str) -> None:
     low, high = np.clip(joint.limits, -UNLIMITED, UNLIMITED).tolist()
-    kind = "prismatic" if joint.slides else "revolute"
-    yield f'    <joint name={quoteattr(joint.name)} type="{kind}">'
-    yield f"      <parent>{escape(parent)}</parent><child>{escape(child)}</child>"
-    yield "      <axis>"
-    yield f"        <xyz>{numbers(joint.axis)}</xyz>"
-    yield f"        <limit><lower>{low!r}</lower><upper>{high!r}</upper></limit>"
+    node = put(model, "joint", name=joint.name, type="prismatic" if joint.slides else "revolute")
+    put(node, "parent", parent)
+    put(node, "child", child)
+    axis = put(node, "axis")
+    put(axis, "xyz", numbers(joint.axis))
+    limit = put(axis, "limit")
+    put(limit, "lower", repr(low))
+    put(limit, "upper", repr(high))
     if joint.leader is not None:
         leader, factor, offset = joint.leader
-        yield (
-            f"        <mimic joint={quoteattr(leader)}><multiplier>{factor!r}</multiplier>"
-            f"<offset>{offset!r}</offset><reference>0</reference></mimic>"
-        )
+        mimic = put(axis, "mimic", joint=leader)
+        put(mimic, "multiplier", repr(factor))
+        put(mimic, "offset", repr(offset))
+        put(mimic, "reference", "0")
     elif joint.stiffness:
-        yield (
-            f"        <dynamics><spring_stiffness>{joint.stiffness!r}</spring_stiffness>"
-            f"<spring_reference>0</spring_reference><damping>{joint.damping!r}</damping></dynamics>"
-        )
-    yield "      </axis>"
-    yield "    </joint>"
+        dynamics = put(axis, "dynamics")
+        put(dynamics, "spring_stiffness", repr(joint.stiffness))
+        put(dynamics, "spring_reference", "0")
+        put(dynamics, "damping", repr(joint.damping))
 
 
-def _controller(joint: Joint) -> Iterable[str]:
-    yield _PLUGIN
-    yield f"      <joint_name>{escape(joint.name)}</joint_name>"
-    yield f"      <p_gain>{joint.servo!r}</p_gain><i_gain>0</i_gain>"
-    yield f"      <d_gain>{joint.damping!r}</d_gain>"
-    yield f"      <initial_position>{joint.value!r}</initial_position>"
-    yield "    </plugin>"
-
-
-def _visual(name: str, shape: Visual, T: Array, paths: tuple[str, ...]) -> Iterable[str]:
-    size = [repr(float(x)) for x in shape.size]
+def _visual(link: Element, name: str, shape: Visual, T: Array, paths: tuple[str, ...]) -> None:
+    sizes = [repr(float(x)) for x in shape.size]
+    inner = [dict(zip(("radius", "length"), sizes, strict=False))]
     if shape.kind == "mesh":
-        inner = [f"<mesh><uri>{escape(path)}</uri></mesh>" for path in paths]
+        inner = [{"uri": path} for path in paths]
     elif shape.kind == "box":
-        inner = [f"<box><size>{' '.join(size)}</size></box>"]
-    elif shape.kind == "sphere":
-        inner = [f"<sphere><radius>{size[0]}</radius></sphere>"]
-    else:
-        inner = [
-            f"<{shape.kind}><radius>{size[0]}</radius><length>{size[1]}</length></{shape.kind}>"
-        ]
-    for k, geometry in enumerate(inner):
-        yield f'      <visual name="{name}_{k}">'
-        yield f"        <pose>{_pose(T)}</pose><geometry>{geometry}</geometry>"
+        inner = [{"size": " ".join(sizes)}]
+    for k, keys in enumerate(inner):
+        visual = put(link, "visual", name=f"{name}_{k}")
+        put(visual, "pose", _pose(T))
+        geometry = put(put(visual, "geometry"), shape.kind)
+        for key, text in keys.items():
+            put(geometry, key, text)
         if shape.rgba is not None:
-            rgba = numbers(np.array(shape.rgba))
-            colour = f"<ambient>{rgba}</ambient><diffuse>{rgba}</diffuse>"
-            yield f"        <material>{colour}</material>"
-        yield "      </visual>"
+            material = put(visual, "material")
+            for key in ("ambient", "diffuse"):
+                put(material, key, numbers(np.array(shape.rgba)))
 
 
 def _pose(T: Array) -> str:
