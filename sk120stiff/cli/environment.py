@@ -1,4 +1,7 @@
-"""What the surroundings of a process may break: closed or narrow streams, variables of others."""
+"""What the surroundings of a process may break: closed or narrow streams, variables of others.
+
+Text of others on a terminal counts too: control characters are shown, not obeyed.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import codecs
 import os
 import sys
 import warnings
+from unicodedata import category
 
 MOST_THREADS = 4096
 
@@ -54,3 +58,18 @@ def _in_plain_letters(error: UnicodeError) -> tuple[str, int]:
         raise error
     said = error.object[error.start : error.end].translate(_PLAIN)
     return said.encode("ascii", "backslashreplace").decode("ascii"), error.end
+
+
+_OBEYED = ("Cc", "Cf", "Cs")  # control, format (such as right-to-left override), half of a pair
+
+
+def visible(text: str) -> str:
+    """`text` with its control characters written as escapes; line ends and tabs stay."""
+    if text.isascii() and text.replace("\n", "").replace("\t", "").isprintable():
+        return text
+    return "".join(
+        char.encode("unicode_escape").decode("ascii")
+        if category(char) in _OBEYED and char not in "\n\t"
+        else char
+        for char in text
+    )

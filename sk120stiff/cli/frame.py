@@ -21,8 +21,8 @@ from typing import Annotated, NoReturn, TextIO
 
 import typer
 
+from sk120stiff.cli.environment import visible
 from sk120stiff.cli.signature import declared
-from sk120stiff.cli.visible import visible
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
 from sk120stiff.errors import InputError, Refusal, ToolkitError
 from sk120stiff.files import running

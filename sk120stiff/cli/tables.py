@@ -21,7 +21,7 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-from sk120stiff.cli.visible import visible
+from sk120stiff.cli.environment import visible
 
 if TYPE_CHECKING:
     from sk120stiff.arrays import Array

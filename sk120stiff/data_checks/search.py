@@ -15,11 +15,9 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.data_checks.correction import Correction
-from sk120stiff.data_checks.of_axes import of_axes
-from sk120stiff.data_checks.of_joints import floor, floors, of_joints, sign_of
-from sk120stiff.data_checks.of_rows import of_rows
 from sk120stiff.data_checks.passive import Passive, passive
 from sk120stiff.data_checks.sheet import Sheet, sheet_of
+from sk120stiff.data_checks.slips import floor, floors, of_axes, of_joints, of_rows, sign_of
 from sk120stiff.errors import ToolkitError
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot

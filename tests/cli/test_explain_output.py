@@ -48,7 +48,7 @@ def test_a_picture_that_fails_is_said_in_its_place(answer, task, tmp_path, monke
 
 
 def test_a_section_that_fails_leaves_the_others(answer, task, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr("sk120stiff.show.stories.parameters_section.springs_table", broken)
+    monkeypatch.setattr("sk120stiff.show.stories.sizes_sections.springs_table", broken)
     with pytest.warns(ToolkitWarning, match="The section 'Parameters' could not be made"):
         document = write_answer(answer, task, tmp_path, report=True)
     page = Path(document["report"]).read_text(encoding="utf-8")

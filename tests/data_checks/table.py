@@ -9,8 +9,8 @@ from pathlib import Path
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.data_checks import find_slip, look, refuse_unbelievable
-from sk120stiff.data_checks.of_joints import floors
 from sk120stiff.data_checks.sheet import sheet_of
+from sk120stiff.data_checks.slips import floors
 from sk120stiff.errors import Refusal
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import joint_spring_model

@@ -1,4 +1,7 @@
-"""A file of readings becomes `Measurements`, with what was understood of it."""
+"""A file of readings becomes `Measurements`, with what was understood of it.
+
+Points, joints and loads of separate files are put side by side.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +9,21 @@ import dataclasses
 import hashlib
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from sk120stiff.arrays import Index, Mask
+from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Source
+from sk120stiff.measurements.importers.contract import Column, Formats, Role, Sheet, Source
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
 from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
-from sk120stiff.measurements.importers.pairing import paired
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
 from sk120stiff.measurements.reading import assembled
@@ -203,3 +206,85 @@ def _assembled(
     file = settings_of(settings, path.with_suffix(".yaml"))
     digest = hashlib.sha256(repr((columns, settings)).encode()).hexdigest()
     return assembled(table, file, digest, robot.actuated, prismatic)
+
+
+SHARED = 0.5  # of the names of the shorter file, from which on names decide
+
+
+def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
+    """Each reading with its row of another file: by name, else by order.
+
+    Args:
+        points, other: The readings, and what belongs to them.
+        what: What the other file holds, as its option names it: joints or loads.
+
+    Raises:
+        InputError: A few names agree, or none and the files are not equally long.
+    """
+    mine, theirs = points.get("name"), other.get("name")
+    rows, others, how, lost = None, None, "order", list(points.skipped)
+    if mine and theirs and len(set(theirs.cells)) == len(theirs.cells):
+        place = {name: k for k, name in enumerate(theirs.cells)}
+        shared = set(mine.cells) & place.keys()
+        if len(shared) >= SHARED * min(len(set(mine.cells)), len(place)):
+            how = f"name ({mine.header}, {theirs.header})"
+            rows = [k for k, name in enumerate(mine.cells) if name in place]
+            others = [place[mine.cells[k]] for k in rows]
+            lost += [
+                (points.lines[k], f"{name} is not in {other.path.name}")
+                for k, name in enumerate(mine.cells)
+                if name not in place
+            ]
+            lost += [
+                (other.lines[k], f"{name} of {other.path.name} has no point")
+                for name, k in place.items()
+                if name not in mine.cells
+            ]
+        elif shared:
+            raise InputError(
+                f"only {len(shared)} of {len(place)} names agree ({min(shared)} among them): the "
+                f"{what} belong to other points",
+                where=f"{points.path} and {other.path}",
+                remedy="Give both files the same names, or take the names out of one of them: "
+                "rows then belong together by order.",
+            )
+    if rows is None or others is None:
+        if points.total != other.total:
+            raise InputError(
+                f"{points.total} points, but {other.total} rows of {what}, and their names "
+                "do not agree",
+                where=f"{points.path} and {other.path}",
+                remedy="Give both files the same names, or delete the rows that have no partner.",
+            )
+        place_of = {rank: k for k, rank in enumerate(other.rank)}
+        rows = [k for k, rank in enumerate(points.rank) if rank in place_of]
+        others = [place_of[points.rank[k]] for k in rows]
+        lost += [(line, f"{reason} ({other.path.name})") for line, reason in other.skipped]
+    if not rows:
+        raise InputError(f"no point has its {what}", where=f"{points.path} and {other.path}")
+    taken = {c.meaning for c in points.columns} | {"name"}
+    more = [replace(c, file=other.path) for c in other.columns if c.meaning not in taken]
+    twice = [c for c in other.columns if c.meaning in taken - {"name"}]
+    return replace(
+        points,
+        columns=(*_cut(points.columns, rows), *_cut(tuple(more), others)),
+        spare=(*_cut(points.spare, rows), *_cut(other.spare, others)),
+        lines=tuple(points.lines[k] for k in rows),
+        rank=tuple(points.rank[k] for k in rows),
+        skipped=tuple(lost),
+        unused=(
+            *points.unused,
+            *(f"{item} of {other.path.name}" for item in other.unused),
+            *(f"column {c.header} of {other.path.name}" for c in twice),
+        ),
+        notes=(
+            *points.notes,
+            f"The {what} are those of {other.path.name}, matched by {how}: {len(rows)} readings. "
+            f"Recognised as {other.title}: {other.why}.",
+            *(f"{other.path.name}: {n[0].lower()}{n[1:]}" for n in other.notes),
+        ),
+    )
+
+
+def _cut(columns: tuple[Column, ...], rows: list[int]) -> tuple[Column, ...]:
+    return tuple(replace(c, cells=tuple(c.cells[k] for k in rows)) for c in columns)

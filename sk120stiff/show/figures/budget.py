@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.figures.style import new_figure, styled
+from sk120stiff.show.figures.style import named_rows, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,9 +31,7 @@ def budget_bars(
     if not len(names):
         raise InputError("no share to draw")
     with styled():
-        figure = new_figure(1.05 + 0.32 * len(names))
-        panel = figure.subplots()
-        rows = np.arange(len(names))
+        figure, panel, rows = named_rows(names, 0.32)
         colours = [palette.NAMED if name in named else palette.YIELDS for name in names]
         panel.barh(
             rows,
@@ -43,9 +41,5 @@ def budget_bars(
             ecolor=palette.INK,
             capsize=3,
         )
-        panel.set_yticks(rows, list(names))
-        panel.set_ylim(len(names) - 0.4, -0.6)
         panel.set_xlabel(label)
-        panel.grid(visible=False, axis="y")
-        panel.tick_params(axis="y", length=0)
     return figure

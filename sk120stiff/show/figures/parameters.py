@@ -12,7 +12,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.figures.style import new_figure, styled
+from sk120stiff.show.figures.style import named_rows, styled
 from sk120stiff.show.wording import said_as
 
 if TYPE_CHECKING:
@@ -57,9 +57,7 @@ def parameter_forest(
     centre = np.array([e.value if e.shown else np.nan for e in estimates]) / scale
     spread = np.array([2.0 * (e.std or 0.0) if e.shown else 0.0 for e in estimates]) / abs(scale)
     with styled():
-        figure = new_figure(1.05 + 0.36 * len(estimates))
-        panel = figure.subplots()
-        rows = np.arange(len(estimates))
+        figure, panel, rows = named_rows([e.name for e in estimates], 0.36)
         panel.axvline(1.0, color=palette.SOFT_INK, linewidth=1.0, linestyle=":")
         panel.errorbar(
             centre[seen], rows[seen], xerr=spread[seen], fmt="o", color=palette.PREDICTED,
@@ -69,8 +67,6 @@ def parameter_forest(
         if compared:
             panel.plot(np.ones(len(compared)), compared, "|", color=palette.BEFORE, markersize=17,
                        markeredgewidth=2.6, zorder=1)  # fmt: skip
-        panel.set_yticks(rows, [e.name for e in estimates])
-        panel.set_ylim(len(estimates) - 0.4, -0.6)
         for k, e in enumerate(estimates):
             panel.annotate(_written(e), (1.02, k), xycoords=("axes fraction", "data"),
                            va="center", fontsize=8.5)  # fmt: skip
@@ -81,8 +77,6 @@ def parameter_forest(
             if compared
             else "value / estimate, ±2 standard errors"
         )
-        panel.grid(visible=False, axis="y")
-        panel.tick_params(axis="y", length=0)
         if title:
             panel.set_title(title)
     return figure

@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
-from sk120stiff.show.figures.style import new_figure, styled
+from sk120stiff.show.figures.style import named_rows, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,9 +29,7 @@ def score_bars(behind: Mapping[str, float], *, named: Collection[str] = ()) -> F
     ranked = sorted(behind.items(), key=lambda item: item[1])
     values = np.array([value for _, value in ranked])
     with styled():
-        figure = new_figure(1.1 + 0.3 * len(ranked))
-        panel = figure.subplots()
-        rows = np.arange(len(ranked))
+        figure, panel, rows = named_rows([name for name, _ in ranked], 0.3)
         colours = [palette.NAMED if name in named else palette.NOISE for name, _ in ranked]
         panel.barh(rows, values, color=colours, height=0.6)
         for row, (name, value) in enumerate(ranked):
@@ -45,10 +43,6 @@ def score_bars(behind: Mapping[str, float], *, named: Collection[str] = ()) -> F
         panel.set_xscale("symlog", linthresh=EVEN)
         panel.set_xlim(0.0, 2.2 * max(values.max(), EVEN))
         panel.xaxis.set_major_formatter("{x:g}")
-        panel.set_yticks(rows, [name for name, _ in ranked])
-        panel.set_ylim(len(ranked) - 0.4, -0.6)
         panel.set_xlabel("ΔBIC: how much worse with this candidate in its place")
-        panel.grid(visible=False, axis="y")
-        panel.tick_params(axis="y", length=0)
         figure.legend(loc="outside lower center")
     return figure

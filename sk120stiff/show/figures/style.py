@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from math import pi
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from sk120stiff.arrays import Index
 from sk120stiff.errors import require
 from sk120stiff.show import palette
 
@@ -88,6 +91,17 @@ def subplots(
     figure = new_figure(height, width=width)
     grid = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(grid.flat)
+
+
+def named_rows(names: Sequence[str], height: float) -> tuple[Figure, Axes, Index]:
+    """A figure with a row of the given height [inches] for each name, the first on top."""
+    figure = new_figure(1.05 + height * len(names))
+    panel, rows = figure.subplots(), np.arange(len(names))
+    panel.set_yticks(rows, list(names))
+    panel.set_ylim(len(names) - 0.4, -0.6)
+    panel.grid(visible=False, axis="y")
+    panel.tick_params(axis="y", length=0)
+    return figure, panel, rows
 
 
 def soft_to_stiff() -> LinearSegmentedColormap:

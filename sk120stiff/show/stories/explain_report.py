@@ -19,12 +19,10 @@ from sk120stiff.show.report import (
     fragment,
     section_or_note,
 )
-from sk120stiff.show.stories.budget_section import budget_section
 from sk120stiff.show.stories.evidence_section import evidence_section, sizes_of
 from sk120stiff.show.stories.gap_section import gap_section, steps_table
-from sk120stiff.show.stories.gear_section import gear_section
 from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
-from sk120stiff.show.stories.parameters_section import parameters_section
+from sk120stiff.show.stories.sizes_sections import budget_section, gear_section, parameters_section
 from sk120stiff.show.stories.verdicts import FEW, lead_of, title_of
 from sk120stiff.show.stories.where_section import where_section
 from sk120stiff.show.wording import chance, counted, percent, um

@@ -1,4 +1,8 @@
-"""Parameters before and after: how much the missing effect had bent the joint springs."""
+"""Sizes of what was found: parameters before and after, the error budget, the curves of gears.
+
+Before and after tell how much the missing effect had bent the joint springs, the budget what moves
+the point at the measured loads, joint by joint; people recognise a gear by its curve.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +12,14 @@ import numpy as np
 
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
+from sk120stiff.explain.judge.gear_curve import GearCurve, gear_curves
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.figures import Estimate, parameter_forest
+from sk120stiff.show.figures.budget import budget_bars
+from sk120stiff.show.figures.gear_curve import gear_curve
 from sk120stiff.show.report import Block, Note, Picture, Section, Table
-from sk120stiff.show.wording import number, percent, said_in, unit_of, with_error
+from sk120stiff.show.wording import number, percent, said_in, um, unit_of, with_error
 
 WORTH_TELLING = 0.01
 UNSEEN = "cannot be seen"
@@ -116,3 +123,65 @@ def _valued(p: Parameter, factor: float) -> str:
 def _short(p: Parameter) -> str:
     """The joint alone where it is a plain joint spring."""
     return p.effect.where if p.effect.joint_spring else p.name
+
+
+SHOWN = 14  # shares that are drawn
+SMALL = 1e-3  # of the largest share: too small to draw
+
+
+def budget_section(answer: Explanation) -> Section | None:
+    """Bars and a table of the shares; None where nothing moves."""
+    largest = max((share.rms for share in answer.budget), default=0.0)
+    shares = [share for share in answer.budget if share.rms > SMALL * largest]
+    if not shares:
+        return None
+    drawn = shares[:SHOWN]
+    told = ", ".join(f"{share.name} {um(share.rms)} µm" for share in drawn)
+    return Section(
+        "What moves the point",
+        [
+            "Sizes at the measured loads. The parts add as vectors: they need not add up, and "
+            "where two effects are alike, what one has the other may.",
+            Picture(
+                lambda: budget_bars(
+                    [share.name for share in drawn],
+                    np.array([1e6 * share.rms for share in drawn]),
+                    np.array([1e6 * (share.std or 0.0) for share in drawn]),
+                    named=[finding.effect.id for finding in answer.findings],
+                ),
+                alt=f"Bars of {len(drawn)} shares: {told}.",
+                caption="What each effect moves the point by. Violet: what was named.",
+            ),
+            Table(
+                ["what yields", "moves", "±"],
+                [(s.name, 1e6 * s.rms, "" if s.std is None else 1e6 * s.std) for s in shares],
+                "Rms per axis at the measured loads, with its standard error.",
+                units=["", "µm", "µm"],
+                digits=3,
+            ),
+        ],
+    )
+
+
+def gear_section(answer: Explanation) -> Section | None:
+    """A picture of every gear at which something was named; None where none was."""
+    curves = gear_curves(answer.final, [finding.effect.id for finding in answer.findings])
+    if not curves:
+        return None
+    blocks: list[Block] = [
+        "Spring and gear together, as if the joint stood on a bench: the torque grows from zero, "
+        "falls to the other side and grows back. A loop is friction, a step is play, a bend is a "
+        "gear that gets stiffer. The dashed line is the plain law of the name that comes nearest."
+    ]
+    return Section("The curve of the gear", [*blocks, *(_picture(curve) for curve in curves)])
+
+
+def _picture(curve: GearCurve) -> Picture:
+    largest = 1e6 * abs(curve.twist).max()
+    names = listed([f"`{name}`" for name in curve.names])
+    return Picture(
+        lambda: gear_curve(curve),
+        alt=f"Twist of {curve.where} up to {largest:.3g} µrad over its torque up to "
+        f"{abs(curve.torque).max():.3g} N·m, found curve and plain law.",
+        caption=f"{curve.where}: {names}. Points: readings whose point the joint moves well.",
+    )
