@@ -48,7 +48,7 @@ POSITIONS = _tests("absolute", "linear", "choose", "names")
 
 FAULTS: tuple[Fault, ...] = (
     *_of(
-        "stiffness/complementary.py", *STIFFNESS,
+        "stiffness/cartesian.py", *STIFFNESS,
         sign_of_K_C_of_a_force=("np.triu(np.cross(force, w) @", "np.triu(np.cross(w, force) @"),
         sign_of_K_C_of_a_moment=("np.cross(moment, w) @", "np.cross(w, moment) @"),
         K_C_of_a_moment_not_transposed=("K_C = K_C + np.swapaxes(turned, -1, -2)",
@@ -58,7 +58,7 @@ FAULTS: tuple[Fault, ...] = (
         symmetric_part_not_halved=("return 0.5 * (matrix + np", "return 1.0 * (matrix + np"),
     ),
     *_of(
-        "stiffness/complementary.py", *_tests("model", "model"), *_tests("effects", "contract"),
+        "stiffness/cartesian.py", *_tests("model", "model"), *_tests("effects", "contract"),
         coordinates_in_a_wrong_order=("row = there.argmax(axis=0)", "row = there.argmax(axis=1)"),
     ),
     *_of(

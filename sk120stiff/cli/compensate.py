@@ -10,6 +10,15 @@ import numpy as np
 import typer
 
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
+from sk120stiff.cli.compensate_files import (
+    Judged,
+    check_sheet,
+    measured_words,
+    origin,
+    placement_columns,
+    settings_of,
+    write_program,
+)
 from sk120stiff.cli.compensate_path import (
     CHORD,
     LoadAxes,
@@ -18,13 +27,6 @@ from sk120stiff.cli.compensate_path import (
     with_joints,
     with_load_in_base,
 )
-from sk120stiff.cli.compensate_program import (
-    origin,
-    placement_columns,
-    settings_of,
-    write_program,
-)
-from sk120stiff.cli.compensate_sheet import Judged, check_sheet, measured_words
 from sk120stiff.cli.compensate_words import (
     branch_keys,
     branch_words,

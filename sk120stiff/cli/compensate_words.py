@@ -11,7 +11,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
 from sk120stiff.errors import InputError, warn
 from sk120stiff.model import Model
-from sk120stiff.model.prediction_table import blame_reason
+from sk120stiff.model.predicted import blame_reason
 from sk120stiff.plan import Cell, feasible
 from sk120stiff.robot import Robot
 from sk120stiff.show.wording import um_or_less

@@ -22,7 +22,7 @@ from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model
-from sk120stiff.model.prediction_table import rows_of
+from sk120stiff.model.predicted import rows_of
 
 
 def positions_answer(

@@ -22,7 +22,7 @@ from sk120stiff.model import (
     Predicted,
     warn_of_far_bend,
 )
-from sk120stiff.model.prediction_table import (
+from sk120stiff.model.predicted import (
     predict_what_holds,
     prediction_table,
     rows_of,

@@ -25,7 +25,7 @@ from sk120stiff.model import (
     loaded_stiffness,
     loaded_uncertainty,
 )
-from sk120stiff.model.prediction_table import blame_reason
+from sk120stiff.model.predicted import blame_reason
 from sk120stiff.stiffness import Definiteness
 
 ROUNDING = 1e-12

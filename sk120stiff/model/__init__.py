@@ -17,8 +17,12 @@ from sk120stiff.model.file import (
     write_model,
 )
 from sk120stiff.model.holding import held_loads, warn_of_far_bend
-from sk120stiff.model.loaded import LoadedStiffness, loaded_stiffness
-from sk120stiff.model.loaded_uncertainty import LoadedUncertainty, loaded_uncertainty
+from sk120stiff.model.loaded import (
+    LoadedStiffness,
+    LoadedUncertainty,
+    loaded_stiffness,
+    loaded_uncertainty,
+)
 from sk120stiff.model.model import Model, joint_spring_model
 from sk120stiff.model.parameter import ON_BOUND, TOGETHER, UNSEEN, Parameter, parameter_frame
 from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty

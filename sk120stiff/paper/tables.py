@@ -14,7 +14,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.files import csv_text
 from sk120stiff.identify import Fit
-from sk120stiff.model.prediction_table import rows_of
+from sk120stiff.model.predicted import rows_of
 from sk120stiff.paper.identified import springs_of
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE
 from sk120stiff.paper.recomputed import FORMULAS, Table3, Table4

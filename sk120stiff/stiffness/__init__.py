@@ -3,11 +3,9 @@
 from sk120stiff.stiffness.cartesian import (
     cartesian_compliance,
     cartesian_stiffness,
-    spring_matrix,
-)
-from sk120stiff.stiffness.complementary import (
     complementary_stiffness,
     gravity_stiffness,
+    spring_matrix,
     symmetric_part,
 )
 from sk120stiff.stiffness.elastic import Compliant, ConstantCompliance

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Mechanism, Robot
-from sk120stiff.stiffness.complementary import symmetric_part
+from sk120stiff.stiffness.cartesian import symmetric_part
 from sk120stiff.stiffness.equilibrium import ElasticLaw, Weight
 from sk120stiff.stiffness.kernel.folding import Fold, fold
 

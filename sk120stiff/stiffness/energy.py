@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
 from sk120stiff.robot import Mechanism, Screws
-from sk120stiff.stiffness.complementary import complementary_stiffness
+from sk120stiff.stiffness.cartesian import complementary_stiffness
 from sk120stiff.stiffness.equilibrium import equilibrium, linear_springs
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Mechanism, Screws
-from sk120stiff.stiffness.complementary import (
+from sk120stiff.stiffness.cartesian import (
     complementary_stiffness,
     gravity_stiffness,
 )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.robot import Screws
-from sk120stiff.stiffness.complementary import (
+from sk120stiff.stiffness.cartesian import (
     complementary_stiffness,
     gravity_stiffness,
     symmetric_part,

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.stiffness.complementary import symmetric_part
+from sk120stiff.stiffness.cartesian import symmetric_part
 
 
 class Definiteness(StrEnum):

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.stiffness.complementary import symmetric_part
+from sk120stiff.stiffness.cartesian import symmetric_part
 from sk120stiff.stiffness.elastic import Compliant
 from sk120stiff.stiffness.kernel.folding import Fold, given
 from sk120stiff.stiffness.kernel.run import compiles, run

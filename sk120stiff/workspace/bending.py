@@ -19,7 +19,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import load_case
 from sk120stiff.model import Model, Remainder
-from sk120stiff.model.loaded_uncertainty import by_parameters
+from sk120stiff.model.loaded import by_parameters
 from sk120stiff.model.uncertainty import spread
 
 

@@ -31,8 +31,8 @@ HEAVY = {
     "yaml",
 }
 INFRASTRUCTURE = {
-    "__init__", "calibration", "cell", "compensate_path", "compensate_program",
-    "compensate_sheet", "compensate_words", "environment", "explain_output", "frame",
+    "__init__", "calibration", "cell", "compensate_path", "compensate_files",
+    "compensate_words", "environment", "explain_output", "frame",
     "identify_rows", "import_preview", "main", "map_postures", "opening", "options",
     "outputs", "positions", "signature", "tables", "uncertainty", "xacro_option",
 }  # fmt: skip

@@ -19,7 +19,7 @@ from sk120stiff.workspace import (
     verify_map,
     write_map,
 )
-from sk120stiff.workspace.lock import only_writer
+from sk120stiff.workspace.mapping import only_writer
 from tests.attacks.maps import HARMS, flip, remove
 from tests.workspace.arms import joint_job
 from tests.workspace.test_map import SMALL, contents
@@ -154,7 +154,7 @@ def test_a_lock_names_its_writer_and_dies_with_it(tmp_path: Path) -> None:
     path = tmp_path / "m.zarr"
     program = (
         "import sys, time, pathlib\n"
-        "from sk120stiff.workspace.lock import only_writer\n"
+        "from sk120stiff.workspace.mapping import only_writer\n"
         "with only_writer(pathlib.Path(sys.argv[1])):\n    print('held', flush=True)\n"
         "    time.sleep(100)\n"
     )

@@ -17,8 +17,7 @@ from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.cli.plan.check import checked, points_of
 from sk120stiff.cli.plan.chosen import precise, telling
 from sk120stiff.cli.plan.places import Places, places_of
-from sk120stiff.cli.plan.program import in_order, language_for, write_route
-from sk120stiff.cli.plan.shown import as_keys, write_page
+from sk120stiff.cli.plan.shown import as_keys, in_order, language_for, write_page, write_route
 from sk120stiff.cli.tables import plan_table, progress_bar
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError

@@ -24,7 +24,7 @@ from sk120stiff.identify.absolute.words import findings, gap_sentence, known_cal
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter, write_model
 from sk120stiff.model.pose_reading import read_poses
-from sk120stiff.model.prediction_table import Columns
+from sk120stiff.model.predicted import Columns
 
 SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes certain
 

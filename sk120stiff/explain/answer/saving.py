@@ -20,7 +20,7 @@ from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model, write_model
-from sk120stiff.model.prediction_table import predict_what_holds, prediction_table
+from sk120stiff.model.predicted import predict_what_holds, prediction_table
 
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
