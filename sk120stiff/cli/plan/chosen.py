@@ -137,10 +137,10 @@ def telling(
 ) -> Chosen:
     """Readings that tell two effects apart."""
     first, second = two_effects(model, between)
-    for effect in (first, second):
-        if why := _why_untold(effect, pool):
+    for each in (first, second):
+        if why := _why_untold(each, pool):
             raise InputError(
-                f"no plan tells {effect.id} from anything: {why}",
+                f"no plan tells {each.id} from anything: {why}",
                 where="--between",
                 remedy="Ask 'explain', once the readings with it are there.",
             )
