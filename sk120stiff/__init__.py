@@ -57,40 +57,28 @@ if TYPE_CHECKING:
 
 # Public name → the module that holds it. Nothing is imported before a name is asked for.
 _HOME = {
-    "CATALOGUE": "sk120stiff.effects",
-    "Catalogue": "sk120stiff.effects",
-    "Effect": "sk120stiff.effects",
-    "Explanation": "sk120stiff.explain.answer.explanation",
-    "Fit": "sk120stiff.identify.fit",
-    "InputError": "sk120stiff.errors",
-    "Measurements": "sk120stiff.measurements",
-    "Model": "sk120stiff.model",
-    "NoiseModel": "sk120stiff.measurements",
-    "Options": "sk120stiff.explain.options",
-    "Refusal": "sk120stiff.errors",
-    "Robot": "sk120stiff.robot",
-    "Schedule": "sk120stiff.plan.schedule",
-    "ToolkitError": "sk120stiff.errors",
-    "ToolkitWarning": "sk120stiff.errors",
-    "base_model": "sk120stiff.model",
-    "bundled_robots": "sk120stiff.robot.bundled",
-    "compensate": "sk120stiff.workspace.compensate",
-    "effect": "sk120stiff.effects",
-    "explain": "sk120stiff.explain.run",
-    "export": "sk120stiff.exports",
-    "fit": "sk120stiff.identify.estimate",
-    "joint_spring_model": "sk120stiff.model",
-    "load_robot": "sk120stiff.robot",
-    "loaded_stiffness": "sk120stiff.model",
-    "plan": "sk120stiff.plan.planned",
-    "predict": "sk120stiff.model",
-    "read": "sk120stiff.measurements",
-    "read_measurements": "sk120stiff.measurements",
-    "read_model": "sk120stiff.model",
-    "simulate": "sk120stiff.plan.simulation",
-    "stiffness": "sk120stiff.model",
-    "write_measurements": "sk120stiff.measurements",
-    "write_model": "sk120stiff.model",
+    name: home
+    for home, names in {
+        "sk120stiff.effects": "CATALOGUE Catalogue Effect effect",
+        "sk120stiff.errors": "InputError Refusal ToolkitError ToolkitWarning",
+        "sk120stiff.explain.answer.explanation": "Explanation",
+        "sk120stiff.explain.options": "Options",
+        "sk120stiff.explain.run": "explain",
+        "sk120stiff.exports": "export",
+        "sk120stiff.identify.estimate": "fit",
+        "sk120stiff.identify.fit": "Fit",
+        "sk120stiff.measurements": "Measurements NoiseModel read read_measurements "
+        "write_measurements",
+        "sk120stiff.model": "Model base_model joint_spring_model loaded_stiffness predict "
+        "read_model stiffness write_model",
+        "sk120stiff.plan.planned": "plan",
+        "sk120stiff.plan.schedule": "Schedule",
+        "sk120stiff.plan.simulation": "simulate",
+        "sk120stiff.robot": "Robot load_robot",
+        "sk120stiff.robot.bundled": "bundled_robots",
+        "sk120stiff.workspace.compensate": "compensate",
+    }.items()
+    for name in names.split()
 }
 _CALLED_THERE = {"read": "read_measurements", "stiffness": "loaded_stiffness"}
 

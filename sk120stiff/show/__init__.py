@@ -63,34 +63,20 @@ if TYPE_CHECKING:
     from sk120stiff.show.scene.static import scene_html, static_scene
 
 _HOME = {
-    "Cloud": "scene.cloud",
-    "Code": "report",
-    "Elastic": "scene.elastic",
-    "InMeshcat": "meshcat",
-    "Items": "report",
-    "KeyFigure": "report",
-    "KeyFigures": "report",
-    "MapFigure": "figures.of_map",
-    "Note": "report",
-    "Picture": "report",
-    "Reading": "scene.scene",
-    "Report": "report",
-    "Scene": "scene.scene",
-    "SceneFrame": "report",
-    "ScenePose": "scene.scene",
-    "Section": "report",
-    "Table": "report",
-    "cloud_html": "scene.cloud",
-    "cloud_of_map": "scene.cloud",
-    "cloud_page": "scene.cloud",
-    "figures_of_map": "figures.of_map",
-    "in_meshcat": "meshcat",
-    "inline_svg": "figures.saving",
-    "save_figure": "figures.saving",
-    "reproducibility": "report",
-    "scene_html": "scene.static",
-    "scene_of_model": "scene.building",
-    "static_scene": "scene.static",
+    name: home
+    for home, names in {
+        "figures.of_map": "MapFigure figures_of_map",
+        "figures.saving": "inline_svg save_figure",
+        "meshcat": "InMeshcat in_meshcat",
+        "report": "Code Items KeyFigure KeyFigures Note Picture Report SceneFrame Section Table "
+        "reproducibility",
+        "scene.building": "scene_of_model",
+        "scene.cloud": "Cloud cloud_html cloud_of_map cloud_page",
+        "scene.elastic": "Elastic",
+        "scene.scene": "Reading Scene ScenePose",
+        "scene.static": "scene_html static_scene",
+    }.items()
+    for name in names.split()
 }
 
 __all__ = [
