@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from sk120stiff.arrays import largest, rms
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
 from sk120stiff.cli.compensate_files import (
     Judged,
@@ -32,12 +33,10 @@ from sk120stiff.cli.compensate_words import (
     branch_words,
     floor_of,
     infeasible,
-    largest,
     movable_joints,
     notes,
     parts,
     point_words,
-    rms,
     standing_keys,
     standing_notes,
     standing_words,
@@ -241,8 +240,8 @@ def command(
     document = {
         "robot": robot.name,
         "rows": given.count,
-        "before_um": rms(found.before) * 1e6,
-        "after_um": rms(after) * 1e6,
+        "before_um": rms(found.before.distance) * 1e6,
+        "after_um": rms(after.distance) * 1e6,
         "before_max_um": largest(found.before.distance) * 1e6,
         "after_max_um": largest(after.distance) * 1e6,
         "before_max_urad": largest(np.linalg.norm(found.before.turned, axis=1)) * 1e6,

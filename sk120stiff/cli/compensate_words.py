@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, largest, rms
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
 from sk120stiff.errors import InputError, warn
@@ -186,18 +186,6 @@ def movable_joints(model: Model, text: str) -> np.ndarray[tuple[int], np.dtype[n
     return np.array([joint in names for joint in model.robot.actuated])
 
 
-def rms(where: Standing) -> float:
-    """Over the points that have an equilibrium [m]; NaN if none has."""
-    distances = where.distance[where.exists]
-    return float(np.sqrt(np.mean(distances**2))) if len(distances) else float("nan")
-
-
-def largest(values: Array) -> float:
-    """The largest finite value; NaN if there is none."""
-    finite = values[np.isfinite(values)]
-    return float(finite.max()) if len(finite) else float("nan")
-
-
 def notes(found: Compensation, uncertainty: dict[str, list[str]]) -> dict[str, list[str]]:
     """Columns of the CSV file: what was off, what is, and why."""
 
@@ -217,7 +205,7 @@ def parts(document: dict[str, object], path: LoadedPath, found: Compensation) ->
     after = found.after.distance
     told: list[object] = [
         f"{document['rows']} points. Off its place before: {document['before_um']:.1f} µm rms, "
-        f"{document['before_max_um']:.1f} at most; after: {um_or_less(rms(found.after))} µm "
+        f"{document['before_max_um']:.1f} at most; after: {um_or_less(rms(after))} µm "
         f"rms, {um_or_less(largest(after))} at most (judged by "
         f"{Path(str(document['judged_by'])).name}).",
         f"Written: {document['out']}" + (f" and {document['sheet']}" if document["sheet"] else ""),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import rms
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
@@ -54,24 +54,24 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
         write_atomically(out, csv_text(columns.items()))
     measured = readings.displacement
     per_pose: list[dict[str, object]] = []
-    rms: float | None = None
+    left: float | None = None
     used = readings.use & np.isfinite(predicted.displacement).all(axis=1)
     if measured is not None and used.any():
         gap = measured - predicted.displacement
-        rms = _rms(gap[used])
+        left = 1e6 * rms(gap[used])
         for label in readings.poses:
             rows = readings.rows_of(label)
             rows = rows[used[rows]]
             if len(rows):
-                per_pose.append({"pose": label, "rms_um": _rms(gap[rows])})
+                per_pose.append({"pose": label, "rms_um": 1e6 * rms(gap[rows])})
     document = {
         "rows": rows_of(columns),
-        "rms_um": rms,
+        "rms_um": left,
         "per_pose": per_pose,
         "uncertainty": uncertainty_keys(believed),
         "out": out,
     }
-    parts = _parts(predicted, readings, rms, per_pose, int(used.sum()))
+    parts = _parts(predicted, readings, left, per_pose, int(used.sum()))
     parts += sentences(believed, predicted.std_parameters, predicted.std_remainder)
     warn_of_far_bend(believed, predicted.displacement)
     lost = [reason for reason in unknown_reasons(predicted) if reason]
@@ -81,18 +81,14 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     return Answer(document, parts)
 
 
-def _rms(gap: Array) -> float:
-    return float(np.sqrt(np.mean(gap**2)) * 1e6)
-
-
 def _parts(
     predicted: Predicted,
     readings: Measurements,
-    rms: float | None,
+    left: float | None,
     per_pose: Sequence[dict[str, object]],
     used: int,
 ) -> list[object]:
-    if rms is None:
+    if left is None:
         shown = [
             (readings.pose[k], *cells)
             for k, cells in enumerate(_cells(predicted, min(LISTED, readings.n_readings)))
@@ -105,7 +101,7 @@ def _parts(
     rows = [(item["pose"], item["rms_um"]) for item in per_pose]
     return [
         table("Gap per pose", ["pose", "µm rms per axis"], rows),
-        f"Gap over {used} readings: {rms:.2f} µm rms per axis.",
+        f"Gap over {used} readings: {left:.2f} µm rms per axis.",
     ]
 
 

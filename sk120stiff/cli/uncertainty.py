@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.model import Model
 
 NOT_STORED = "no uncertainty is stored in this model"
@@ -55,9 +55,10 @@ def sentences(model: Model, std_parameters: Array | None, std_remainder: Array |
     said = []
     if finite.any():
         said.append(
-            f"Uncertainty of a deflection, standard deviation per axis: {_rms(std_parameters):.2g} "
-            f"µm from the parameters{_of_remainder(model, std_remainder)}. 95 %: ± "
-            f"{known.reach(0.95):.3g} times the whole; the noise of a reading comes on top."
+            "Uncertainty of a deflection, standard deviation per axis: "
+            f"{1e6 * rms(std_parameters):.2g} µm from the parameters"
+            f"{_of_remainder(model, std_remainder)}. 95 %: ± {known.reach(0.95):.3g} times the "
+            "whole; the noise of a reading comes on top."
         )
     return said
 
@@ -68,9 +69,4 @@ def _of_remainder(model: Model, std: Array | None) -> str:
         return f"; {NO_REMAINDER}"
     if not left.significant:
         return ", none from what the model lacks (the fit left no more than noise)"
-    return f", {_rms(std):.2g} µm from what the model leaves unexplained"
-
-
-def _rms(std: Array) -> float:
-    finite = std[np.isfinite(std)]
-    return float(np.sqrt(np.mean(finite**2)) * 1e6) if len(finite) else float("nan")
+    return f", {1e6 * rms(std):.2g} µm from what the model leaves unexplained"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, largest, rms
 from sk120stiff.model import Share
 from sk120stiff.show.figures.budget import budget_bars
 from sk120stiff.show.figures.path_error import error_along, exaggeration, path_map
@@ -95,35 +95,33 @@ class PathSheet:
             return "The springs of the model cannot hold this load at any point."
         worst = int(np.nanargmax(before))
         said = (
-            f"Uncorrected, the loaded tool stands {um(_rms(before))} µm (rms) off its path, most "
+            f"Uncorrected, the loaded tool stands {um(rms(before))} µm (rms) off its path, most "
             f"at line {self.lines[worst]}: {um(float(before[worst]))} µm. "
         )
         if self.std is None:
             said += (
-                f"Corrected, the model sees {um_or_less(_rms(after))} µm; how far off the tool "
+                f"Corrected, the model sees {um_or_less(rms(after))} µm; how far off the tool "
                 "stands in truth is not known."
             )
         else:
-            said += (
-                f"Corrected, {um_or_less(_rms(after))} µm ± {um(_rms(self.std))} µm are expected."
-            )
+            said += f"Corrected, {um_or_less(rms(after))} µm ± {um(rms(self.std))} µm are expected."
         for run, away in self.read.items():
-            said += f" Measured {run} correction: {um(_rms(away))} µm."
+            said += f" Measured {run} correction: {um(rms(away))} µm."
         return said
 
     def _answer(self) -> list[Block]:
         before, after = (self.off[run] for run in ("before", "after"))
         figures = [
-            KeyFigure("before, predicted", um(_rms(before)), "µm", f"at most {um(_most(before))}"),
-            KeyFigure("after, predicted", um_or_less(_rms(after)), "µm",
-                      f"at most {um_or_less(_most(after))}"),
+            KeyFigure("before, predicted", um(rms(before)), "µm", f"at most {um(largest(before))}"),
+            KeyFigure("after, predicted", um_or_less(rms(after)), "µm",
+                      f"at most {um_or_less(largest(after))}"),
             KeyFigure(
-                "± of a prediction", "–" if self.std is None else um(_rms(self.std)), "µm",
+                "± of a prediction", "–" if self.std is None else um(rms(self.std)), "µm",
                 "one standard distance" if self.std is not None else "unknown, see below",
             ),
         ]  # fmt: skip
         figures += [
-            KeyFigure(f"{run}, measured", um(_rms(away)), "µm", f"at most {um(_most(away))}")
+            KeyFigure(f"{run}, measured", um(rms(away)), "µm", f"at most {um(largest(away))}")
             for run, away in self.read.items()
         ]
         length = np.concatenate(
@@ -133,8 +131,8 @@ class PathSheet:
             KeyFigures(figures),
             Picture(
                 lambda: error_along(length, self.off, self.std, self.read),
-                alt=f"Distance of the loaded tool from its target: {um(_rms(before))} µm before,"
-                f" {um_or_less(_rms(after))} µm after compensation (rms).",
+                alt=f"Distance of the loaded tool from its target: {um(rms(before))} µm before,"
+                f" {um_or_less(rms(after))} µm after compensation (rms).",
                 caption="How far the loaded tool stands off its target, along the path.",
             ),
             *([Note(" ".join(self.uncertainty), "caution" if self.std is None else "note")]
@@ -182,8 +180,8 @@ class PathSheet:
         ]  # fmt: skip
 
     def _budget(self) -> list[Block]:
-        largest = self.shares[0].rms
-        shown = [share for share in self.shares if share.rms > SMALL * largest]
+        most = self.shares[0].rms
+        shown = [share for share in self.shares if share.rms > SMALL * most]
         if not shown:
             return ["No effect of the model moves the tool."]
         size = np.sqrt(3.0) * 1e6  # from rms per axis to rms distance
@@ -216,7 +214,7 @@ class PathSheet:
                 each.run,
                 int(each.seen.sum()),
                 1e6 * each.rms,
-                round(1e6 * _rms(self.off[each.run][each.seen]), 3),
+                round(1e6 * rms(self.off[each.run][each.seen]), 3),
                 1e6 * each.apart(predicted[each.run]),
                 ", ".join(f"{1e6 * x:+.0f}" for x in each.constant).replace("-", "−"),
                 1e6 * each.about_constant,
@@ -236,7 +234,7 @@ class PathSheet:
         ]  # fmt: skip
         if set(self.read) == {"before", "after"}:
             both = np.isfinite(self.read["before"]) & np.isfinite(self.read["after"])
-            share = 1.0 - _rms(self.read["after"][both]) / _rms(self.read["before"][both])
+            share = 1.0 - rms(self.read["after"][both]) / rms(self.read["before"][both])
             return [
                 f"Compensation took away {100 * share:.0f} % of the measured error."
                 if share >= 0.0
@@ -244,13 +242,3 @@ class PathSheet:
                 *said,
             ]
         return said
-
-
-def _rms(values: Array) -> float:
-    finite = values[np.isfinite(values)]
-    return float(np.sqrt(np.mean(finite**2))) if len(finite) else float("nan")
-
-
-def _most(values: Array) -> float:
-    finite = values[np.isfinite(values)]
-    return float(finite.max()) if len(finite) else float("nan")
