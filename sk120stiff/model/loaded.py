@@ -108,7 +108,7 @@ def loaded_stiffness(
     Args:
         model: Robot and effects. Instruments (load and reading errors) have no say here.
         a: (n,) actuated coordinates of the unloaded arm [rad or m].
-        wrench: (6,) force [N] and moment [N·m] on the robot, base axes.
+        wrench: (6,) force [N] and moment [N·m] on the robot, base axes; (3,) is a force alone.
         frame: Frame whose origin is meant; the tool frame by default.
 
     Raises:
@@ -145,6 +145,7 @@ def loaded_stiffness(
             "K_θ − K_C is singular: this load is exactly critical and the deflection has no bound",
             remedy="Lower the load.",
         )
+    load = np.pad(load, (0, 6 - len(load)))  # a force alone has no moment
     screws = arm.mechanism.screws(found.of("coordinates"), arm.point)
     C_theta, own = arm.compliance_at(rows).reshape(-1, n, n)[0], arm.weight_at(rows)
     stable = CLASSES[int(found.of("stiffness_class"))]

@@ -150,7 +150,15 @@ class Model:
         return replace(self, parameters=self.parameters + added, uncertainty=None)
 
     def under(self, gravity: Array | None) -> Model:
-        """The model where weight accelerates so, (3,) in base axes [m/s²]; see `Robot.under`."""
+        """The model where weight accelerates so, (3,) in base axes [m/s²]; see `Robot.under`.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+            >>> hanging = model.under(-model.robot.gravity_in_base)
+            >>> hanging.robot.gravity_in_base.tolist()
+            [0.0, 0.0, 9.80665]
+        """
         return self if gravity is None else replace(self, robot=self.robot.under(gravity))
 
     def without(self, effect_id: str) -> Model:
