@@ -226,6 +226,8 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
     if noise.sigma is not None:
         size = float(units.to_si(noise.sigma, noise.unit, "length", where=file.place("noise.unit")))
         sigma = dict.fromkeys(("position", "distance", "shift"), size)
+        if file.settings.displacement.zero == "separate":  # two readings of the gauge
+            sigma["shift"] *= np.sqrt(2.0)
     if noise.rotation is not None:
         turn = float(
             units.to_si(

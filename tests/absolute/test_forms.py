@@ -171,6 +171,10 @@ def test_a_dial_gauge_reads_one_direction(tmp_path: Path) -> None:
     named = {item.effect.id for item in explained.named}
     assert {f"joint_springs:j{k}" for k in range(1, 6)} <= named
     assert not explained.final.wild.any()
+    said = path.with_suffix(".yaml")
+    said.write_text(f"{said.read_text()}displacement: {{zero: separate}}\n")
+    apart = sk.read(path).absolute  # a zero reading of its own: two readings of the gauge
+    assert apart is not None and np.isclose(apart.channels.sigma["shift"], np.sqrt(2.0) * 1e-6)
 
 
 def test_columns_as_the_controller_has_them(tmp_path: Path) -> None:
