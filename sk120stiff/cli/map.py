@@ -297,7 +297,8 @@ def _parts(
         for load, summary in zip(loads, found, strict=True)
     ]
     head = ("load", "softest", "at", "stiffest", "at", "critical factor", "unstable points")
-    parts.append(table("Minimum principal stiffness [N/µm] over the map", head, rows))
+    if any(summary.softest_at for summary in found):
+        parts.append(table("Minimum principal stiffness [N/µm] over the map", head, rows))
     return parts
 
 

@@ -208,7 +208,9 @@ def _parts(
         and uncertainty.deflection is not None
         and uncertainty.deflection.std is not None
     ):
-        rows.append(("  ± (one standard deviation)", *_cells(uncertainty.deflection.std[0]), ""))
+        rows.append(
+            ("  ± (one standard deviation)", *_cells(_seen(uncertainty.deflection.std[0])), "")
+        )
     deflection = table("Deflection [µm]", ["", *axes, "length"], rows)
     besides = "; under this load also: " if found.soft_under_load else ""
     parts: list[object] = [

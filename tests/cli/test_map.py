@@ -142,3 +142,21 @@ def test_positions_are_reached_in_the_branch_of_the_start(run: Run, tmp_path: Pa
     refused = run("map", "motoman_sk120", *GRID, "--start", "0,0,0,0,0,0 deg", "--out", str(out))
     assert refused.code == 2
     assert "--start" in refused.stderr
+
+
+def test_a_map_beyond_reach_says_so_and_can_be_read_again(run, tmp_path) -> None:
+    """A chunk in which nothing is reached holds nothing but NaN, and is written all the same."""
+    options = ("--grid", "x=8:9:1; y=0; z=0 m", "--out", str(tmp_path / "far.zarr"), "--json")
+    for written in (2, 0):
+        outcome = run("map", "motoman_sk120", *options)
+        assert outcome.code == 0, outcome.stderr
+        assert outcome.document["written"] == written
+        assert outcome.document["status"]["out of reach"] == 2
+        assert outcome.document["loads"][0]["softest"] is None
+
+
+def test_nothing_in_reach_is_told(run, tmp_path) -> None:
+    options = ("--grid", "x=8:9:1; y=0; z=0 m", "--out", str(tmp_path / "far.zarr"))
+    said = run("map", "motoman_sk120", *options).stdout
+    assert "2 out of reach" in said and "No point was reached" in said
+    assert "inf" not in said
