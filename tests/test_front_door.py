@@ -7,6 +7,7 @@ import inspect
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from types import FunctionType
 
 import pytest
@@ -100,3 +101,41 @@ def test_a_folder_never_hides_the_verb_of_its_name(before: str) -> None:
 def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="explane"):
         _ = sk.explane
+
+
+def test_every_answer_prints_in_a_line(tmp_path: Path) -> None:
+    """An array of a thousand numbers is no answer to who prints it."""
+    model = sk.base_model(sk.load_robot("ur5e"))
+    pose, load = [0.0, -1.0, 1.0, 0.0, 1.0, 0.0], [0.0, 0.0, -50.0, 0.0, 0.0, 0.0]
+    plan = sk.plan(model, 4, point=[0.0, 0.06, 0.08], force=60.0)
+    made = sk.simulate(model, plan, noise=sk.NoiseModel(1e-5), seed=1)
+    answers = {
+        "N/µm": sk.stiffness(model, pose, load),
+        "µm off before": sk.compensate(model, [pose], [load]),
+        "4 readings, up to": sk.predict(model, made.measurements),
+        "0 outliers": made,
+        "lines of text": sk.export(model, tmp_path / "arm.urdf"),
+    }
+    for told, answer in answers.items():
+        assert told in repr(answer)
+        assert len(repr(answer)) < 200
+
+
+def test_a_load_has_six_numbers_everywhere() -> None:
+    model = sk.base_model(sk.load_robot("ur5e"))
+    pose = [0.0, -1.0, 1.0, 0.0, 1.0, 0.0]
+    for wrong in ([0.0, 0.0, -50.0], [[0.0] * 6] * 3, [0.0, 0.0, float("nan"), 0.0, 0.0, 0.0]):
+        for ask in (
+            lambda load: sk.stiffness(model, pose, load),
+            lambda load: sk.compensate(model, [pose, pose], load),
+            lambda load: model.deflect([pose, pose], load),
+        ):
+            with pytest.raises(sk.InputError, match="wrench"):
+                ask(wrong)
+
+
+def test_a_plan_has_a_positive_force_and_noise() -> None:
+    model = sk.base_model(sk.load_robot("ur5e"))
+    for wrong in ({"force": -1.0}, {"sigma": 0.0}):
+        with pytest.raises(sk.InputError, match="positive"):
+            sk.plan(model, 3, **wrong)

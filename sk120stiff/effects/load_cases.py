@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.robot import Robot, Screws, VirtualJoint
+from sk120stiff.stiffness.wrench import wrenches
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Absolute, Measurements
@@ -194,12 +195,16 @@ def load_case(
     point: ArrayLike | None = None,
     force_point: ArrayLike | None = None,
 ) -> LoadCases:
-    """Readings made of coordinates (N, n) and base-axes wrenches (N, 6) alone."""
+    """Readings made of coordinates (N, n) and base-axes wrenches (N, 6) alone.
+
+    Raises:
+        InputError: Wrenches of another shape, or not finite.
+    """
     coordinates = np.atleast_2d(robot.coordinates(a))
-    load = np.atleast_2d(np.asarray(wrench, dtype=float))
-    count = max(len(coordinates), len(load))
+    one = len(coordinates) == 1
+    count = len(np.atleast_2d(np.asarray(wrench))) if one else len(coordinates)
     coordinates = np.broadcast_to(coordinates, (count, robot.n))
-    load = np.broadcast_to(load, (count, 6))
+    load = wrenches(wrench, count)
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     return LoadCases(
         robot=robot,

@@ -60,6 +60,13 @@ class Exported:
     rows: Sequence[Sequence[object]] = ()
     files: Mapping[str, bytes] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        """The file itself is its `text`."""
+        return (
+            f"<Exported: {len(self.text.splitlines())} lines of text; {len(self.carried)} effects "
+            f"carried, {len(self.left_out)} left out>"
+        )
+
 
 @dataclass(frozen=True)
 class Format:

@@ -34,6 +34,7 @@ from sk120stiff.stiffness import (
     under_load,
 )
 from sk120stiff.stiffness.elastic import ZERO, stiffness_of
+from sk120stiff.stiffness.wrench import wrenches
 
 _WANTED = (BY_POSE | BY_LOAD) - {
     "deflection_equilibrium",
@@ -99,6 +100,14 @@ class LoadedStiffness:
     deflection_equilibrium: Array
     no_deflection: dict[str, str]
 
+    def __repr__(self) -> str:
+        values = ", ".join(f"{1e-6 * value:.4g}" for value in self.principal.values)
+        bent = 1e6 * float(np.linalg.norm(self.deflection_equilibrium))
+        return (
+            f"<LoadedStiffness: principal {values} N/µm; deflection {bent:.4g} µm; "
+            f"K_theta - K_C is {self.definiteness_of_K_theta_minus_K_C}>"
+        )
+
 
 def loaded_stiffness(
     model: Model, a: ArrayLike, wrench: ArrayLike, frame: str | None = None
@@ -112,7 +121,8 @@ def loaded_stiffness(
         frame: Frame whose origin is meant; the tool frame by default.
 
     Raises:
-        InputError: Nothing in the model yields under small loads, or there is no such frame.
+        InputError: Nothing in the model yields under small loads, there is no such frame, or the
+            wrench is no six numbers.
         Refusal: The load is exactly critical: K_θ − K_C is singular.
 
     Warns:
@@ -128,7 +138,7 @@ def loaded_stiffness(
     """
     arm = model_compliance(model, frame)
     arm.warn_of_small_loads()
-    n, load = arm.mechanism.n, np.asarray(wrench, dtype=float)
+    n, load = arm.mechanism.n, wrenches(wrench, 1)[0]
     rows = model.robot.coordinates(a)[None]
     missing: dict[str, str] = {}
     equilibrium = np.full(3, np.nan)

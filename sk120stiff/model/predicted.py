@@ -35,6 +35,11 @@ class Predicted:
     std_remainder: Array | None = None
     blame: tuple[tuple[str, ...], ...] = ()
 
+    def __repr__(self) -> str:
+        largest = 1e6 * float(np.linalg.norm(self.displacement, axis=1).max(initial=0.0))
+        known = "without ±" if self.std_parameters is None else "with ±"
+        return f"<Predicted: {len(self.displacement)} readings, up to {largest:.4g} µm, {known}>"
+
     def __post_init__(self) -> None:
         shape = self.displacement.shape
         for part in (self.std_parameters, self.std_remainder):

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, load_cases_of
+from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.plan.cell import Cell
@@ -53,7 +54,8 @@ def plan(
         seed: Of the poses that are chosen from.
 
     Raises:
-        InputError: Nothing is free, a name is unknown, or no pose is left to choose from.
+        InputError: Nothing is free, a name is unknown, no pose is left to choose from, or force or
+            noise is not positive.
 
     Examples:
         >>> import sk120stiff as sk
@@ -62,6 +64,9 @@ def plan(
         >>> next_readings.n_readings, next_readings.displacement is None
         (6, True)
     """
+    for name, value in (("force", force), ("sigma", sigma)):
+        if not 0.0 < value < np.inf:
+            raise InputError(f"a plan with {name} = {value:g}", remedy="Give a positive number.")
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     pool = feasible_pool(
         model.robot,

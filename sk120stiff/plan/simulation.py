@@ -34,6 +34,9 @@ class Simulated:
     zero_error: Array
     outliers: Mask
 
+    def __repr__(self) -> str:
+        return f"<Simulated: {self.measurements!r}, {int(self.outliers.sum())} outliers>"
+
 
 def simulate(
     model: Model,

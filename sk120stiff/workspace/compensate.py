@@ -19,6 +19,7 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.model import Model, seen_from
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
+from sk120stiff.stiffness.wrench import wrenches
 
 STEPS = 40
 REST = 1e-10  # rad or m: after a correction smaller than this nothing is left to correct
@@ -67,6 +68,15 @@ class Compensation:
     after: Standing
     reasons: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        before, after = (
+            1e6 * float(np.max(where.distance, initial=0.0)) for where in (self.before, self.after)
+        )
+        return (
+            f"<Compensation: {len(self.a)} points, at most {before:.4g} µm off before, "
+            f"{after:.4g} µm after>"
+        )
+
 
 def compensate(
     model: Model,
@@ -105,7 +115,7 @@ def compensate(
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
     given = np.atleast_2d(physical.robot.coordinates(a))
-    load = np.broadcast_to(np.asarray(wrench, dtype=float), (len(given), 6))
+    load = wrenches(wrench, len(given))
     if not np.isfinite(load).all():
         raise InputError("a load is not a finite number", remedy="Check forces and moments.")
     parts = []
@@ -139,7 +149,7 @@ def standing(
     physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
     robot = physical.robot
     a, goal = np.atleast_2d(robot.coordinates(commanded)), np.atleast_2d(robot.coordinates(meant))
-    load = np.broadcast_to(np.asarray(wrench, dtype=float), (len(a), 6))
+    load = wrenches(wrench, len(a))
     return _joined(
         [
             _standing(physical, a[part], load[part], at, _Target.of(robot, goal[part], at))

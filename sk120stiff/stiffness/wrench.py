@@ -1,0 +1,26 @@
+"""Loads as callers give them: six numbers, for all poses or for each."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.arrays import Array
+from sk120stiff.errors import InputError
+
+
+def wrenches(wrench: ArrayLike, count: int) -> Array:
+    """(count, 6) forces [N] and moments [N·m] of one wrench for all poses, or one for each.
+
+    Raises:
+        InputError: Another shape, or a number that is not finite.
+    """
+    load = np.asarray(wrench, dtype=float)
+    if load.shape not in ((6,), (1, 6), (count, 6)):
+        raise InputError(
+            f"{count} poses with wrenches of shape {load.shape}",
+            remedy="Give six numbers, force [N] and moment [N·m], for all poses or for each.",
+        )
+    if not np.isfinite(load).all():
+        raise InputError("a load (wrench) holds a number that is not finite")
+    return np.broadcast_to(load, (count, 6))
