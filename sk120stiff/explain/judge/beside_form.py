@@ -66,16 +66,21 @@ def _settled(
 
     A round may take the noise for larger than stated; the next asks again whether it is.
     """
-    before, freedom = set(names), at.problem.noise.freedom
+    before = set(names)
     for _ in range(ROUNDS):
         tried = under(with_model_form(at))
         found, named = judged(tried, seed=seed, least=MARGIN)
         now = {finding.effect.id for finding in named.findings}
         if now == before:
             break
-        noise = replace(found.final.problem.noise, freedom=freedom)
-        at, before = replace(found.final, problem=replace(found.final.problem, noise=noise)), now
+        at, before = _asked_anew(found.final, at), now
     return found, named, tried.total
+
+
+def _asked_anew(fit: Fit, at: Fit) -> Fit:
+    """The fit with the size of its noise as well known as that of another."""
+    noise = replace(fit.problem.noise, freedom=at.problem.noise.freedom)
+    return replace(fit, problem=replace(fit.problem, noise=noise))
 
 
 def _nearest(found: Selection) -> Effect | None:
