@@ -10,9 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.explain.candidates.regression import Regression
-from sk120stiff.explain.select.beam import HOPELESS, likeliest, promises
+from sk120stiff.explain.select.beam import likeliest, promises
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.explain.select.stepwise import Selection
+
+DECISIVE = 10.0  # difference of scores (BIC: Kass & Raftery 1995) that is worth a sentence
 
 
 def implausible(found: Selection) -> str | None:
@@ -29,7 +31,7 @@ def implausible(found: Selection) -> str | None:
         return None
     best = min(beyond, key=lambda e: tried[e].score)
     believed = min([now.score, *(model.score for model in tried.values() if model.plausible)])
-    if tried[best].score > believed - HOPELESS:
+    if tried[best].score > believed - DECISIVE:
         return None
     return _told(regression, best, tried[best])
 
@@ -46,8 +48,8 @@ def _told(regression: Regression, effect: int, model: Scored) -> str:
     limit = abs(spec.public(regression.plausible[column] * spec.typical))
     bound = "softer than" if spec.reciprocal else "beyond"
     return (
-        f"{law.id} would explain far more than anything believable, but by {spec.name} = "
+        f"{law.id} would explain more than anything believable, but by {spec.name} = "
         f"{value:.3g} {spec.unit}, {bound} what is believed of an arm of this size "
-        f"({limit:.3g} {spec.unit}). Check the units of loads and readings; if the arm is so, take "
-        f"it for granted with --assume {law.id}."
+        f"({limit:.3g} {spec.unit}). Check the units and what was stated of arm and tool; if it is "
+        f"so, take it for granted with --assume {law.id}."
     )
