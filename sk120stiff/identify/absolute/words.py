@@ -10,6 +10,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects import Elastic, Viewpoint
 from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.gauge import Frozen
 from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.identify.uncertainty.known_model import known_estimates
 from sk120stiff.measurements import Measurements
@@ -103,15 +104,24 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     said += _few(found)
     said += [f"{name} cannot be seen: {why}." for name, why in unseen(found).items()]
     said += [f"{joint} never moves: what is beyond it moves as one." for joint in found.still]
-    if found.frozen:
-        some = "1 small error" if len(found.frozen) == 1 else f"{len(found.frozen)} small errors"
-        said.append(f"{some} of geometry cannot be told apart here:")
-        said += _some([f"  {item.sentence()}" for item in found.frozen])
+    if unshown := [item for item in found.frozen if not item.inside]:
+        said.append(f"{_errors(unshown)} show in none of these readings and are left as they are.")
+    if shared := [item for item in found.frozen if item.inside]:
+        said.append(f"{_errors(shared)} cannot be told apart here:")
+        said += _some([f"  {item.sentence()}" for item in shared])
     rows = np.flatnonzero(found.wild)
     if len(rows):
         said.append(f"{len(rows)} rows lie far off all others and were set aside:")
         said += _some([_wild(found, readings, int(row)) for row in rows])
     return said
+
+
+def _errors(frozen: Sequence[Frozen]) -> str:
+    return (
+        "1 small error of geometry"
+        if len(frozen) == 1
+        else (f"{len(frozen)} small errors of geometry")
+    )
 
 
 def _few(found: Calibration) -> list[str]:

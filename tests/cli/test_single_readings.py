@@ -1,0 +1,52 @@
+"""Dial gauges at a loaded arm: one number a reading, along a direction of its own."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sk120stiff import base_model, load_robot
+from sk120stiff.effects import load_case
+from tests.cli.conftest import Run
+
+POINT = np.array([0.0, 0.06, 0.08])
+SIGMA = 5e-6
+
+
+@pytest.fixture
+def gauged(tmp_path: Path) -> str:
+    robot = load_robot("ur5e")
+    model, rng = base_model(robot), np.random.default_rng(1)
+    joints = ",".join(f"{name}[rad]" for name in robot.actuated)
+    rows = [f"pose,{joints},fx[N],fy[N],fz[N],d[mm],ux,uy,uz"]
+    for pose in range(14):
+        a = rng.uniform(-1.4, 1.4, 6)
+        for _ in range(3):
+            load = np.append(rng.uniform(-60.0, 60.0, 3), np.zeros(3))
+            u = rng.normal(size=3)
+            u /= np.linalg.norm(u)
+            bent = model.predict(load_case(robot, a, load, point=POINT))[0] @ u
+            d = 1e3 * (bent + SIGMA * rng.normal())
+            rows.append(f"p{pose}," + ",".join(map(repr, map(float, [*a, *load[:3], d, *u]))))
+    file = tmp_path / "gauge.csv"
+    file.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    file.with_suffix(".yaml").write_text(
+        "robot: ur5e\npoint: {xyz: [0, 60, 80], unit: mm}\nnoise: {sigma: 5, unit: um}\n"
+        "displacement: {zero: separate}\n"
+    )
+    return str(file)
+
+
+def test_springs_come_of_one_number_a_reading(run: Run, gauged: str) -> None:
+    found = run("identify", gauged, "--json")
+    assert found.code == 0, found.stderr
+    truth = base_model(load_robot("ur5e"))
+    for p in found.document["parameters"]:
+        if p["name"].startswith("joint_springs"):
+            assert abs(p["value"] - truth.parameter(p["name"]).value) < 4.0 * p["std"]
+
+
+def test_geometry_that_no_difference_shows_is_told_in_one_line(run: Run, gauged: str) -> None:
+    said = run("identify", gauged).stdout
+    assert "36 small errors of geometry show in none of these readings" in said
+    assert "joint_frame:" not in said
