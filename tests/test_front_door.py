@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from types import FunctionType
 
+import numpy as np
 import pytest
 
 import sk120stiff as sk
@@ -121,10 +122,14 @@ def test_every_answer_prints_in_a_line(tmp_path: Path) -> None:
         assert len(repr(answer)) < 200
 
 
-def test_a_load_has_six_numbers_everywhere() -> None:
+def test_a_load_is_a_wrench_or_a_force_alone_everywhere() -> None:
     model = sk.base_model(sk.load_robot("ur5e"))
     pose = [0.0, -1.0, 1.0, 0.0, 1.0, 0.0]
-    for wrong in ([0.0, 0.0, -50.0], [[0.0] * 6] * 3, [0.0, 0.0, float("nan"), 0.0, 0.0, 0.0]):
+    force, wrench = [3.0, 0.0, -50.0], [3.0, 0.0, -50.0, 0.0, 0.0, 0.0]
+    one, two = (sk.stiffness(model, pose, load) for load in (force, wrench))
+    np.testing.assert_array_equal(one.deflection_equilibrium, two.deflection_equilibrium)
+    np.testing.assert_array_equal(model.deflect(pose, force), model.deflect(pose, wrench))
+    for wrong in ([0.0, -50.0], [[0.0] * 6] * 3, [0.0, 0.0, float("nan"), 0.0, 0.0, 0.0]):
         for ask in (
             lambda load: sk.stiffness(model, pose, load),
             lambda load: sk.compensate(model, [pose, pose], load),

@@ -1,4 +1,4 @@
-"""Loads as callers give them: six numbers, for all poses or for each."""
+"""Loads as callers give them: force and moment, or a force alone, for all poses or for each."""
 
 from __future__ import annotations
 
@@ -12,14 +12,19 @@ from sk120stiff.errors import InputError
 def wrenches(wrench: ArrayLike, count: int) -> Array:
     """(count, 6) forces [N] and moments [N·m] of one wrench for all poses, or one for each.
 
+    Three numbers are a force without a moment.
+
     Raises:
         InputError: Another shape, or a number that is not finite.
     """
     load = np.asarray(wrench, dtype=float)
+    if load.ndim and load.shape[-1] == 3:
+        load = np.concatenate([load, np.zeros_like(load)], axis=-1)
     if load.shape not in ((6,), (1, 6), (count, 6)):
         raise InputError(
-            f"{count} poses with wrenches of shape {load.shape}",
-            remedy="Give six numbers, force [N] and moment [N·m], for all poses or for each.",
+            f"{count} poses with wrenches of shape {np.shape(wrench)}",
+            remedy="Give force [N] and moment [N·m], six numbers, or a force alone, three, for all "
+            "poses or for each.",
         )
     if not np.isfinite(load).all():
         raise InputError("a load (wrench) holds a number that is not finite")
