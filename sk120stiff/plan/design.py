@@ -148,7 +148,7 @@ def refuse_count(pool: Pool, count: int, loads: int | None) -> None:
     sizes = np.sort(np.bincount(pool.pose))[::-1]
     if count < 1 or loads < 1 or count > len(sizes) or sizes[count - 1] < loads:
         raise InputError(
-            f"{count} poses with {loads} load{'s' * (loads > 1)} each cannot be chosen from "
+            f"{count} poses with {loads} load{'s' if loads > 1 else ''} each cannot be chosen from "
             f"candidates at {len(sizes)} poses with up to {sizes[0]} loads",
             remedy="Ask for fewer, or give the rig more directions or steps.",
         )
