@@ -155,7 +155,6 @@ def loaded_stiffness(
             "K_θ − K_C is singular: this load is exactly critical and the deflection has no bound",
             remedy="Lower the load.",
         )
-    load = np.pad(load, (0, 6 - len(load)))  # a force alone has no moment
     screws = arm.mechanism.screws(found.of("coordinates"), arm.point)
     C_theta, own = arm.compliance_at(rows).reshape(-1, n, n)[0], arm.weight_at(rows)
     stable = CLASSES[int(found.of("stiffness_class"))]
