@@ -5,19 +5,21 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
 from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
-from sk120stiff.effects import CATALOGUE, Catalogue
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.advise.best_guess import contenders
 from sk120stiff.explain.advise.consequences import completed
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
-from sk120stiff.explain.judge.attribution import MISSPECIFICATION, judged
+from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
 from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
+from sk120stiff.explain.judge.beside_suspect import complete_account
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.posterior import doubted, one_more
 from sk120stiff.explain.judge.remainder import Remainder, remainder_of
@@ -39,6 +41,14 @@ LEFT_OVER = 0.2  # share of the named signature that may remain unexplained befo
 TOLD = 2  # sentences on where the remainder lives
 
 Progress = Callable[[str, float], None]
+
+
+class Under(Protocol):
+    """Makes a selection under one noise model, with or without one more effect in the model."""
+
+    def __call__(self, chosen: NoiseModel, beside: Effect | None = None) -> Selection:
+        """The selection."""
+        ...
 
 
 def explain(
@@ -85,16 +95,27 @@ def explain(
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
     exact, at, standing = not found.final.exceeds, base, set[str]()
+    account = None
     if exact:
         exactly = unless_imitating(*judged(found, seed=options.seed), options.seed)
-        left = _adequacy(exactly[0], noise)
-        exact = not _too_much(left, MISSPECIFICATION if exactly[1].misspecified else LEFT_OVER)
+        exact = _explains(*exactly, noise)
         at = held_against(noise, exactly[0].final)
         standing = {effect.id for effect in exactly[0].effects}
     if exact:
         found, named = exactly
     else:
         found, named = beside_model_form(at, under, names=standing, seed=options.seed)
+        account = complete_account(
+            base,
+            found,
+            named,
+            under=lambda effect: under(noise, effect),
+            beside_form=under,
+            complete=lambda tried, said: _explains(tried, said, noise),
+            seed=options.seed,
+        )
+        if account is not None:
+            found, named = account.selection, account.named
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     remainder = remainder_of(_as_written(found.final, noise))
@@ -111,7 +132,8 @@ def explain(
         left.refuse_contradicted(str(measurements.path or "the measurements"))
     if remainder.significant:
         lives = where_sentences(localise(held_against(noise, found.final)))
-        remainder = replace(remainder, where=lives[1 : 1 + TOLD])
+        told = () if account is None else (account.sentence(),)
+        remainder = replace(remainder, where=(*told, *lives[1:])[:TOLD])
     fallen = named.doubted if verdict == "outside" else ()
     suspects, guess = contenders(found, fallen, seed=options.seed)
     answer = Explanation(
@@ -180,18 +202,18 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
 
 def _selections(
     model: Model, measurements: Measurements, options: Options, catalogue: Catalogue
-) -> Callable[[NoiseModel], Selection]:
-    """Selections at an answer, as a function of the noise."""
+) -> Under:
+    """Selections at an answer, as a function of the noise and of what joins the base model."""
     base_model = with_assumed(model, measurements, options.assume, catalogue)
     candidates = candidates_for(base_model, measurements, options, catalogue)
     plain = tuple(effect for effect in candidates if not effect.random_effects)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
-    def under(chosen: NoiseModel) -> Selection:
+    def under(chosen: NoiseModel, beside: Effect | None = None) -> Selection:
         # Constants of single poses are what a shared zero brings; it need not have been separate.
         # Beside model-form error they are part of it.
         return select(
-            base_model,
+            base_model if beside is None else base_model + beside,
             measurements,
             chosen,
             plain if chosen.form or (undescribed and chosen.zero == "separate") else candidates,
@@ -228,6 +250,14 @@ def _adequacy(found: Selection, noise: NoiseModel) -> Adequacy:
 def _as_written(final: Fit, noise: NoiseModel) -> Fit:
     """The fit that goes into files: by the noise as stated, beside model-form error if there is."""
     return final if final.problem.noise.form else held_against(noise, final)
+
+
+def _explains(found: Selection, named: Named, noise: NoiseModel) -> bool:
+    """Do these names leave no more than names may leave?"""
+    if found.final.exceeds:
+        return False
+    left = _adequacy(found, noise)
+    return not _too_much(left, MISSPECIFICATION if named.misspecified else LEFT_OVER)
 
 
 def _too_much(left: Adequacy, allowed: float) -> bool:

@@ -228,7 +228,7 @@ def _stronger(found: Selection, finding: Finding, before: list[Finding]) -> Find
     """
     gain = np.sqrt(max(finding.evidence.misfit_gain, 0.0))
     for other in before:
-        if gain < _of_one_gear(finding, other) * np.sqrt(other.evidence.misfit_gain):
+        if gain < _of_one_gear(finding, other) * np.sqrt(max(other.evidence.misfit_gain, 0.0)):
             return other
         share = other.effect.inexact
         if (

@@ -257,7 +257,7 @@ def line_up(look: Look) -> Lineup:
     )
 
 
-def _ranked(look: Look, lineup: Lineup, known: Array) -> list[tuple[Suspicion, int]]:
+def ranked(look: Look, lineup: Lineup, known: Array) -> list[tuple[Suspicion, int]]:
     """Suspects with their places in the line-up, the strongest first.
 
     `known` (3N, k) is an orthonormal basis of what is in the model already. Shares are of the whole
@@ -286,17 +286,17 @@ def _ranked(look: Look, lineup: Lineup, known: Array) -> list[tuple[Suspicion, i
 def _suspicions(look: Look) -> tuple[tuple[Suspicion, ...], tuple[Suspicion, ...]]:
     """All suspects, the strongest first; and the others once the strongest is in the model."""
     lineup = line_up(look)
-    ranked = _ranked(look, lineup, look.inside)
-    shown = _to_show([suspicion for suspicion, _ in ranked])
+    order = ranked(look, lineup, look.inside)
+    shown = _to_show([suspicion for suspicion, _ in order])
     alone = tuple(
         _with_picture(s, lineup.suspects[k], lineup.reading[k], look) if number in shown else s
-        for number, (s, k) in enumerate(ranked)
+        for number, (s, k) in enumerate(order)
     )
     if not alone or not alone[0].seen:
         return alone, ()
-    first = orthonormal(lineup.white[:, lineup.parts[ranked[0][1]]])
+    first = orthonormal(lineup.white[:, lineup.parts[order[0][1]]])
     known = orthonormal(np.hstack([look.inside, first]))
-    return alone, tuple(suspicion for suspicion, _ in _ranked(look, lineup, known))
+    return alone, tuple(suspicion for suspicion, _ in ranked(look, lineup, known))
 
 
 def _suspicion(

@@ -1,0 +1,210 @@
+"""Names beside a cause that has none: one suspect joins the model with free factors of its own.
+
+Where the laws of the catalogue leave something over, what is left may all go with one thing that
+`localise` suspects: the load in axes of the base, the angle of a joint. As nuisance parameters of
+the model it does for the foreign cause what no name can, and if nothing is left then beyond the
+noise, the names that stand beside it were not asked to imitate it. Such an account is complete; it
+takes the place of names that were judged beside an error of unknown form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Effect, LoadCases
+from sk120stiff.effects.base import ReadingError
+from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.errors import Refusal
+from sk120stiff.explain.candidates.regression import Regression, regression_at
+from sk120stiff.explain.judge.attribution import (
+    Fallen,
+    Named,
+    judged,
+    with_the_strongest,
+)
+from sk120stiff.explain.judge.beside_form import Try, unless_imitating, with_model_form
+from sk120stiff.explain.localise.places import line_up, look_at, ranked
+from sk120stiff.explain.localise.suspects import suspects_of
+from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.stepwise import Selection, refit
+from sk120stiff.identify import Fit, fit, yardstick
+from sk120stiff.model import Model
+
+TRIED = 1  # suspects, of those that come nearest to the gap of the springs and of the names
+NARROW = 4  # models kept by the search that tells which suspect is worth a whole one
+LEFT = 1.5  # times the noise's variance: what names may leave, before any law is exact
+INSIDE = 0.3  # share of its length below which an effect is part of a suspect
+WIDEST = 0.1  # m; no factor moves a reading by more
+SMALLEST = 1e-6  # of the largest singular value: what columns have of their own
+
+
+@dataclass(frozen=True, eq=False)
+class Nuisance(ReadingError):
+    """A suspect's free factors as parameters: orthogonal combinations of its columns.
+
+    Attributes:
+        suspect: Its name.
+        model: The base model, whose predictions the suspect may go with.
+        factors: (k, P) combinations of its k columns, each 1 m rms long in the readings fitted.
+    """
+
+    suspect: str = field(kw_only=True)
+    model: Model = field(kw_only=True)
+    factors: Array = field(kw_only=True)
+    name: ClassVar[str] = "nuisance"
+    says: ClassVar[str] = "Something without a name is at work."
+
+    @property
+    def parameters(self) -> tuple[ParameterSpec, ...]:
+        """Size of every combination, rms of the readings fitted."""
+        return tuple(
+            ParameterSpec(f"factor_{k}", "m", "m", plausible=WIDEST, typical=1e-5)
+            for k in range(self.factors.shape[1])
+        )
+
+    @cached_property
+    def generators(self) -> Array:
+        """It does not depend on the displacement."""
+        return np.zeros((self.factors.shape[1], 3, 3))
+
+    @cached_property
+    def _known(self) -> dict[int, tuple[LoadCases, Array]]:
+        return {}
+
+    def offsets(self, load_cases: LoadCases) -> Array:
+        """The suspect's columns at these readings, base axes."""
+        if id(load_cases) not in self._known:
+            columns = _columns(self.suspect, self.model, load_cases) @ self.factors
+            self._known[id(load_cases)] = load_cases, columns
+        return self._known[id(load_cases)][1]
+
+
+def _columns(suspect: str, model: Model, load_cases: LoadCases) -> Array:
+    every = suspects_of(model, load_cases, model.predict(load_cases))
+    return next(each.columns for each in every if each.name == suspect)
+
+
+def nuisance(suspect: str, base: Fit) -> Nuisance:
+    """A suspect as parameters of the model of a fit."""
+    columns = _columns(suspect, base.model, base.problem.load_cases)
+    flat = columns.reshape(-1, columns.shape[2]) / np.sqrt(columns[..., 0].size)
+    _, size, right = np.linalg.svd(flat, full_matrices=False)
+    seen = size > SMALLEST * size[0]
+    factors = right[seen].T / size[seen]
+    return Nuisance("", suspect=suspect, model=base.model, factors=factors)
+
+
+@dataclass(frozen=True)
+class Account:
+    """Names, and the suspect beside which they leave nothing but noise.
+
+    Attributes:
+        selection: The names beside model-form error, without the suspect.
+        named: What was said of each name beside the suspect.
+        suspect: Completes the sentence "The gap goes with ...".
+    """
+
+    selection: Selection
+    named: Named
+    suspect: str
+
+    def sentence(self) -> str:
+        """Where the remainder lives."""
+        beside = "with that beside the names" if self.named.findings else "with that in the model"
+        return f"It goes with {self.suspect}: {beside}, nothing is left beyond the noise."
+
+
+def complete_account(
+    at: Fit,
+    found: Selection,
+    named: Named,
+    *,
+    under: Callable[[Effect], Selection],
+    beside_form: Try,
+    complete: Callable[[Selection, Named], bool],
+    seed: int,
+) -> Account | None:
+    """The likeliest account by names and one suspect that leaves noise alone; None: there is none.
+
+    A suspect that holds a candidate, or is the free form of its law, says what the candidate says:
+    it is not tried.
+
+    Args:
+        at: Fit of the base model under the noise of the readings.
+        found, named: What was named beside model-form error.
+        under: Makes a selection beside an effect of the base model, under the noise as stated.
+        beside_form: Makes a selection under one noise model.
+        complete: Nothing is left that noise does not explain.
+        seed: Of folds and resampling.
+    """
+    suspects = {name: nuisance(name, at) for name in _nearest(at, found)}
+    scores = {name: _at_best(at, each, found.regression) for name, each in suspects.items()}
+    suspect = min(scores, key=lambda name: scores[name], default=None)
+    if suspect is None or scores[suspect] == np.inf:
+        return None
+    try:
+        tried, said = judged(under(suspects[suspect]), seed=seed)
+    except Refusal:
+        return None
+    if not complete(tried, said):
+        return None
+    _, said = unless_imitating(tried, said, seed)
+    effects = [finding.effect for finding in said.findings]
+    beside = beside_form(with_model_form(refit(at, effects)))
+    kept = with_the_strongest(beside, effects)
+    stand = {effect.id for effect in kept.effects}
+    findings = tuple(each for each in said.findings if each.effect.id in stand)
+    return Account(kept, Named(findings, (*_fallen(named, stand, suspect), *said.fallen)), suspect)
+
+
+def _nearest(at: Fit, found: Selection) -> list[str]:
+    """Suspects that come nearest to what springs leave, and to what names leave."""
+    free = {e.id for e in found.regression.candidates} | {
+        e.name for e in found.regression.candidates
+    }
+    out: list[str] = []
+    for each in (at, found.final):
+        look = look_at(each, yardstick(each))
+        lineup = line_up(look)
+        order = [k for _, k in ranked(look, lineup, look.inside)]
+        allowed = [
+            lineup.suspects[k].name for k in order if not free & set(lineup.suspects[k].frees)
+        ]
+        out += [name for name in allowed[:TRIED] if name not in out]
+    return out
+
+
+def _at_best(at: Fit, beside: Nuisance, candidates: Regression) -> float:
+    """Score of the best names beside a suspect, infinite where they leave far more than noise."""
+    problem = at.problem
+    try:
+        base = fit(at.model + beside, problem.measurements, noise=problem.noise)
+    except Refusal:
+        return float(np.inf)
+    ids = [effect.id for effect in base.model.effects]
+    regression = regression_at(
+        base, candidates.candidates, ids, alpha=candidates.alpha, prior=candidates.prior
+    )
+    best = beam_search(regression, width=NARROW)[0]
+    left = best.solved.rss / max(regression.rows - len(best.solved.columns), 1)
+    return float(np.inf) if regression.sigma_known and left > LEFT else best.score
+
+
+def _fallen(named: Named, stand: set[str], suspect: str) -> tuple[Fallen, ...]:
+    """Why names no longer stand, and why others never did."""
+    before = tuple(each for each in named.fallen if each.id not in stand)
+    return before + tuple(
+        Fallen(
+            finding.effect.id,
+            f"{finding.effect.id} fits, but beside {suspect} nothing is left for it; it is not "
+            "named.",
+        )
+        for finding in named.findings
+        if finding.effect.id not in stand
+    )

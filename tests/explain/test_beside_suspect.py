@@ -1,0 +1,57 @@
+"""A known cause beside one that the catalogue lacks: both have their place in the model."""
+
+import numpy as np
+import pytest
+
+from sk120stiff import Model, base_model, load_robot
+from sk120stiff.effects import load_cases_of
+from sk120stiff.explain import explain
+from sk120stiff.explain.judge.beside_suspect import nuisance
+from sk120stiff.identify import fit
+from tests.explain.readings import NOISE, base_fit, hidden
+from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
+
+TEETH = PeriodicGear("joint_2_l", {"share": 0.2}, {"count": 1, "phase": 1.0})
+GEAR = GearHardening("joint_1_s", {"cubic": 0.8}, {"T": 700.0})
+TOLD = "with that beside the names, nothing is left beyond the noise"
+
+
+@pytest.fixture(scope="module")
+def springs() -> Model:
+    model = base_model(load_robot("motoman_sk120"))
+    assert model is not None
+    return model
+
+
+def test_free_factors_are_the_columns_of_the_suspect():
+    """Whatever a suspect can do to the readings, its parameters do, and nothing else."""
+    base = base_fit(hidden(TEETH, poses=8, loads=4))
+    load_cases = base.problem.load_cases
+    free = nuisance("the load in axes of the base", base)
+    force = load_cases.wrench[:, :3]
+    columns = np.einsum("ij,nk->nijk", np.eye(3), force).reshape(-1, 9)
+    made = free.offsets(load_cases).reshape(len(columns), -1)
+    assert np.allclose(np.sqrt((made**2).mean(axis=0)), 1.0)
+    assert np.allclose(made.T @ made / len(made), np.eye(9), atol=1e-9)
+    left = columns - made @ (made.T @ columns) / len(made)
+    assert np.abs(left).max() < 1e-9 * np.abs(columns).max()
+
+
+def test_a_suspect_takes_from_a_fit_what_it_stands_for():
+    """A gear that is softer at some angles: the fit beside the suspect holds to the noise."""
+    readings = hidden(TEETH)
+    base = base_fit(readings)
+    angle = "the position of joint_2_l, on which a drive's stiffness may depend"
+    beside = fit(base.model + nuisance(angle, base), readings, noise=NOISE)
+    assert base.exceeds and not beside.exceeds
+    cases = load_cases_of(base.model.robot, readings)
+    assert beside.model.predict(cases).shape == readings.displacement.shape
+
+
+def test_a_name_stands_beside_a_cause_without_one(springs):
+    """Gear 1 stiffens, gear 2 is softer at some angles: the first is named, the second told."""
+    answer = explain(springs, hidden(GEAR, TEETH))
+    assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
+    assert answer.remainder.significant
+    assert "the position of joint_2_l" in answer.remainder.where[0]
+    assert TOLD in answer.remainder.where[0]
