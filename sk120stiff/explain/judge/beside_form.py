@@ -56,7 +56,19 @@ def beside_model_form(
             beside = found, named, total
         if beside[2] < total:
             found, named, _ = beside
-    return unless_imitating(found, named, seed)
+    found, named = unless_imitating(found, named, seed)
+    return (found, named) if named.findings else _by_itself(found, named, seed)
+
+
+def _by_itself(found: Selection, named: Named, seed: int) -> tuple[Selection, Named]:
+    """The likeliest candidate alone, where names that were found together have all fallen."""
+    nearest = _nearest(found)
+    if nearest is None or nearest.id in {each.id for each in named.fallen}:
+        return found, named
+    alone = judged(with_the_strongest(found, [nearest]), seed=seed, least=MARGIN)
+    single, said = unless_imitating(*alone, seed)
+    fallen = (*named.fallen, *said.fallen)
+    return (single, Named(said.findings, fallen)) if said.findings else (found, named)
 
 
 def _settled(
