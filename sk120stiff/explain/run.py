@@ -19,7 +19,7 @@ from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
 from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
 from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
-from sk120stiff.explain.judge.beside_suspect import complete_account
+from sk120stiff.explain.judge.beside_suspect import Account, complete_account
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.posterior import doubted, one_more
 from sk120stiff.explain.judge.remainder import Remainder, remainder_of
@@ -94,28 +94,7 @@ def explain(
     found, noise = best_selection(used, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
-    exact, at, standing = not found.final.exceeds, base, set[str]()
-    account = None
-    if exact:
-        exactly = unless_imitating(*judged(found, seed=options.seed), options.seed)
-        exact = _explains(*exactly, noise)
-        at = held_against(noise, exactly[0].final)
-        standing = {effect.id for effect in exactly[0].effects}
-    if exact:
-        found, named = exactly
-    else:
-        found, named = beside_model_form(at, under, names=standing, seed=options.seed)
-        account = complete_account(
-            base,
-            found,
-            named,
-            under=lambda effect: under(noise, effect),
-            beside_form=under,
-            complete=lambda tried, said: _explains(tried, said, noise),
-            seed=options.seed,
-        )
-        if account is not None:
-            found, named = account.selection, account.named
+    found, named, account = _judged(found, base, under, seed=options.seed)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     remainder = remainder_of(_as_written(found.final, noise))
@@ -165,6 +144,37 @@ def explain(
     )
     tell("what these readings cannot tell", 0.85)
     return completed(answer, found.regression, seed=options.seed, cell=options.cell)
+
+
+def _judged(
+    found: Selection, base: Fit, under: Under, *, seed: int
+) -> tuple[Selection, Named, Account | None]:
+    """The names that stand: against noise alone, else beside model-form error or one suspect.
+
+    Args:
+        found: What the search settled on.
+        base: The base model, held against the noise of the readings.
+        under: Makes a selection.
+        seed: Of folds and resampling.
+    """
+    noise, at, standing = base.problem.noise, base, set[str]()
+    if not found.final.exceeds:
+        exactly = unless_imitating(*judged(found, seed=seed), seed)
+        if _explains(*exactly, noise):
+            return *exactly, None
+        at = held_against(noise, exactly[0].final)
+        standing = {effect.id for effect in exactly[0].effects}
+    found, named = beside_model_form(at, under, names=standing, seed=seed)
+    account = complete_account(
+        base,
+        found,
+        named,
+        under=lambda effect: under(noise, effect),
+        beside_form=under,
+        complete=lambda tried, said: not tried.final.exceeds and _explains(tried, said, noise),
+        seed=seed,
+    )
+    return (found, named, None) if account is None else (account.selection, account.named, account)
 
 
 def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:
@@ -254,8 +264,6 @@ def _as_written(final: Fit, noise: NoiseModel) -> Fit:
 
 def _explains(found: Selection, named: Named, noise: NoiseModel) -> bool:
     """Do these names leave no more than names may leave?"""
-    if found.final.exceeds:
-        return False
     left = _adequacy(found, noise)
     return not _too_much(left, MISSPECIFICATION if named.misspecified else LEFT_OVER)
 

@@ -39,7 +39,6 @@ from sk120stiff.model import Model
 TRIED = 1  # suspects, of those that come nearest to the gap of the springs and of the names
 NARROW = 4  # models kept by the search that tells which suspect is worth a whole one
 LEFT = 1.5  # times the noise's variance: what names may leave, before any law is exact
-INSIDE = 0.3  # share of its length below which an effect is part of a suspect
 WIDEST = 0.1  # m; no factor moves a reading by more
 SMALLEST = 1e-6  # of the largest singular value: what columns have of their own
 
