@@ -1,10 +1,13 @@
 """A known cause beside one that the catalogue lacks: both have their place in the model."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import load_cases_of
+from sk120stiff.errors import InputError
 from sk120stiff.explain import explain
 from sk120stiff.explain.judge.beside_suspect import nuisance
 from sk120stiff.identify import fit
@@ -35,6 +38,17 @@ def test_free_factors_are_the_columns_of_the_suspect():
     assert np.allclose(made.T @ made / len(made), np.eye(9), atol=1e-9)
     left = columns - made @ (made.T @ columns) / len(made)
     assert np.abs(left).max() < 1e-9 * np.abs(columns).max()
+
+
+def test_what_other_readings_do_not_tell_moves_nothing_there():
+    """One stays with the readings it was found in: an order, branches, a joint that moved."""
+    readings = hidden(TEETH, poses=8, loads=4)
+    free = nuisance("the order of the readings", base_fit(readings))
+    robot = base_fit(readings).model.robot
+    unordered = load_cases_of(robot, replace(readings, order=None, zero_order=None))
+    assert not free.offsets(unordered).any()
+    with pytest.raises(InputError, match="do not tell of the moon"):
+        nuisance("the moon", base_fit(readings))
 
 
 def test_a_suspect_takes_from_a_fit_what_it_stands_for():

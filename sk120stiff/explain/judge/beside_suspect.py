@@ -20,7 +20,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, LoadCases
 from sk120stiff.effects.base import ReadingError
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.errors import Refusal
+from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.judge.attribution import (
     Fallen,
@@ -77,21 +77,29 @@ class Nuisance(ReadingError):
         return {}
 
     def offsets(self, load_cases: LoadCases) -> Array:
-        """The suspect's columns at these readings, base axes."""
+        """The suspect's columns at these readings, base axes; zero where they do not tell it."""
         if id(load_cases) not in self._known:
-            columns = _columns(self.suspect, self.model, load_cases) @ self.factors
-            self._known[id(load_cases)] = load_cases, columns
+            columns = _columns(self.suspect, self.model, load_cases)
+            if columns is None:
+                columns = np.zeros((load_cases.count, 3, len(self.factors)))
+            self._known[id(load_cases)] = load_cases, columns @ self.factors
         return self._known[id(load_cases)][1]
 
 
-def _columns(suspect: str, model: Model, load_cases: LoadCases) -> Array:
+def _columns(suspect: str, model: Model, load_cases: LoadCases) -> Array | None:
     every = suspects_of(model, load_cases, model.predict(load_cases))
-    return next(each.columns for each in every if each.name == suspect)
+    return next((each.columns for each in every if each.name == suspect), None)
 
 
 def nuisance(suspect: str, base: Fit) -> Nuisance:
-    """A suspect as parameters of the model of a fit."""
+    """A suspect as parameters of the model of a fit.
+
+    Raises:
+        InputError: The readings of the fit do not tell of it.
+    """
     columns = _columns(suspect, base.model, base.problem.load_cases)
+    if columns is None:
+        raise InputError(f"these readings do not tell of {suspect}")
     flat = columns.reshape(-1, columns.shape[2]) / np.sqrt(columns[..., 0].size)
     _, size, right = np.linalg.svd(flat, full_matrices=False)
     seen = size > SMALLEST * size[0]

@@ -153,7 +153,9 @@ def _fitted_with(base: Fit, effects: Sequence[Effect]) -> Fit:
         return solve(problem)
     bounds = (problem.bounds[0] * size, problem.bounds[1] * size)
     try:  # from the best first-order values, most of them on their bounds, it is not far
-        return solve_near(problem, lsq_linear(jacobian / size, -residual, bounds).x / size)
+        with np.errstate(invalid="ignore"):  # scipy asks how far it is to a bound at infinity
+            start = lsq_linear(jacobian / size, -residual, bounds).x / size
+        return solve_near(problem, start)
     except Refusal:
         return solve(problem)
 
