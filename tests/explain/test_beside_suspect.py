@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
-from sk120stiff.effects import load_cases_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import explain
-from sk120stiff.explain.judge.beside_suspect import nuisance
+from sk120stiff.explain.judge.beside_suspect import _holds, nuisance
+from sk120stiff.explain.select.stepwise import select
 from sk120stiff.identify import fit
 from tests.explain.readings import NOISE, base_fit, hidden
 from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
@@ -60,6 +61,21 @@ def test_a_suspect_takes_from_a_fit_what_it_stands_for():
     assert base.exceeds and not beside.exceeds
     cases = load_cases_of(base.model.robot, readings)
     assert beside.model.predict(cases).shape == readings.displacement.shape
+
+
+def test_a_suspect_that_holds_a_name_is_known_by_its_columns(springs):
+    """A misread displacement holds a tracker that is turned, and no gear."""
+    readings = hidden(TEETH, poses=8, loads=4)
+    robot = springs.robot
+    wanted = [
+        effect(robot, "reading_rotation", "tracker"),
+        effect(robot, "gear_hardening", "joint_1_s"),
+    ]
+    found = select(springs, readings, NOISE, wanted, max_effects=0, alpha=0.01)
+    free = nuisance("a misread displacement in reading axes", found.base)
+    by_id = {each.id: each for each in found.regression.candidates}
+    assert _holds(free, by_id["reading_rotation:tracker"], found)
+    assert not _holds(free, by_id["gear_hardening:joint_1_s"], found)
 
 
 def test_a_name_stands_beside_a_cause_without_one(springs):

@@ -34,11 +34,13 @@ from sk120stiff.explain.localise.suspects import suspects_of
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit, fit, yardstick
+from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.model import Model
 
 TRIED = 1  # suspects, of those that come nearest to the gap of the springs and of the names
 NARROW = 4  # models kept by the search that tells which suspect is worth a whole one
 LEFT = 1.5  # times the noise's variance: what names may leave, before any law is exact
+INSIDE = 0.3  # share of its length below which an effect is part of a suspect
 WIDEST = 0.1  # m; no factor moves a reading by more
 SMALLEST = 1e-6  # of the largest singular value: what columns have of their own
 
@@ -139,8 +141,8 @@ def complete_account(
 ) -> Account | None:
     """The likeliest account by names and one suspect that leaves noise alone; None: there is none.
 
-    A suspect that holds a candidate, or is the free form of its law, says what the candidate says:
-    it is not tried.
+    A suspect that holds a name, or is the free form of a candidate's law, says what that says. It
+    is not tried.
 
     Args:
         at: Fit of the base model under the noise of the readings.
@@ -151,30 +153,47 @@ def complete_account(
         seed: Of folds and resampling.
     """
     suspects = {name: nuisance(name, at) for name in _nearest(at, found)}
-    scores = {name: _at_best(at, each, found.regression) for name, each in suspects.items()}
+    names = [finding.effect for finding in named.findings]
+    scores = {
+        name: _at_best(at, each, found.regression)
+        for name, each in suspects.items()
+        if not any(_holds(each, known, found) for known in names)
+    }
     suspect = min(scores, key=lambda name: scores[name], default=None)
     if suspect is None or scores[suspect] == np.inf:
         return None
     try:
         tried, said = judged(under(suspects[suspect]), seed=seed)
+        if not complete(tried, said):
+            return None
+        _, said = unless_imitating(tried, said, seed)
+        effects = [finding.effect for finding in said.findings]
+        beside = beside_form(with_model_form(refit(at, effects)))
     except Refusal:
         return None
-    if not complete(tried, said):
-        return None
-    _, said = unless_imitating(tried, said, seed)
-    effects = [finding.effect for finding in said.findings]
-    beside = beside_form(with_model_form(refit(at, effects)))
     kept = with_the_strongest(beside, effects)
     stand = {effect.id for effect in kept.effects}
     findings = tuple(each for each in said.findings if each.effect.id in stand)
     return Account(kept, Named(findings, (*_fallen(named, stand, suspect), *said.fallen)), suspect)
 
 
+def _holds(suspect: Nuisance, effect: Effect, found: Selection) -> bool:
+    """Does a suspect do what an effect does, beyond what the base model can?"""
+    regression, problem = found.regression, found.final.problem
+    load_cases = problem.load_cases
+    read = np.swapaxes(load_cases.reading_axes, 1, 2) @ suspect.offsets(load_cases)
+    place = next(e for e, each in enumerate(regression.candidates) if each.id == effect.id)
+    base = orthonormal(regression.X[:, regression.base])
+    own, free = regression.X[:, regression.columns[place]], problem.whitener.apply(read)
+    own, free = own - base @ (base.T @ own), free - base @ (base.T @ free)
+    inside = orthonormal(free)
+    left = own - inside @ (inside.T @ own)
+    return bool((left**2).sum() < INSIDE**2 * (own**2).sum())
+
+
 def _nearest(at: Fit, found: Selection) -> list[str]:
     """Suspects that come nearest to what springs leave, and to what names leave."""
-    free = {e.id for e in found.regression.candidates} | {
-        e.name for e in found.regression.candidates
-    }
+    free = {name for e in found.regression.candidates for name in (e.id, e.name)}
     out: list[str] = []
     for each in (at, found.final):
         look = look_at(each, yardstick(each))
