@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 import sk120stiff as sk
@@ -46,18 +44,3 @@ def test_a_name_that_many_readings_show_is_sure_though_another_spring_may_be_the
     assert linear.noise(()) > 1.1
     assert linear.score((0,), 1.0) - linear.score((), linear.noise(())) > 300.0
     assert alternatives(linear, (0,), 0) == ((), 1.0)
-
-
-def test_a_load_moves_only_what_yields() -> None:
-    """A payload is no cause on an arm without springs, and goes with the last of them."""
-    robot = sk.load_robot("ur5e")
-    spring = sk.effect(robot, "joint_springs", robot.actuated[1])
-    linear = replace(
-        seen(np.eye(60)[:, :2], np.zeros(60), stated=True),
-        candidates=(spring, sk.effect(robot, "payload")),
-    )
-    rigid = replace(linear, rigid=True)
-    assert linear.may_join(()) == [0, 1] and rigid.may_join(()) == [0]
-    assert rigid.may_join((0,)) == [1]
-    assert linear.less((0, 1), 0) == (1,) and rigid.less((0, 1), 0) == ()
-    assert rigid.less((0, 1), 1) == (0,)

@@ -136,7 +136,6 @@ def linear_at(
         row=rows,
         fold=fold[rows],
         stated=seen.fit.sigma_known,
-        rigid=not any(isinstance(effect, Elastic) for effect in base.fit.model.effects),
     )
     return linear, tuple(hidden)
 

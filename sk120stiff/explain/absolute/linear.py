@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import Effect, Elastic, LoadError
+from sk120stiff.effects import Effect
 
 FAINT = 1e-9  # share of a column left beside the base below which it is rounding
 
@@ -37,7 +37,6 @@ class Linear:
         stated: The size of the noise was stated.
         independent: How many independent numbers what is left amounts to; None: all of them.
         smooth: Share of the variance left that is an error of the model, smooth over the joints.
-        rigid: Nothing in the base model yields.
     """
 
     residual: Array
@@ -52,7 +51,6 @@ class Linear:
     stated: bool
     independent: float | None = None
     smooth: float = 0.0
-    rigid: bool = False
 
     @cached_property
     def sums(self) -> Array:
@@ -86,22 +84,13 @@ class Linear:
         }
 
     def may_join(self, chosen: tuple[int, ...]) -> list[int]:
-        """Candidates that are not chosen and change something beside those that are."""
+        """Candidates that are not chosen; what bends a spring only where that is."""
         others = (e for e in range(len(self.candidates)) if e not in chosen)
-        return [e for e in others if self._shows(e, chosen)]
-
-    def _shows(self, e: int, chosen: tuple[int, ...]) -> bool:
-        """Only a spring that is there is bent, and a load moves only what yields."""
-        if self.bent.get(e, e) not in (e, *chosen):
-            return False
-        if not (self.rigid and isinstance(self.candidates[e], LoadError)):
-            return True
-        return any(isinstance(self.candidates[c], Elastic) for c in chosen)
+        return [e for e in others if self.bent.get(e, e) in (e, *chosen)]
 
     def less(self, chosen: tuple[int, ...], e: int) -> tuple[int, ...]:
-        """The chosen without one, and without what changes nothing without it."""
-        rest = tuple(c for c in chosen if c != e)
-        return tuple(c for c in rest if self._shows(c, rest))
+        """The chosen without one, and without what bends it."""
+        return tuple(c for c in chosen if c != e and self.bent.get(c) != e)
 
     def picked(self, chosen: tuple[int, ...]) -> Index:
         """Columns of the chosen candidates, numbered behind those of the base."""
