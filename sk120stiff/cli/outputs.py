@@ -20,13 +20,13 @@ def will_show(page: Path | None, option: str = "--page") -> None:
     Raises:
         InputError: Its name does not end in .html, or it cannot be written.
     """
+    will_write(page, option)
     if page is not None and page.suffix.lower() not in (".html", ".htm"):
         raise InputError(
             f"a browser opens pages, and {page.name} does not end in .html",
             where=option,
             remedy=f"Name it like {page.stem}.html; a browser prints it as PDF.",
         )
-    will_write(page, option)
 
 
 def will_draw(*wanted: object) -> None:

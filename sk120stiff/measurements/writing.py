@@ -131,7 +131,12 @@ def columns_of(
 
 def _shortest(si: float, unit: str) -> float:
     """A length without the rounding of its unit: 0.015 mm, not 0.015000000000000001."""
-    return si if unit == "m" else float(f"{float(units.from_si(si, unit, 'length')):.15g}")
+    if unit == "m":
+        return si
+    whole = float(units.from_si(si, unit, "length"))
+    short = float(f"{whole:.15g}")
+    back = float(units.to_si(short, unit, "length"))
+    return short if abs(back - si) <= 2.0 * np.spacing(si) else whole
 
 
 def _zero_columns(m: Measurements) -> Iterable[_Column]:

@@ -56,8 +56,9 @@ def beside_model_form(
             beside = found, named, total
         if beside[2] < total:
             found, named, _ = beside
+    stood = bool(named.findings)
     found, named = unless_imitating(found, named, seed)
-    return (found, named) if named.findings else _by_itself(found, named, seed)
+    return _by_itself(found, named, seed) if stood and not named.findings else (found, named)
 
 
 def _by_itself(found: Selection, named: Named, seed: int) -> tuple[Selection, Named]:
