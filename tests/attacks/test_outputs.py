@@ -21,7 +21,8 @@ def test_an_input_is_never_replaced(run, desk: Path, attack: str) -> None:
     before = content(desk)
     outcome = run(*words_of(attack))
     assert (outcome.code, outcome.stdout) == (2, "")
-    assert "Choose another" in outcome.stderr or "a name of its own" in outcome.stderr
+    remedies = ("Choose another", "a name of its own", "does not end in .html. Name it like")
+    assert any(remedy in outcome.stderr for remedy in remedies)
     assert content(desk) == before
 
 
@@ -59,12 +60,12 @@ def test_an_include_of_a_xacro_is_an_input(run, desk: Path) -> None:
     xacro = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
     inside = '<link name="a"/><link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
     inside += '<child link="b"/><axis xyz="0 0 1"/></joint>'
-    (desk / "part.xacro").write_text(xacro.format(inside))
-    (desk / "arm.xacro").write_text(xacro.format('<xacro:include filename="part.xacro"/>'))
+    (desk / "part.html").write_text(xacro.format(inside))
+    (desk / "arm.xacro").write_text(xacro.format('<xacro:include filename="part.html"/>'))
     before = content(desk)
-    outcome = run("view", "arm.xacro", "--static", "part.xacro")
+    outcome = run("view", "arm.xacro", "--static", "part.html")
     assert outcome.code == 2
-    assert "would overwrite part.xacro" in outcome.stderr
+    assert "would overwrite part.html" in outcome.stderr
     assert content(desk) == before
     assert run("view", "arm.xacro", "--static", "scene.html").code == 0
 
