@@ -90,7 +90,7 @@ def test_what_is_not_identifiable_has_no_number(readings) -> None:
 
 def test_what_is_printed_is_one_short_line(readings, found) -> None:
     for item in (readings, found, found.model, found.model.robot, sk.CATALOGUE):
-        assert "\n" not in repr(item) and len(repr(item)) < 600, repr(item)
+        assert "\n" not in repr(item) and len(repr(item)) < 500, repr(item)
     assert repr(found).startswith("<Fit: 17.2 µm rms; joint_springs:joint_1_s.stiffness 1.357e+06")
     assert repr(found.model) == (
         "<Model of motoman_sk120: joint_springs at joint_1_s, joint_2_l, joint_3_u>"

@@ -145,18 +145,12 @@ def check_sheet(sheet: Path | None) -> None:
     """Complain of a sheet that cannot be written, before the work.
 
     Raises:
-        InputError: Its name does not end in .html.
+        InputError: See `will_show`.
         MissingPart: What draws is not installed.
     """
-    from sk120stiff.cli.outputs import will_draw
+    from sk120stiff.cli.outputs import will_draw, will_show
 
-    if sheet is not None and sheet.suffix.lower() not in (".html", ".htm"):
-        raise InputError(
-            f"the sheet is a page, and {sheet.name} does not end in .html",
-            where="--sheet",
-            remedy="Name it like sheet.html; a browser prints it as PDF, on A4.",
-        )
-    will_write(sheet, "--sheet")
+    will_show(sheet, "--sheet")
     will_draw(sheet)
 
 

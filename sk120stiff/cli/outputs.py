@@ -22,10 +22,11 @@ def will_show(page: Path | None, option: str = "--page") -> None:
     """
     will_write(page, option)
     if page is not None and page.suffix.lower() not in (".html", ".htm"):
+        wrong = "would overwrite" if page.exists() else "cannot be named"
         raise InputError(
-            f"a browser opens pages, and {page.name} does not end in .html",
+            f"a page {wrong} {page.name}, which does not end in .html: a browser would not open it",
             where=option,
-            remedy=f"Name it like {page.stem}.html; a browser prints it as PDF.",
+            remedy=f"Choose another name, like {page.stem}.html; a browser prints it as PDF.",
         )
 
 

@@ -51,6 +51,7 @@ from sk120stiff.errors import InputError, warn
 from sk120stiff.robot import Robot
 
 GROUP = "sk120stiff.effects"  # of the entry points by which packages bring effects
+PRINTED = 12  # names that a print of a catalogue has
 
 OWN: tuple[type[Effect], ...] = (
     JointSprings,
@@ -146,7 +147,9 @@ class Catalogue:
         return hash(tuple(self))
 
     def __repr__(self) -> str:
-        return f"Catalogue({', '.join(self.names)})"
+        shown = self.names[:PRINTED]
+        more = len(self.names) - len(shown)
+        return f"Catalogue({', '.join([*shown, *([f'and {more} more'] if more else [])])})"
 
     def effect(
         self, robot: Robot, name: str, where: str | None = None, options: Options | None = None

@@ -21,8 +21,7 @@ def test_an_input_is_never_replaced(run, desk: Path, attack: str) -> None:
     before = content(desk)
     outcome = run(*words_of(attack))
     assert (outcome.code, outcome.stdout) == (2, "")
-    remedies = ("Choose another", "a name of its own", "does not end in .html. Name it like")
-    assert any(remedy in outcome.stderr for remedy in remedies)
+    assert "Choose another" in outcome.stderr or "a name of its own" in outcome.stderr
     assert content(desk) == before
 
 
@@ -56,16 +55,17 @@ def test_a_file_keeps_its_permissions(run, desk: Path) -> None:
     assert (desk / "p.csv").stat().st_mode & 0o777 == 0o640
 
 
-def test_an_include_of_a_xacro_is_an_input(run, desk: Path) -> None:
+@pytest.mark.parametrize("part", ["part.xacro", "part.html"])
+def test_an_include_of_a_xacro_is_an_input(run, desk: Path, part: str) -> None:
     xacro = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
     inside = '<link name="a"/><link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
     inside += '<child link="b"/><axis xyz="0 0 1"/></joint>'
-    (desk / "part.html").write_text(xacro.format(inside))
-    (desk / "arm.xacro").write_text(xacro.format('<xacro:include filename="part.html"/>'))
+    (desk / part).write_text(xacro.format(inside))
+    (desk / "arm.xacro").write_text(xacro.format(f'<xacro:include filename="{part}"/>'))
     before = content(desk)
-    outcome = run("view", "arm.xacro", "--static", "part.html")
+    outcome = run("view", "arm.xacro", "--static", part)
     assert outcome.code == 2
-    assert "would overwrite part.html" in outcome.stderr
+    assert f"would overwrite {part}" in outcome.stderr
     assert content(desk) == before
     assert run("view", "arm.xacro", "--static", "scene.html").code == 0
 
