@@ -22,7 +22,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.cli.compensate_words import root_mean_square
 from sk120stiff.cli.opening import model_file
 from sk120stiff.errors import InputError, warn
-from sk120stiff.files import read_bytes, will_write, write_atomically
+from sk120stiff.files import read_bytes, write_atomically
 from sk120stiff.model import Model, typical_parameters
 from sk120stiff.programs import Language
 from sk120stiff.programs.bad_targets import refuse_bad_targets

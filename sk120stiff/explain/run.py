@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 
@@ -29,7 +28,7 @@ from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
 from sk120stiff.explain.priors import FURTHER_IMPOSTOR, IMPOSTOR
-from sk120stiff.explain.select.best_selection import best_selection, held_against
+from sk120stiff.explain.select.best_selection import Try, best_selection, held_against
 from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import Fit, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
@@ -41,14 +40,6 @@ LEFT_OVER = 0.2  # share of the named signature that may remain unexplained befo
 TOLD = 2  # sentences on where the remainder lives
 
 Progress = Callable[[str, float], None]
-
-
-class Under(Protocol):
-    """Makes a selection under one noise model, with or without one more effect in the model."""
-
-    def __call__(self, chosen: NoiseModel, beside: Effect | None = None) -> Selection:
-        """The selection."""
-        ...
 
 
 def explain(
@@ -147,7 +138,7 @@ def explain(
 
 
 def _judged(
-    found: Selection, base: Fit, under: Under, *, seed: int
+    found: Selection, base: Fit, under: Try, *, seed: int
 ) -> tuple[Selection, Named, Account | None]:
     """The names that stand: against noise alone, else beside model-form error or one suspect.
 
@@ -169,8 +160,7 @@ def _judged(
         base,
         found,
         named,
-        under=lambda effect: under(noise, effect),
-        beside_form=under,
+        under=under,
         complete=lambda tried, said: not tried.final.exceeds and _explains(tried, said, noise),
         seed=seed,
     )
@@ -212,7 +202,7 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
 
 def _selections(
     model: Model, measurements: Measurements, options: Options, catalogue: Catalogue
-) -> Under:
+) -> Try:
     """Selections at an answer, as a function of the noise and of what joins the base model."""
     base_model = with_assumed(model, measurements, options.assume, catalogue)
     candidates = candidates_for(base_model, measurements, options, catalogue)

@@ -9,7 +9,7 @@ that the size is estimated from anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import replace
 
 from sk120stiff.effects import Effect
@@ -18,6 +18,7 @@ from sk120stiff.explain.judge.attribution import MARGIN, Fallen, Named, judged, 
 from sk120stiff.explain.judge.imitation import imitated
 from sk120stiff.explain.judge.outweighed import outweighed
 from sk120stiff.explain.judge.posterior import NONE, one_more
+from sk120stiff.explain.select.best_selection import Try
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
@@ -26,8 +27,6 @@ from sk120stiff.measurements.model_form import ModelForm
 
 ROUNDS = 3  # of estimating, searching and judging
 WORTH = 2.0  # gain in -2 ln L by which structure has to beat noise that is merely larger
-
-Try = Callable[[NoiseModel], Selection]
 
 
 def beside_model_form(

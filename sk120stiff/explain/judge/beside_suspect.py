@@ -28,10 +28,11 @@ from sk120stiff.explain.judge.attribution import (
     judged,
     with_the_strongest,
 )
-from sk120stiff.explain.judge.beside_form import Try, unless_imitating, with_model_form
+from sk120stiff.explain.judge.beside_form import unless_imitating, with_model_form
 from sk120stiff.explain.localise.places import line_up, look_at, ranked
 from sk120stiff.explain.localise.suspects import suspects_of
 from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.best_selection import Try
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit, fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
@@ -134,8 +135,7 @@ def complete_account(
     found: Selection,
     named: Named,
     *,
-    under: Callable[[Effect], Selection],
-    beside_form: Try,
+    under: Try,
     complete: Callable[[Selection, Named], bool],
     seed: int,
 ) -> Account | None:
@@ -147,8 +147,7 @@ def complete_account(
     Args:
         at: Fit of the base model under the noise of the readings.
         found, named: What was named beside model-form error.
-        under: Makes a selection beside an effect of the base model, under the noise as stated.
-        beside_form: Makes a selection under one noise model.
+        under: Makes a selection.
         complete: Nothing is left that noise does not explain.
         seed: Of folds and resampling.
     """
@@ -163,12 +162,12 @@ def complete_account(
     if suspect is None or scores[suspect] == np.inf:
         return None
     try:
-        tried, said = judged(under(suspects[suspect]), seed=seed)
+        tried, said = judged(under(at.problem.noise, suspects[suspect]), seed=seed)
         if not complete(tried, said):
             return None
         _, said = unless_imitating(tried, said, seed)
         effects = [finding.effect for finding in said.findings]
-        beside = beside_form(with_model_form(refit(at, effects)))
+        beside = under(with_model_form(refit(at, effects)))
     except Refusal:
         return None
     kept = with_the_strongest(beside, effects)

@@ -9,18 +9,25 @@ with the finest noise that instruments have, and finds none.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
+from sk120stiff.effects import Effect
 from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
 from sk120stiff.identify.fit import with_values
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.measurements.noise import FINEST
 
-Try = Callable[[NoiseModel], Selection]
+
+class Try(Protocol):
+    """Makes a selection under one noise model, with or without one more effect in the model."""
+
+    def __call__(self, noise: NoiseModel, beside: Effect | None = None, /) -> Selection:
+        """The selection."""
+        ...
 
 
 def best_selection(measurements: Measurements, under: Try) -> tuple[Selection, NoiseModel]:
