@@ -102,8 +102,9 @@ def explain(
         left.refuse_contradicted(str(measurements.path or "the measurements"))
     if remainder.significant:
         lives = where_sentences(localise(held_against(noise, found.final)))
-        told = () if account is None else (account.sentence(),)
-        remainder = replace(remainder, where=(*told, *lives[1:])[:TOLD])
+        if account is not None:  # of another suspect in its place no more need be said
+            lives = (*lives[:1], account.sentence())
+        remainder = replace(remainder, where=lives[1 : 1 + TOLD])
     fallen = named.doubted if verdict == "outside" else ()
     suspects, guess = contenders(found, fallen, seed=options.seed)
     answer = Explanation(
