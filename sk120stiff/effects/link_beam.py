@@ -24,6 +24,7 @@ from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, 
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
 TAPERS = (-0.5, 0.0, 0.3, 0.6)  # that are tried; below zero: stouter towards the far end
+FINER = (-0.5, -0.25, 0.0, 0.15, 0.3, 0.45, 0.6, 0.75)  # once the readings show a taper
 STATIONS = 0.5 + np.array([-1.0, 0.0, 1.0]) * np.sqrt(0.15)  # Gauss and Legendre's, from 0 to 1
 SHAFT = np.deg2rad(15.0)  # largest angle between a link and the axis of the shaft that it is
 BRACKET = np.deg2rad(45.0)  # the same where the link's near end may be a stiff bracket
@@ -116,6 +117,7 @@ class LinkBending(LinearElastic):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Bending stiffness EI, or one for each plane."""
         along = ", along the axis of the next joint" if self.roll else ""
+        line = "_roll_axis" if self.roll else ""
         return tuple(
             compliance(
                 f"EI{plane}{self._law}",
@@ -126,20 +128,32 @@ class LinkBending(LinearElastic):
                 meaning="bending stiffness of the uniform beam whose end a moment turns as far"
                 + along
                 + (f", {plane[1:].replace('_', ' ')} in which the joint turns" if plane else ""),
+                quantity=f"EI{plane}{line}",  # whatever the taper
             )
             for plane in ([f"_{each}" for each in PLANES] if self.planes else [""])
         )
 
     def other_laws(self, load_cases: LoadCases) -> tuple[LinkBending, ...]:
-        """Other tapers, a beam along the roll axis where there is one, planes that differ."""
+        """Other tapers, a beam along the roll axis where there is one, planes that differ.
+
+        Where the readings asked for another taper than the usual one, those next to it count too.
+        """
         along = [False, True] if _roll_member(load_cases.robot, self.where) else [False]
         laws = [
             replace(self, taper=taper, roll=roll, planes=planes)
             for planes in (False, True)
             for roll in along
-            for taper in TAPERS
+            for taper in self._tapers
         ]
         return tuple(law for law in laws if law != self)
+
+    @property
+    def _tapers(self) -> tuple[float, ...]:
+        """Tapers of this law and of those beside it, ascending."""
+        if self.taper == TAPER or self.taper not in FINER:
+            return TAPERS
+        place = FINER.index(self.taper)
+        return tuple(sorted({*TAPERS, *FINER[max(place - 1, 0) : place + 2]}))
 
     def _member(self, robot: Robot) -> Member:
         found = _roll_member(robot, self.where) if self.roll else None

@@ -25,6 +25,8 @@ class ParameterSpec:
         plausible: Internal magnitude above which the value is no explanation, however well it fits.
         typical: Internal magnitude worth telling from zero; scales numerics and detectable sizes.
         meaning: What the public value says, in words: along which axis, and what its sign means.
+        quantity: What it measures, by one name under every law of its effect that has it; empty:
+            no other law does, or it has the same name there.
     """
 
     name: str
@@ -36,6 +38,7 @@ class ParameterSpec:
     lower: float = -np.inf
     upper: float = np.inf
     meaning: str = ""
+    quantity: str = ""
 
     def public(self, internal: float) -> float:
         """The value as people write it; infinite stiffness where nothing yields."""
@@ -89,6 +92,7 @@ def compliance(
     meaning: str,
     unit: str = "N*m/rad",
     signed: bool = False,
+    quantity: str = "",
 ) -> ParameterSpec:
     """A compliance that people give as a stiffness.
 
@@ -99,6 +103,7 @@ def compliance(
         meaning: What the stiffness resists.
         unit: ``N*m/rad``, ``N/m`` or ``N*m**2`` (beams).
         signed: May be negative (a cross term).
+        quantity: See `ParameterSpec`.
     """
     inverse, power = _STIFFNESS[unit]
     return ParameterSpec(
@@ -110,4 +115,5 @@ def compliance(
         reciprocal=True,
         lower=-np.inf if signed else 0.0,
         meaning=meaning,
+        quantity=quantity,
     )

@@ -46,6 +46,11 @@ class Parameter:
         return f"{self.effect.id}.{self.spec.name}"
 
     @property
+    def quantity(self) -> str:
+        """What it measures, under every law of its effect: ``effect:where.quantity``."""
+        return f"{self.effect.id}.{self.spec.quantity or self.spec.name}"
+
+    @property
     def value(self) -> float:
         """The value as people write it, in `spec.unit`."""
         return self.spec.public(self.internal)

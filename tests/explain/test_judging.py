@@ -248,7 +248,8 @@ def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
 
 
 def test_what_the_law_of_a_beam_leaves_over_is_no_second_cause(springs):
-    beam = LinkBending("link_2_l", {"flexibility": 4e-7}, {"taper": 0.5})
+    """Its taper lies between two that are tried."""
+    beam = LinkBending("link_2_l", {"flexibility": 8e-7}, {"taper": 0.52})
     answer = explain(springs, hidden(beam, sigma=4e-6))
     assert [finding.effect.id for finding in answer.findings] == ["link_bending:link_2_l"]
     assert "the law of link_bending:link_2_l leaves over" in " ".join(answer.unnamed)
@@ -288,3 +289,24 @@ def test_another_law_that_the_readings_refute_leaves_no_doubt(springs):
     assert answer.final.selection_uncertainty is not None
     spring = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
     assert spring.internal_std < 0.05 * spring.internal
+
+
+@pytest.mark.parametrize(("flexibility", "doubted"), [(4e-7, False), (2e-7, True)])
+def test_a_beams_stiffness_is_as_uncertain_as_its_taper(springs, flexibility, doubted):
+    """What turns the end as far under a moment means the same whatever the beam's shape.
+
+    The larger bend tells its taper, between the two that were looked at first.
+    """
+    beam = LinkBending("link_2_l", {"flexibility": flexibility}, {"taper": 0.45})
+    answer = explain(springs, hidden(beam, sigma=10e-6))
+    assert [finding.effect.id for finding in answer.findings] == ["link_bending:link_2_l"]
+    doubt = answer.final.selection_uncertainty
+    assert doubt is not None
+    ((moved, stiffness),) = (  # in its plane it bends as the spring of joint 2 yields
+        (moved, p)
+        for moved, p in zip(doubt, answer.final.parameters, strict=True)
+        if p.spec.quantity == "EI_out_of_plane"
+    )
+    assert bool(moved > 0.0) is doubted
+    assert ("taper_45" in stiffness.name) is not doubted
+    assert abs(stiffness.internal - flexibility) < 2.0 * stiffness.internal_std

@@ -28,6 +28,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import COUNTED, frames_off
 from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.identify.fit import with_values
+from sk120stiff.model import Parameter
 
 Block = tuple[Effect, Array, Array]  # a law, usual sizes (p,) and columns (M, p) of its parameters
 Laws = dict[int, list[Block]]  # of a candidate, the usual one first
@@ -106,7 +107,7 @@ def beside_laws(
             doubt[name] = max(doubt[name], abs(there[name] - here[name]))
     fit = final.fit
     more = [
-        0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.name, 0.0) for p in fit.parameters
+        0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.quantity, 0.0) for p in fit.parameters
     ]
     moved = np.array(more) / fit.problem.scale
     return replace(final, fit=with_values(replace(fit, selection_uncertainty=moved)))
@@ -115,7 +116,7 @@ def beside_laws(
 def _at_rest(
     linear: Linear, chosen: tuple[int, ...], noise: float, load_cases: LoadCases
 ) -> dict[str, float]:
-    """Values of the chosen by name; of a spring that a law bends the whole compliance at rest."""
+    """Values of the chosen by quantity; of a spring that a law bends the compliance at rest."""
     values = linear.values(chosen, noise)
     for e, spring in linear.bent.items():
         if {e, spring} <= set(chosen):
@@ -123,7 +124,10 @@ def _at_rest(
             bends = np.array([values[f"{effect.id}.{spec.name}"] for spec in effect.parameters])
             slope = bent_at_no_load(effect, load_cases, bends)
             values[f"{linear.candidates[spring].id}.{own.name}"] += slope
-    return values
+    named = [
+        Parameter(linear.candidates[e], s) for e in chosen for s in linear.candidates[e].parameters
+    ]
+    return {parameter.quantity: values[parameter.name] for parameter in named}
 
 
 def _others(

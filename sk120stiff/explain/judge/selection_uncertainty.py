@@ -39,7 +39,7 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
         findings: The named effects with their alternatives.
     """
     final = found.final
-    place = {parameter.name: k for k, parameter in enumerate(final.parameters)}
+    place = {parameter.quantity: k for k, parameter in enumerate(final.parameters)}
     moves = np.zeros(len(final.x))
     here = _at_no_load(final)
     for effects, must_fit in _others(found, findings):
@@ -50,8 +50,8 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
         if must_fit and 2.0 * (final.log_likelihood - other.log_likelihood) > REFUTED:
             continue
         for parameter, value in zip(other.parameters, _at_no_load(other), strict=True):
-            if parameter.name in place:
-                k = place[parameter.name]
+            if parameter.quantity in place:
+                k = place[parameter.quantity]
                 moves[k] = max(moves[k], abs(value - here[k]))
     if found.base.problem.noise.form:
         moves = np.hypot(moves, moved_by_a_foreign_cause(final, remainder_of(final).rms))
