@@ -30,6 +30,7 @@ ANGLES = (0, 4, 5)  # of `COLUMNS`; the others are lengths
 UNITS = tuple("deg" if k in ANGLES else "mm" for k in range(len(COLUMNS)))
 PUBLIC = np.array([np.degrees(1.0) if k in ANGLES else 1e3 for k in range(len(COLUMNS))])
 _STEP = 1e-6  # rad or m, of the derivatives
+_NOTHING = 1e-14  # rad or m, what products of rotations leave of zero
 _ROUNDING = 1e-8  # of a derivative that is none
 
 
@@ -84,6 +85,7 @@ def table_of(model: Model, geometry: Geometry) -> Table:
         return np.concatenate([found, [[0.0, z, x, y, 0.0, 0.0]]])
 
     values = rows(geometry.shift)
+    values = np.where(np.abs(values) < _NOTHING, 0.0, values)
     std = None
     if model.uncertainty is not None:
         L, B = model.uncertainty.factors(model.names)

@@ -138,6 +138,13 @@ def test_what_the_readings_do_not_show_has_no_standard_error() -> None:
     assert any("do not show" in note for note in made.notes)
 
 
+@pytest.mark.parametrize("convention", ["standard", "modified"])
+def test_a_number_that_is_zero_is_written_as_zero(convention: str) -> None:
+    made = exported(base_model(public("ur5_robot.urdf")), "dh")
+    table = np.array([numbers(row) for row in rows_of(made, convention)])
+    assert not ((table != 0.0) & (np.abs(table) < 1e-14)).any()
+
+
 def test_no_uncertainty_no_errors() -> None:
     model = replace(miscalibrated("ur5_robot.urdf"), uncertainty=None)
     made = exported(model, "dh")

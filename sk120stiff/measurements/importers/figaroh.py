@@ -22,8 +22,7 @@ class Figaroh:
 
     def sniff(self, source: Source) -> Guess:
         """Columns x1, y1 ... in the header."""
-        rows = source.grid.rows[:1] if source.role == "points" and not source.columns else ()
-        names = [unit_of_header(cell)[0] for row in rows for cell in row]
+        names = _headers(source) if source.role == "points" else []
         if not {"x", "y", "z"} & set(names) and any(_MARKER.fullmatch(name) for name in names):
             return Guess(0.9, "columns x1, y1, z1")
         return NO
@@ -34,7 +33,7 @@ class Figaroh:
         Raises:
             InputError: The marker is not there, incomplete, or one of several and nobody chose.
         """
-        headers = [unit_of_header(cell)[0] for cell in source.grid.rows[0]]
+        headers = _headers(source)
         number = _chosen(
             source, sorted({int(m[2]) for h in headers if (m := _MARKER.fullmatch(h))})
         )
@@ -58,6 +57,12 @@ class Figaroh:
             raise InputError("no marker is in this file", where=str(source.path))
         said = (f"Marker {number} is read.",) if source.marker else ()
         return sheet_of(source, layout, self.title, "columns x1, y1, z1", notes=said)
+
+
+def _headers(source: Source) -> list[str]:
+    """Names of the columns without units: as told, else the first row."""
+    cells = source.columns or next(iter(source.grid.rows), ())
+    return [unit_of_header(cell)[0] for cell in cells]
 
 
 def _chosen(source: Source, markers: list[int]) -> int:

@@ -25,6 +25,7 @@ NEEDED = {
         ("measured x", "measured y", "measured z"),
         ("nominal x", "nominal y", "nominal z"),
         ("dx", "dy", "dz"),
+        ("loaded x", "loaded y", "loaded z"),
     ),
     "joints": (("joint 1",), ("joint 0",)),
     "loads": (("fx", "fy", "fz"), ("payload",), ("load",)),
@@ -110,7 +111,7 @@ def _laid_out(
     if first < len(grid.rows) and _is_units(grid.rows[first]):
         for k, cell in enumerate(grid.rows[first][: len(units)]):
             text = cell.strip("[]()")
-            if text and units[k] is None:
+            if text.lower() not in BLANK and units[k] is None:
                 units[k], places[k] = text, f"line {grid.lines[first]}"
         first += 1
     above = [
@@ -140,7 +141,7 @@ def _measured(
 
 
 def _is_units(row: tuple[str, ...]) -> bool:
-    cells = [cell.strip("[]()") for cell in row if cell]
+    cells = [c for cell in row if (c := cell.strip("[]()")).lower() not in BLANK]
     return bool(cells) and not any(map(is_number, cells)) and all(map(is_unit, cells))
 
 
@@ -284,7 +285,9 @@ def sheet_by_order(
 
 
 def _is_needed(meaning: str) -> bool:
-    return meaning.startswith(("joint ", "nominal ", "deviation ", "tcp ")) or meaning in {
+    return meaning.startswith(
+        ("joint ", "nominal ", "deviation ", "tcp ", "loaded ", "unloaded ")
+    ) or meaning in {
         *POSITION, "dx", "dy", "dz", "fx", "fy", "fz", "mx", "my", "mz", "payload", "load",
     }  # fmt: skip
 

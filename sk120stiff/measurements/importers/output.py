@@ -51,7 +51,7 @@ def settings_for(
         said = "The markers sit where the file says (TCP)."
     elif fitted is not None and fitted.marker_fitted:
         xyz = fitted.marker
-        shown = ", ".join(f"{1e3 * v:.1f}" for v in xyz)
+        shown = ", ".join(f"{round(1e3 * float(v), 1) + 0.0:.1f}" for v in xyz)
         said = (
             f"The marker sits, and the load acts, at ({shown}) mm in the tool frame: the best "
             "place for these positions."

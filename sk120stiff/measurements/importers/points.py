@@ -44,7 +44,8 @@ class Points:
             raise InputError(
                 "this file holds joint values, and no positions",
                 where=str(source.path),
-                remedy="Give the file with the points as FILE, and this one as --joints-file.",
+                remedy="Give the file with the points as FILE, and this one as --joints-file."
+                + _others(alone),
             )
         if layout is None:
             count, named, _ = shaped(source)
@@ -73,6 +74,19 @@ class Points:
 def _joints_alone(source: Source) -> Layout | None:
     """The table of joints in a file of points that names no positions."""
     return layout_of(replace(source, role="joints")) if source.role == "points" else None
+
+
+def _others(joints: Layout) -> str:
+    """What to do if the positions, displacements or distances stand in the columns left over."""
+    pairs = zip(joints.headers, joints.meanings, strict=True)
+    left = [h for h, m in pairs if h and not (m and m[0].startswith("joint "))]
+    if not left:
+        return ""
+    return (
+        f" If they stand in this file ({', '.join(left)}), name all columns with --columns: x,y,z "
+        "for positions, dx,dy,dz for displacements, a dash for what is not needed. Distances to "
+        "fixed points need no import: docs/FILES.md shows their file (l[mm],ax[m],ay[m],az[m])."
+    )
 
 
 def _refuse_some_coordinates(source: Source, joints: Layout) -> None:

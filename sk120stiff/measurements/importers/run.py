@@ -22,6 +22,7 @@ from sk120stiff.measurements.importers.contract import Column, Formats, Role, Sh
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
 from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
+from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
 from sk120stiff.measurements.importers.told import Mode, Told
@@ -181,7 +182,7 @@ def _sheet(
             continue
         more = opened(Source(path, source.actuated, role))
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
-    return sheet
+    return unfolded(sheet)
 
 
 def opened(source: Source) -> Source:

@@ -7,8 +7,15 @@ import re
 from sk120stiff import units
 
 _AXIS = r"(?P<a>[xyz])"
+_FREE = "unloaded|no load|without load|unbelastet|ohne last|sans charge"
+_PUSHED = "loaded|with load|under load|belastet|mit last|avec charge"
+_MOVED = (
+    "displacement|deflection|disp|verschiebung|verformung|auslenkung|d[eé]placement|d[eé]formation|"
+    "spostamento|desplazamiento"
+)
+_FORCE = "force|kraft|forza|fuerza"
 _AXES = {
-    "": rf"(?:(?:pos(?:ition)?|[ck]oord(?:inate)?|point|marker) )?{_AXIS}"
+    "": rf"(?:(?:p|pos(?:ition)?|[ck]oord(?:inate)?|point|marker) ?)?{_AXIS}"
     r"(?: (?:[ck]oord(?:inate)?|pos(?:ition)?|value|wert))?",
     "measured ": rf"(?:meas(?:ured)?|act(?:ual)?|ist|tracker) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:meas(?:ured)?|act(?:ual)?|ist|tracker)",
@@ -16,12 +23,15 @@ _AXES = {
     rf"|{_AXIS.replace('a>', 'b>')} (?:nom(?:inal)?|t|target|soll|theo\w*|cmd)",
     "deviation ": rf"(?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta)",
-    "d": rf"d ?{_AXIS}|(?:displacement|deflection|disp) {_AXIS.replace('a>', 'b>')}",
+    "unloaded ": rf"(?:{_FREE}) {_AXIS}|{_AXIS.replace('a>', 'b>')} (?:{_FREE})",
+    "loaded ": rf"(?:{_PUSHED}) {_AXIS}|{_AXIS.replace('a>', 'b>')} (?:{_PUSHED})",
+    "d": rf"d ?{_AXIS}|(?:{_MOVED}) {_AXIS.replace('a>', 'b>')}"
+    rf"|{_AXIS.replace('a>', 'c>')} (?:{_MOVED})",
     "u95 ": rf"(?:u ?95|exp(?:anded)? unc(?:ertainty)?) ?{_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} ?u ?95",
     "s": rf"(?:s|sd|std(?: dev)?|sigma|u|unc(?:ertainty)?) ?{_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:sigma|std|sd|unc(?:ertainty)?)",
-    "f": rf"(?:f|force) ?{_AXIS}|{_AXIS.replace('a>', 'b>')} force",
+    "f": rf"(?:f|{_FORCE}) ?{_AXIS}|{_AXIS.replace('a>', 'b>')} (?:{_FORCE})",
     "m": rf"(?:m|moment) ?{_AXIS}",
     "tcp ": rf"(?:tcp|tool) ?{_AXIS}",
     "orientation ": rf"(?:phi|rot(?:ation)?|r) ?{_AXIS}\d?",
@@ -30,7 +40,7 @@ _AXES = {
 _PATTERNS = {prefix: re.compile(pattern) for prefix, pattern in _AXES.items()}
 _NAMES = {
     "name": "name|id|point|point id|point name|target|target name|pt|tag|tag name|label|punkt|"
-    "punktname|punktnummer|point no|nr|no|object|object name|feature|feature name|index",
+    "punktname|punktnummer|messpunkt|point no|nr|no|object|object name|feature|feature name|index",
     "group": "group|group name|point group|tag group",
     "collection": "collection|collection name",
     "order": "order|step order|seq|sequence|measurement order",
@@ -83,8 +93,9 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
     """Meaning of a column's name without its unit, and the factor of its numbers; None: unknown.
 
     ``x y z`` positions; ``measured x``, ``nominal x``, ``deviation x``; ``dx`` displacements;
-    ``sx`` standard uncertainties; ``fx mx payload load`` loads; ``tcp x`` the marker in the tool
-    frame; ``qw``, ``orientation ...`` turns; ``joint 3``; and labels.
+    ``unloaded x``, ``loaded x`` both of a pose; ``sx`` standard uncertainties; ``fx mx payload
+    load`` loads; ``tcp x`` the marker in the tool frame; ``qw``, ``orientation ...``
+    turns; ``joint 3``; and labels.
     """
     if name in actuated:
         return f"joint {actuated.index(name) + 1}", 1.0

@@ -7,7 +7,7 @@ import pytest
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.drafting import Draft, paired_loads
-from tests.measurements.importers.reading import draft_of
+from tests.measurements.importers.reading import draft_of, sheet_of
 
 JOINTS = ("shoulder", "slide")
 UNITS = {"length": "mm", "angle": "deg"}
@@ -113,3 +113,11 @@ def test_bad_files_are_refused(
         read(tmp_path, text, **told)
     for word in words:
         assert word in str(caught.value)
+
+
+def test_markers_side_by_side_under_told_names(tmp_path: Path) -> None:
+    names = ("x1", "y1", "z1", "x2", "y2", "z2", "q1", "q2")
+    found = sheet_of(tmp_path, "1,2,3,4,5,6,7,8\n", columns=names, marker=2)
+    assert [c.cells for c in map(found.get, "xyz") if c] == [("4",), ("5",), ("6",)]
+    with pytest.raises(InputError, match="markers 1, 2"):
+        sheet_of(tmp_path, "1,2,3,4,5,6,7,8\n", columns=names)
