@@ -213,6 +213,10 @@ class Effect(ABC):
         """The same effect at the same place by other laws, where more than one is usual."""
         return ()
 
+    def nearby_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """Laws close to this one, once the readings chose it; where only noise is left beside."""
+        return ()
+
 
 @dataclass(frozen=True, eq=False)
 class Elongation:

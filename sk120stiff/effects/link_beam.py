@@ -134,26 +134,23 @@ class LinkBending(LinearElastic):
         )
 
     def other_laws(self, load_cases: LoadCases) -> tuple[LinkBending, ...]:
-        """Other tapers, a beam along the roll axis where there is one, planes that differ.
-
-        Where the readings asked for another taper than the usual one, those next to it count too.
-        """
+        """Other tapers, a beam along the roll axis where there is one, planes that differ."""
         along = [False, True] if _roll_member(load_cases.robot, self.where) else [False]
         laws = [
             replace(self, taper=taper, roll=roll, planes=planes)
             for planes in (False, True)
             for roll in along
-            for taper in self._tapers
+            for taper in TAPERS
         ]
         return tuple(law for law in laws if law != self)
 
-    @property
-    def _tapers(self) -> tuple[float, ...]:
-        """Tapers of this law and of those beside it, ascending."""
+    def nearby_laws(self, load_cases: LoadCases) -> tuple[LinkBending, ...]:
+        """Where the readings asked for another taper than the usual one, those next to it."""
         if self.taper == TAPER or self.taper not in FINER:
-            return TAPERS
+            return ()
         place = FINER.index(self.taper)
-        return tuple(sorted({*TAPERS, *FINER[max(place - 1, 0) : place + 2]}))
+        near = set(FINER[max(place - 1, 0) : place + 2]) - {*TAPERS, self.taper}
+        return tuple(replace(self, taper=taper) for taper in sorted(near))
 
     def _member(self, robot: Robot) -> Member:
         found = _roll_member(robot, self.where) if self.roll else None

@@ -301,6 +301,9 @@ def regression_at(
             full = full + effect
     chosen = [effect for effect in full.effects if effect.id not in base_effects]
     others = [effect.other_laws(problem.load_cases) for effect in chosen]
+    if not problem.noise.form:  # beside model-form error no law is right in detail
+        near = [effect.nearby_laws(problem.load_cases) for effect in chosen]
+        others = [(*usual, *close) for usual, close in zip(others, near, strict=True)]
     extra = tuple(Parameter(e, spec) for e in chain.from_iterable(others) for spec in e.parameters)
     full = replace(full, parameters=full.parameters + extra)  # two laws of one effect, so no sum
     specs = [parameter.spec for parameter in full.parameters]
