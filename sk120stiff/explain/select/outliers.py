@@ -33,9 +33,6 @@ def outlying_rows(
     fitted beside the catalogue too: if it leaves less than the shifts do, each at the price of its
     parameters (BIC), no slip is needed for what it explains.
 
-    Where the stated noise lets a crowd stand out, the model is off nearly everywhere. What a single
-    reading is held to is then the scatter that is there, as where nobody states the noise.
-
     Args:
         regression: The readings linearised at the base model.
         whitener: Their noise.
@@ -50,9 +47,6 @@ def outlying_rows(
     prior = np.where(own > 0.0, prior, 1.0)
     shifts = _shift_columns(whitener, len(y) // 3, regression.group[::3])
     found = _searched(X, prior, y, shifts, regression.sigma_known)
-    if found.crowd:  # the model is off by more than the stated noise: single readings by even more?
-        wider = _searched(X, prior, y, shifts, sigma_known=False)
-        found = wider if wider.noise > 1.0 else found
     if not len(found.rows):
         return found.rows
     each = np.log(len(y))  # the price of a parameter
@@ -75,11 +69,6 @@ class _Searched(NamedTuple):
     rows: Index
     left: float
     noise: float
-
-    @property
-    def crowd(self) -> bool:
-        """More stood out than slips can be, and none was set aside."""
-        return bool(np.isnan(self.noise))
 
 
 def _searched(
