@@ -111,13 +111,17 @@ class LinkBending(LinearElastic):
         """End of the parameters' names."""
         sign = "minus_" if self.taper < 0.0 else ""
         taper = "" if self.taper == TAPER else f"_taper_{sign}{round(abs(100.0 * self.taper))}"
-        return ("_roll_axis" if self.roll else "") + taper
+        return self._line + taper
+
+    @property
+    def _line(self) -> str:
+        """Where the beam lies, in the parameters' names."""
+        return "_roll_axis" if self.roll else ""
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Bending stiffness EI, or one for each plane."""
         along = ", along the axis of the next joint" if self.roll else ""
-        line = "_roll_axis" if self.roll else ""
         return tuple(
             compliance(
                 f"EI{plane}{self._law}",
@@ -128,7 +132,7 @@ class LinkBending(LinearElastic):
                 meaning="bending stiffness of the uniform beam whose end a moment turns as far"
                 + along
                 + (f", {plane[1:].replace('_', ' ')} in which the joint turns" if plane else ""),
-                quantity=f"EI{plane}{line}",  # whatever the taper
+                quantity=f"EI{plane}{self._line}",  # whatever the taper
             )
             for plane in ([f"_{each}" for each in PLANES] if self.planes else [""])
         )
