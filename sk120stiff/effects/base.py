@@ -214,7 +214,7 @@ class Effect(ABC):
         return ()
 
     def nearby_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
-        """Laws close to this one, once the readings chose it; where only noise is left beside."""
+        """Laws close to this one, asked for once it is in the model; not beside model-form error."""
         return ()
 
 

@@ -24,7 +24,7 @@ from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, 
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
 TAPERS = (-0.5, 0.0, 0.3, 0.6)  # that are tried; below zero: stouter towards the far end
-FINER = (-0.5, -0.25, 0.0, 0.15, 0.3, 0.45, 0.6, 0.75)  # once the readings show a taper
+FINER = (-0.5, -0.25, 0.0, 0.15, 0.3, 0.45, 0.6, 0.75)  # once the readings show the beam
 STATIONS = 0.5 + np.array([-1.0, 0.0, 1.0]) * np.sqrt(0.15)  # Gauss and Legendre's, from 0 to 1
 SHAFT = np.deg2rad(15.0)  # largest angle between a link and the axis of the shaft that it is
 BRACKET = np.deg2rad(45.0)  # the same where the link's near end may be a stiff bracket
@@ -149,8 +149,8 @@ class LinkBending(LinearElastic):
         return tuple(law for law in laws if law != self)
 
     def nearby_laws(self, load_cases: LoadCases) -> tuple[LinkBending, ...]:
-        """Where the readings asked for another taper than the usual one, those next to it."""
-        if self.taper == TAPER or self.taper not in FINER:
+        """The tapers next to this one."""
+        if self.taper not in FINER:
             return ()
         place = FINER.index(self.taper)
         near = set(FINER[max(place - 1, 0) : place + 2]) - {*TAPERS, self.taper}

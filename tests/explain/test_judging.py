@@ -310,3 +310,14 @@ def test_a_beams_stiffness_is_as_uncertain_as_its_taper(springs, flexibility, do
     assert bool(moved > 0.0) is doubted
     assert ("taper_45" in stiffness.name) is not doubted
     assert abs(stiffness.internal - flexibility) < 2.0 * stiffness.internal_std
+
+
+@pytest.mark.parametrize(("flexibility", "taper"), [(4e-7, 0.4), (8e-7, 0.2)])
+def test_a_taper_next_to_the_usual_one_is_found_without_a_second_name(springs, flexibility, taper):
+    """What the nearest taper leaves over looks like another length of the link."""
+    beam = LinkBending("link_2_l", {"flexibility": flexibility}, {"taper": taper})
+    answer = explain(springs, hidden(beam, sigma=4e-6))
+    assert [finding.effect.id for finding in answer.findings] == ["link_bending:link_2_l"]
+    (stiffness,) = (p for p in answer.final.parameters if p.effect.name == "link_bending")
+    assert stiffness.spec.name in {"EI_taper_45", "EI_taper_15"}
+    assert stiffness.internal == pytest.approx(flexibility, rel=0.02)  # the usual taper: 0.03 off

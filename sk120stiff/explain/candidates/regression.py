@@ -302,8 +302,8 @@ def regression_at(
     chosen = [effect for effect in full.effects if effect.id not in base_effects]
     others = [effect.other_laws(problem.load_cases) for effect in chosen]
     if not problem.noise.form:  # beside model-form error no law is right in detail
-        near = [effect.nearby_laws(problem.load_cases) for effect in chosen]
-        others = [(*usual, *close) for usual, close in zip(others, near, strict=True)]
+        for k in [k for k, effect in enumerate(chosen) if effect.id in present]:
+            others[k] = (*others[k], *chosen[k].nearby_laws(problem.load_cases))
     extra = tuple(Parameter(e, spec) for e in chain.from_iterable(others) for spec in e.parameters)
     full = replace(full, parameters=full.parameters + extra)  # two laws of one effect, so no sum
     specs = [parameter.spec for parameter in full.parameters]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.effects import Effect
-from sk120stiff.effects.base import Elastic
+from sk120stiff.effects.base import Elastic, Geometric
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.candidates.regression import Regression
@@ -241,8 +241,11 @@ def _stronger(found: Selection, finding: Finding, before: list[Finding]) -> Find
 
 
 def _beside(found: Selection, effect: Effect, link: Effect) -> bool:
-    """Does this yield in proportion to its load, at the link or at a neighbour of it?"""
-    if not isinstance(effect, Elastic) or effect.of_gear:
+    """Does this yield in proportion to its load, at the link or at a neighbour of it?
+
+    Or does it move the levers there: where along a beam it yields tells a lever from a taper.
+    """
+    if not isinstance(effect, Elastic | Geometric) or effect.of_gear:
         return False
     place: dict[str, int] = {}
     for number, joint in enumerate(arm_joints(found.final.model.robot)):
