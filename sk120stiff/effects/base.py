@@ -214,7 +214,7 @@ class Effect(ABC):
         return ()
 
     def nearby_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
-        """Laws close to this one, asked for once it is in the model; not beside model-form error."""
+        """Laws close to this one, once it is in the model; not beside model-form error."""
         return ()
 
 
