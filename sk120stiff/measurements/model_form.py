@@ -13,7 +13,7 @@ with a handful of columns Z for every pose; whitening by it costs a small matrix
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,6 +32,8 @@ class ModelForm:
         proportional: Standard deviation τ₁ of the compliance error, relative to the pose's own
             compliance.
         constant: Standard deviation τ₀ of what a pose has of its own, per axis [m].
+        of_poses: Names of poses and the factor s_p on the variance that each one has of its own; 1
+            for the others.
 
     Raises:
         InputError: A size that is negative or not finite.
@@ -39,6 +41,7 @@ class ModelForm:
 
     proportional: float = 0.0
     constant: float = 0.0
+    of_poses: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         for size in (self.proportional, self.constant):
@@ -50,7 +53,14 @@ class ModelForm:
 
     def scaled(self, factor: float) -> ModelForm:
         """Both sizes times a factor."""
-        return ModelForm(self.proportional * factor, self.constant * factor)
+        return replace(
+            self, proportional=self.proportional * factor, constant=self.constant * factor
+        )
+
+    def factors(self, measurements: Measurements) -> Array:
+        """(N,) factor s_p of each row's pose."""
+        own = dict(self.of_poses)
+        return np.array([own.get(pose, 1.0) for pose in measurements.pose])
 
     def rms(self, measurements: Measurements) -> float:
         """Root mean square over readings and axes of what such an error brings [m]."""
@@ -109,14 +119,19 @@ class FormWhitener:
         self.n_readings = noise.n_readings
         proportional, constant = form_columns(measurements)
         columns = [form.proportional * proportional, form.constant * constant]
-        white = noise.apply(np.concatenate(columns, axis=2))
+        own = np.sqrt(form.factors(measurements))[:, None, None]
+        white = noise.apply(own * np.concatenate(columns, axis=2))
         self._poses: list[tuple[Index, Array, Array]] = []
+        self.strengths: list[tuple[Index, Array, Array]] = []
+        """For each pose its whitened rows (r,), the directions (r, k) of its random effects, and
+        their variance (k,) over the noise's."""
         self._outweighing: list[tuple[Index, Array]] = []
         logdet, noise_left = noise.logdet, []
         for rows in rows_of_poses(measurements):
             U, singular, _ = np.linalg.svd(white[rows], full_matrices=False)
             self._poses.append((rows, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
             logdet += float(np.log1p(singular**2).sum())
+            self.strengths.append((rows, U, singular**2))
             large = singular > 1.0
             self._outweighing.append((rows, U[:, large]))
             noise_left.append(1.0 / (1.0 + singular[large] ** 2))

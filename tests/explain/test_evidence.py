@@ -12,7 +12,7 @@ from sk120stiff.explain.judge import attribution, beside_form
 from sk120stiff.explain.judge import confirm as confirming
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy, explained
 from sk120stiff.explain.judge.attribution import Named
-from sk120stiff.explain.judge.posterior import NONE, doubted, posterior
+from sk120stiff.explain.judge.posterior import NONE, doubted, posterior, until_covered
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.score import score_set
@@ -88,6 +88,13 @@ def test_probabilities_are_shares_of_the_evidence():
     found = posterior({"a": 4.0, "b": 4.0 + 2.0 * np.log(3.0)}, none=4.0 + 2.0 * np.log(6.0))
     weights = np.array([1.0, 1.0 / 3.0, 1.0 / 6.0])
     assert list(found.values()) == pytest.approx(list(weights[:2] / weights.sum()))
+
+
+def test_names_are_listed_until_nearly_all_that_names_have_is_covered():
+    odds = {"a": 0.80, "b": 0.09, "c": 0.04, "d": 0.03}  # 0.04 are left to none of them
+    assert until_covered(odds, "a") == ("b", "c")
+    assert until_covered({"a": 0.50, "b": 0.02}, "a") == ()
+    assert until_covered(odds, "c") == ("a", "b")
 
 
 @pytest.mark.parametrize(
@@ -240,10 +247,14 @@ def test_where_nothing_is_named_the_search_begins_again_beside_the_nearest(monke
     scores = {"springs": -10.0, "springs and tilt": -11.0 if better else -9.0}
 
     def under(noise):
-        return SimpleNamespace(final=noise, total=scores[noise])
+        # names that do not stand made the first end the likelier by 20
+        unconfirmed = -20.0 if noise == "springs" else 0.0
+        score = SimpleNamespace(score=unconfirmed)
+        return SimpleNamespace(final=noise, total=scores[noise] + unconfirmed, scored=score)
 
     def judged(tried, *, seed, least):
-        return tried, Named((finding,) if tried.final != "springs" else ())
+        standing = SimpleNamespace(final=tried.final, scored=SimpleNamespace(score=0.0))
+        return standing, Named((finding,) if tried.final != "springs" else ())
 
     monkeypatch.setattr(beside_form, "with_model_form", lambda fit: fit)
     monkeypatch.setattr(beside_form, "_asked_anew", lambda fit, at: fit)

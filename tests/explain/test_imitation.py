@@ -184,7 +184,7 @@ def test_a_round_that_takes_the_noise_for_larger_does_not_unsay_a_stated_sigma(s
 
     def under(noise):
         final = replace(base, problem=replace(base.problem, noise=noise))
-        return SimpleNamespace(final=final, total=0.0)
+        return SimpleNamespace(final=final, total=0.0, scored=SimpleNamespace(score=0.0))
 
     def judged(found, **_):
         name = SimpleNamespace(effect=SimpleNamespace(id=next(names)))

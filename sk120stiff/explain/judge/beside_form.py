@@ -86,7 +86,7 @@ def _settled(
         if now == before:
             break
         at, before = _asked_anew(found.final, at), now
-    return found, named, tried.total
+    return found, named, tried.total + found.scored.score - tried.scored.score
 
 
 def _asked_anew(fit: Fit, at: Fit) -> Fit:

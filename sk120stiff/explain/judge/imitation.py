@@ -90,7 +90,11 @@ def _spread(fit: Fit, signature: Array) -> tuple[float, float]:
         def moved(logarithms: Array) -> tuple[ModelForm, float]:
             factor = np.ones(2)
             factor[free] = np.exp(np.clip(logarithms[1:], -FAR, FAR))
-            other = ModelForm(form.proportional * factor[0], form.constant * factor[1])
+            other = replace(
+                form,
+                proportional=form.proportional * factor[0],
+                constant=form.constant * factor[1],
+            )
             return other, spread * float(np.exp(np.clip(logarithms[0], -FAR, FAR)))
 
         def at(logarithms: Array) -> float:

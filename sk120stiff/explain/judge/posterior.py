@@ -12,6 +12,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.findings import NAMED
 from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.beam import gains
 from sk120stiff.explain.select.score import score_set
@@ -35,6 +36,24 @@ def posterior(scores: Mapping[str, float], *, none: float) -> dict[str, float]:
     weights = np.exp(-0.5 * (values - values.min()))
     shares = weights / weights.sum()
     return {name: float(share) for name, share in zip(scores, shares[1:], strict=True)}
+
+
+def until_covered(odds: Mapping[str, float], chosen: str) -> tuple[str, ...]:
+    """The likeliest names beside the chosen one, until `NAMED` of what all names have is covered.
+
+    Args:
+        odds: As of `posterior`, the chosen name's own among them.
+        chosen: Name that is certain to be listed.
+    """
+    others = sorted((name for name in odds if name != chosen), key=odds.__getitem__, reverse=True)
+    covered, enough = odds[chosen], NAMED * sum(odds.values())
+    listed: list[str] = []
+    for name in others:
+        if covered >= enough:
+            break
+        listed.append(name)
+        covered += odds[name]
+    return tuple(listed)
 
 
 def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]:

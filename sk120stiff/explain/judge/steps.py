@@ -12,7 +12,7 @@ from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import with_model_form
 from sk120stiff.explain.select.beam import beam_search
-from sk120stiff.explain.select.stepwise import Selection, laws_of, refit
+from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
 from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
 from sk120stiff.measurements import Measurements
 
@@ -78,6 +78,7 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
         regression = regression_at(
             base, found.candidates, ids, alpha=alpha, prior=found.regression.prior
         )
+        base, regression = with_own_sizes(base, regression)
         ranked = beam_search(regression, width=NARROW, max_effects=max(counts))
         return [
             _first_fit(base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count])

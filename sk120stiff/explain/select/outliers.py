@@ -38,13 +38,8 @@ def outlying_rows(
         whitener: Their noise.
         courses: (N, 3, 3) each: what a drift that dies away makes of the readings, along x, y, z.
     """
-    # one law of each effect: all of them together would follow any single reading
-    columns = np.concatenate([regression.base, *regression.columns])
-    X, y = regression.X[:, columns], regression.y
-    prior = 3.0 / np.maximum(regression.plausible[columns], 1e-300)
-    prior[: len(regression.base)] = 0.0
-    own = np.diag(X.T @ X)
-    prior = np.where(own > 0.0, prior, 1.0)
+    X, prior = _whole_catalogue(regression)
+    y = regression.y
     shifts = _shift_columns(whitener, len(y) // 3, regression.group[::3])
     found = _searched(X, prior, y, shifts, regression.sigma_known)
     if not len(found.rows):
@@ -61,6 +56,31 @@ def outlying_rows(
             )  # fmt: skip
             ways.append((other.left + (3.0 * len(other.rows) + 4.0) * each, other.rows))
     return min(ways, key=lambda way: way[0])[1]
+
+
+def _whole_catalogue(regression: Regression) -> tuple[Array, Array]:
+    """Columns (R, P) of base and catalogue, and how firmly each (P,) is drawn towards zero."""
+    # one law of each effect: all of them together would follow any single reading
+    columns = np.concatenate([regression.base, *regression.columns])
+    X = regression.X[:, columns]
+    prior = 3.0 / np.maximum(regression.plausible[columns], 1e-300)
+    prior[: len(regression.base)] = 0.0
+    return X, np.where(np.diag(X.T @ X) > 0.0, prior, 1.0)
+
+
+def everything(regression: Regression) -> tuple[Array, Array]:
+    """What base and catalogue together leave of the readings (R,), and each row's leverage (R,)."""
+    X, prior = _whole_catalogue(regression)
+    half = _half(X, prior)
+    return regression.y - half.T @ (half @ regression.y), (half**2).sum(0)
+
+
+def _half(columns: Array, weight: Array) -> Array:
+    """(P, R) with columns drawn towards zero: the fit of y is halfᵀ half y."""
+    gram = columns.T @ columns + np.diag(weight**2)
+    scale = 1.0 / np.sqrt(np.diag(gram))
+    factor = np.linalg.cholesky(gram * np.outer(scale, scale) + 1e-12 * np.eye(len(gram)))
+    return np.asarray(np.linalg.solve(factor, (columns * scale).T))
 
 
 class _Searched(NamedTuple):
@@ -88,14 +108,11 @@ def _searched(
             extra[rows, 3 * k : 3 * k + 3] = block
         full = np.hstack([X, extra])
         weight = np.concatenate([prior, np.zeros(extra.shape[1])])
-        gram = full.T @ full + np.diag(weight**2)
-        scale = 1.0 / np.sqrt(np.diag(gram))
-        factor = np.linalg.cholesky(gram * np.outer(scale, scale) + 1e-12 * np.eye(len(gram)))
-        half = np.linalg.solve(factor, (full * scale).T)  # (P, R)
+        half = _half(full, weight)
         residual = y - half.T @ (half @ y)
         size = noise
         if size is None:
-            size = 1.0 if sigma_known else _robust_scale(residual, (half**2).sum(0))
+            size = 1.0 if sigma_known else robust_scale(residual, (half**2).sum(0))
         worst, where = 0.0, -1
         for row, (rows, block) in enumerate(shifts):
             if row in out:
@@ -136,7 +153,7 @@ def _shift_columns(
     return out
 
 
-def _robust_scale(residual: Array, leverage: Array) -> float:
+def robust_scale(residual: Array, leverage: Array) -> float:
     """Scale of the noise from residuals, each put right for what the fit took of it."""
     free = leverage < 1.0 - LEAST_LEFT
     if not free.any():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +16,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.outliers import outlying_rows
+from sk120stiff.explain.select.own_sizes import own_sizes, price_of_factors
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.identify import Fit, Problem, fit, solve, solve_near
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -83,7 +84,6 @@ def select(
     base = fit(model, measurements, noise=noise)
     ids = tuple(effect.id for effect in model.effects)
     regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
-    whole = base.problem.whitener.logdet
     slow = warm_ups(base.problem.load_cases)
     outliers = outlying_rows(regression, base.problem.whitener, slow)
     if len(outliers):
@@ -91,6 +91,8 @@ def select(
         keep[outliers] = False
         base = fit(model, measurements.select(keep), noise=noise)
         regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
+    base, regression = with_own_sizes(base, regression)
+    whole = base.problem.whitener.logdet + price_of_factors(base.problem.noise.form)
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     axes = np.log(3.0 * measurements.n_readings)
@@ -102,6 +104,19 @@ def select(
         outliers=outliers,
         candidates=tuple(candidates),
         total=score + whole + 3.0 * axes * len(outliers),
+    )
+
+
+def with_own_sizes(base: Fit, regression: Regression) -> tuple[Fit, Regression]:
+    """The same with the size that model-form error has at every pose; as they are without any."""
+    problem = base.problem
+    if not problem.noise.form:
+        return base, regression
+    noise = replace(problem.noise, form=own_sizes(regression, problem))
+    again = fit(problem.model, problem.measurements, noise=noise)
+    ids = [effect.id for effect in problem.model.effects]
+    return again, regression_at(
+        again, regression.candidates, ids, alpha=regression.alpha, prior=regression.prior
     )
 
 

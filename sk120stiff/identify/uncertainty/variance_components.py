@@ -93,7 +93,7 @@ def _refined(sums: Deviance, start: ModelForm) -> tuple[ModelForm, float]:
         found = np.zeros(2)
         # Farther from where the search began lies another point of the grid.
         found[free] = sizes[free] * np.exp(np.clip(logarithms, -FAR, FAR))
-        return ModelForm(*map(float, found))
+        return ModelForm(float(found[0]), float(found[1]))
 
     done = minimize(
         lambda x: sums(form_at(x)),
