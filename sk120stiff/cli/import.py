@@ -77,8 +77,8 @@ def command(
     Args:
         source (FILE): Positions of a marker, with or without joints: text of any separator, .xlsx,
             .mat, or the folder of a ROS bag. What it is, its content tells.
-        robot (ROBOT): A .urdf, a .xacro, a folder with robot.yaml, or a bundled name
-            (motoman_sk120).
+        robot (ROBOT): A .urdf, a .xacro, a DH table (.csv), a folder with robot.yaml, or a bundled
+            name (motoman_sk120).
         out (FILE): The CSV file to write; a YAML file goes beside it.
         preview: Show what was understood; write nothing.
         joints_file (FILE): Joint values, where they stand in a file of their own; matched by name,

@@ -13,7 +13,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import note
 from sk120stiff.errors import InputError, warn
 from sk120stiff.files import will_write
-from sk120stiff.robot import Robot, find_robot, load_robot
+from sk120stiff.robot import Robot, find_robot, is_dh_table, load_robot
 from sk120stiff.units import parse_pose, parse_wrench
 
 if TYPE_CHECKING:
@@ -121,12 +121,12 @@ def model_file(named: str | Path) -> Path | None:
     That is a YAML file other than `robot.yaml`, or a folder that holds a `model.yaml` and no robot.
     """
     path = Path(named)
-    if path.suffix.lower() in (".csv", ".html", ".json", ".zarr"):
+    if path.suffix.lower() in (".csv", ".html", ".json", ".zarr") and not is_dh_table(path):
         raise InputError(
             "this is no robot and no model file",
             where=str(named),
-            remedy="Give a .urdf, a .xacro, a folder with robot.yaml, a bundled name, or a model "
-            "file (.yaml).",
+            remedy="Give a .urdf, a .xacro, a DH table (.csv), a folder with robot.yaml, a bundled "
+            "name, or a model file (.yaml).",
         )
     if path.suffix.lower() in (".yaml", ".yml") and path.name != "robot.yaml":
         return path

@@ -18,7 +18,8 @@ RobotArgument = Annotated[
     str,
     typer.Argument(
         metavar="ROBOT",
-        help="A .urdf, a .xacro, a folder with robot.yaml, or a bundled name (motoman_sk120).",
+        help="A .urdf, a .xacro, a DH table (.csv), a folder with robot.yaml, or a bundled name "
+        "(motoman_sk120).",
         autocompletion=_robots,
         show_default=False,
     ),

@@ -5,6 +5,7 @@ from sk120stiff.robot.kinematics.coupling import Coupling, Follower, JointMotion
 from sk120stiff.robot.kinematics.screws import Mechanism, Screws
 from sk120stiff.robot.loading import RobotSource, find_robot, load_robot
 from sk120stiff.robot.robot import STANDARD_GRAVITY, Linkage, Robot
+from sk120stiff.robot.urdf import is_dh_table
 from sk120stiff.robot.yourdfpy_holder import as_yourdfpy
 
 __all__ = [
@@ -22,5 +23,6 @@ __all__ = [
     "VirtualJoint",
     "as_yourdfpy",
     "find_robot",
+    "is_dh_table",
     "load_robot",
 ]

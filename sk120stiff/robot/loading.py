@@ -78,9 +78,8 @@ def find_robot(source: Source, *, relative_to: Path | None = None) -> RobotSourc
         raise InputError(
             "there is no such robot",
             where=text[:200] or "(no name)",
-            remedy="Give a .urdf, a .xacro, a folder with robot.yaml, or a bundled name: "
-            + ", ".join(sorted(bundled))
-            + ".",
+            remedy="Give a .urdf, a .xacro, a DH table (.csv), a folder with robot.yaml, or a "
+            "bundled name: " + ", ".join(sorted(bundled)) + ".",
         )
     if path.name == "robot.yaml" and path.is_file():
         path = path.parent
@@ -111,8 +110,8 @@ def load_robot(
     """Load the rigid kinematics of any robot arm.
 
     Args:
-        source: Bundled name (``"motoman_sk120"``), ``.urdf`` or ``.xacro`` file, folder with
-            ``robot.yaml``, or URDF text.
+        source: Bundled name (``"motoman_sk120"``), ``.urdf`` or ``.xacro`` file, DH table
+            (``.csv``), folder with ``robot.yaml``, or URDF text.
         base, tool: Frames (URDF links) between which the arm is described. Default: what
             ``robot.yaml`` says, else the root and the end of the longest arm (`Robot.choice`).
         actuated: Joints that motors drive, in the wanted order. Default: what ``robot.yaml`` says,

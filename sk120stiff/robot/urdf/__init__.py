@@ -1,5 +1,6 @@
 """URDF files of any origin become a `UrdfDocument`: forms, repairs with warnings, refusals."""
 
+from sk120stiff.robot.urdf.dh_table import is_dh_table
 from sk120stiff.robot.urdf.document import (
     BALLS,
     HARMLESS,
@@ -37,6 +38,7 @@ __all__ = [
     "default_frames",
     "document_tree",
     "fingers_on_way",
+    "is_dh_table",
     "locked_on_way",
     "read_urdf",
     "refuse_orphans",

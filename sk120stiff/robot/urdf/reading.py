@@ -10,6 +10,7 @@ from lxml.etree import _Element as Element
 
 from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.robot.urdf.clean import clean_xml
+from sk120stiff.robot.urdf.dh_table import is_dh_table, urdf_of_table
 from sk120stiff.robot.urdf.document import JointSpec, UrdfDocument, VisualSpec
 from sk120stiff.robot.urdf.findings import Notebook, at
 from sk120stiff.robot.urdf.joints import read_joint, same_names
@@ -46,8 +47,8 @@ def read_urdf(
     """Read a robot description in any form, repair what can be repaired, and say so.
 
     Args:
-        source: ``.urdf`` or ``.xacro`` file, folder that holds exactly one, or XML as text or
-            bytes.
+        source: ``.urdf`` or ``.xacro`` file, folder that holds exactly one, XML as text or bytes,
+            or a ``.csv`` table of Denavit and Hartenberg's numbers (`dh_table.py`).
         package_folders: Folders that hold packages, tried before the parent folders and
             ROS_PACKAGE_PATH.
         xacro_arguments: Values of ``<xacro:arg>``; one that the xacro does not know is refused.
@@ -62,6 +63,8 @@ def read_urdf(
     notes = Notebook(raw.label)
     folders = folders_around(raw.path, package_folders)
     text = decode(raw.data, notes)
+    if raw.path is not None and is_dh_table(raw.path):
+        text = urdf_of_table(text, raw.path.stem, raw.label)
     arguments = dict(xacro_arguments or {})
     if not is_xacro(raw, text):
         if arguments:

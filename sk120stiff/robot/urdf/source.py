@@ -13,7 +13,7 @@ from sk120stiff.robot.urdf.findings import shown
 
 MAX_BYTES = 100 * 1024 * 1024
 _MESHES = frozenset({".stl", ".dae", ".obj", ".ply", ".glb", ".gltf", ".step", ".stp", ".iges"})
-_REMEDY = "Give a .urdf or .xacro file, a folder that holds one, or URDF text."
+_REMEDY = "Give a .urdf or .xacro file, a DH table (.csv), a folder that holds one, or URDF text."
 
 
 @dataclass(frozen=True)
