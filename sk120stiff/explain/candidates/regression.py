@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from scipy import stats
-from scipy.linalg.lapack import dtrtrs
+from scipy.linalg.lapack import dpotrf, dtrtrs
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
@@ -157,7 +157,7 @@ class Sums:
         return self.square + float(v @ (inner - 2.0 * self.moment[solved.columns]))
 
     def over(self, columns: Index, right: Array) -> Array:
-        """(XᵀX)⁻¹ of some columns, on the right-hand side (k,)."""
+        """(XᵀX)⁻¹ of some columns, on a right-hand side (k, ...)."""
         key = columns.tobytes()
         if key not in self._inverses:
             gram = self.gram[np.ix_(columns, columns)]
@@ -251,9 +251,8 @@ def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) ->
     active = np.arange(len(columns))
     while len(active):
         scaled = whole[active[:, None], active] if len(active) < len(columns) else whole
-        try:
-            factor = np.linalg.cholesky(scaled)
-        except np.linalg.LinAlgError:
+        factor, failed = dpotrf(scaled, lower=1, clean=0)
+        if failed:
             active = np.delete(active, _dependent(scaled))
             continue
         least = int(factor.diagonal().argmin())
@@ -266,7 +265,8 @@ def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) ->
         if not forbidden.any():
             rss = max(sums.square - float(half @ half), 0.0)
             return Solved(columns[active], found / size[active], rss)
-        active = np.delete(active, int(np.argmin(np.where(forbidden, found, np.inf))))
+        worst = int(np.where(forbidden, found, np.inf).argmin())
+        active = np.concatenate((active[:worst], active[worst + 1 :]))
     return Solved(columns[:0], np.zeros(0), sums.square)
 
 

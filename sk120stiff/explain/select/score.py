@@ -219,17 +219,21 @@ def _sizes(regression: Regression, sums: Sums, solved: Solved, parts: Sequence[I
     n = max(sums.count, 2.0)
     known = regression.sigma_known and regression.form is None
     variance = 1.0 if known else max(solved.rss, 1e-300) / n
-    base = solved.columns[regression.in_base[solved.columns]]
-    price = 0.0
-    for part in parts:
-        inside = (solved.columns[:, None] == part).any(axis=1)
-        own, values = solved.columns[inside], solved.values[inside]
-        if len(own):
-            signature = sums.gram[own[:, None], own] @ values
-            covered = sums.gram[base[:, None], own] @ values
-            gain = float(values @ signature - covered @ sums.over(base, covered)) / variance
-            price += price_of_sizes(gain, len(own), n)
-    return price
+    added = ~regression.in_base[solved.columns]
+    base, own, values = solved.columns[~added], solved.columns[added], solved.values[added]
+    across = sums.gram[base[:, None], own]
+    left = sums.gram[own[:, None], own] - across.T @ sums.over(base, across)
+    owner = np.zeros(len(regression.in_base), dtype=np.intp)
+    for k, part in enumerate(parts):
+        owner[part] = k
+    members = (owner[own][:, None] == np.arange(len(parts))) * values[:, None]
+    gains = (members * (left @ members)).sum(axis=0) / variance
+    counts = np.bincount(owner[own], minlength=len(parts))
+    return sum(
+        price_of_sizes(gain, count, n)
+        for gain, count in zip(gains.tolist(), counts.tolist(), strict=True)
+        if count
+    )
 
 
 def entry_fall(regression: Regression, effect: int) -> float:
