@@ -1,6 +1,7 @@
 """The whole suite runs on several cores; where everything must run, nothing may be skipped."""
 
 import os
+import sys
 from collections.abc import Generator
 
 import pytest
@@ -18,6 +19,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> None:
     """`pytest` alone takes a process per core, four at most; what is named runs in one process."""
+    # Hundreds of programs are started: what the first one compiled the others read.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
     asked = getattr(config.option, "numprocesses", 0)  # None: pytest-xdist is there, unasked
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
     if asked is not None or not whole or hasattr(config, "workerinput"):

@@ -129,9 +129,9 @@ class Regression:
 
 
 def _sums_of(rows: Regression | FormRows, weights: Array) -> Sums:
-    by, y = weights[rows.group], rows.y
-    weighted = (rows.X * by[:, None]).T
-    return Sums(weighted @ rows.X, weighted @ y, float(by @ y**2), float(by.sum()))
+    root = np.sqrt(weights)[rows.group]
+    X, y = rows.X * root[:, None], rows.y * root
+    return Sums(X.T @ X, X.T @ y, float(y @ y), float(root @ root))
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,15 +24,15 @@ def promises(regression: Regression, sums: Sums, model: Solved) -> list[Array]:
     """
     inside = model.columns
     gram_in = sums.gram[np.ix_(inside, inside)] + np.diag(regression.plausible[inside] ** -2.0)
-    cross = sums.gram[inside]
     scale = np.sqrt(np.maximum(np.diag(gram_in), 1e-300))
-    solved = np.linalg.solve(gram_in / np.outer(scale, scale), cross / scale[:, None])
-    projected = sums.gram - (cross / scale[:, None]).T @ solved
+    cross = sums.gram[inside] / scale[:, None]
+    solved = np.linalg.solve(gram_in / np.outer(scale, scale), cross)
     residual = sums.moment - solved.T @ (sums.moment[inside] / scale)
     out = [np.zeros(len(parts)) for parts in regression.variants]
     size = np.sqrt(np.maximum(np.diag(sums.gram), 1e-300))
     for pairs, columns in regression.variants_by_size:
-        blocks = projected[columns[:, :, None], columns[:, None, :]]
+        blocks = sums.gram[columns[:, :, None], columns[:, None, :]]
+        blocks = blocks - cross.T[columns] @ np.swapaxes(solved.T[columns], 1, 2)
         scales = size[columns]
         right = residual[columns] / scales
         values, vectors = np.linalg.eigh(blocks / (scales[:, :, None] * scales[:, None, :]))
