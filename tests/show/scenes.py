@@ -1,5 +1,6 @@
 """Scenes that several tests look at."""
 
+import itertools
 from functools import cache
 from pathlib import Path
 
@@ -8,7 +9,9 @@ import numpy as np
 from sk120stiff import load_robot
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import Model, base_model
+from sk120stiff.plan import Cell
 from sk120stiff.robot import Robot
+from sk120stiff.robot.solids import Solid
 from sk120stiff.show import Scene, scene_of_model
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -57,3 +60,15 @@ def random_pose(robot: Robot, generator: np.random.Generator) -> np.ndarray:
     lower = np.where(np.isfinite(robot.lower), robot.lower, -1.0)
     upper = np.where(np.isfinite(robot.upper), robot.upper, 1.0)
     return generator.uniform(lower, upper)
+
+
+def walled_cell(*, hull: bool = False) -> Cell:
+    """A cell with a wall of 0.1 m, 3 m and 5 m, as a box or as its corners."""
+    size = np.array([0.1, 3.0, 5.0])
+    place = np.eye(4)
+    place[:3, 3] = (-4.0, 0.0, 1.0)
+    corners = 0.5 * size * np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    wall = Solid("wall", "base_link", place, "box", tuple(size.tolist()))
+    if hull:
+        wall = Solid("wall", "base_link", place, "hull", points=corners)
+    return Cell(obstacles=(wall,), source="cell.yaml")

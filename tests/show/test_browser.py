@@ -14,7 +14,7 @@ from sk120stiff.show.scene.frame import Request, compute_frame
 from sk120stiff.show.scene.payload import frame_payload
 from sk120stiff.stiffness import POSITIONS
 from tests.show.browser import Page, changed, clean, colours
-from tests.show.scenes import random_pose, sk120, sk120_scene, springs
+from tests.show.scenes import random_pose, sk120, sk120_scene, springs, walled_cell
 from tests.show.shown import SCENES
 
 pytestmark = pytest.mark.timeout(180)
@@ -212,7 +212,7 @@ def test_the_way_through_a_plan_is_driven_and_all_of_it_seen(page: Page, tmp_pat
     load = np.tile([0.0, 0.0, -300.0, 0.0, 0.0, 0.0], (3, 1))
     pool = Pool(load_case(sk120(), stops, load, point=np.array([0.0, 0.0, 0.1])))
     plan = to_be_taken(sk120(), pool, [0, 1, 2], zero="separate")
-    write_page(tmp_path / "plan.html", springs(), plan)
+    write_page(tmp_path / "plan.html", springs(), plan, walled_cell())
     page.open((tmp_path / "plan.html").as_uri())
     page.ready()
     path = json.loads(page.js("return document.getElementById('scene').textContent"))["path"]
@@ -229,6 +229,15 @@ def test_the_way_through_a_plan_is_driven_and_all_of_it_seen(page: Page, tmp_pat
         path["after"],
     )
     assert np.abs(np.array(shown)[:, :2]).max() < 1.0
+    assert "what cell.yaml states" in page.js("return document.body.textContent")
+    corners = page.js(  # of what stands around, in base axes
+        "const group = SK.stage.viewer.scene_tree.find(['around']).object;"
+        "SK.stage.viewer.scene.updateMatrixWorld(true);"
+        "const box = new MeshCat.THREE.Box3().setFromObject(group);"
+        "return [box.min, box.max].map((p) => SK.stage.fromWorld(p))",
+    )
+    low, high = np.sort(np.array(corners), axis=0)
+    np.testing.assert_allclose(high[2] - low[2], 5.0, atol=0.1)  # the wall is no part of the arm
     clean(page)
 
 

@@ -228,7 +228,7 @@ def command(
     }
     said += [*remarks, height_words(heights, plan.pose, within.floor)]
     if page is not None:
-        write_page(page, start, plan, route)
+        write_page(page, start, plan, within, route)
         said.append(f"Shown in {page}.")
     if out is not None:
         write_measurements(plan, out)

@@ -37,21 +37,22 @@ def as_keys(plan: Measurements) -> list[dict[str, object]]:
     ]
 
 
-def write_page(file: Path, model: Model, plan: Measurements, driven: Route | None = None) -> None:
-    """The arm at every pose of a plan, in its order, with the loads there.
+def write_page(
+    file: Path, model: Model, plan: Measurements, cell: Cell, driven: Route | None = None
+) -> None:
+    """The arm at every pose of a plan, in its order, with the loads there and what stands around.
 
     The point's way between the poses is that of joints that go straight, by the via points of
     `driven` where there are any.
     """
     from sk120stiff.show import scene_of_model, static_scene
     from sk120stiff.show.scene.scene import ScenePath
+    from sk120stiff.show.scene.surroundings import surroundings_of
 
-    scene = scene_of_model(
-        model,
-        plan,
-        title=f"{model.robot.name}: plan",
-        subtitle=f"{len(plan.poses)} poses in their order, {plan.n_readings} loads",
-    )
+    said = f"{len(plan.poses)} poses in their order, {plan.n_readings} loads"
+    if cell.source:
+        said += f"; around it what {Path(cell.source).name} states"
+    scene = scene_of_model(model, plan, title=f"{model.robot.name}: plan", subtitle=said)
     stands = np.array([pose.a for pose in scene.poses]) if driven is None else driven.a
     a, reached = _between(model.robot, stands)
     planned = np.ones(len(stands), dtype=bool) if driven is None else driven.pose >= 0
@@ -60,7 +61,8 @@ def write_page(file: Path, model: Model, plan: Measurements, driven: Route | Non
         at, at, 0, said=f"first: {plan.poses[0]}", freedom="", mark="the first pose's point",
         stops=tuple(int(k) for k in reached[planned]),
     )  # fmt: skip
-    static_scene(file, replace(scene, path=path))
+    around = surroundings_of(cell, model.robot, scene.tree)
+    static_scene(file, replace(scene, path=path, surroundings=around))
 
 
 def _between(robot: Robot, stops: Array) -> tuple[Array, Index]:

@@ -32,7 +32,7 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
     """
     robot, elastic, tree = scene.robot, scene.elastic, scene.tree
     meshes: list[Mesh] = []
-    bodies = [_body(body, meshes) for body in bodies_of(robot, tree)]
+    bodies = [_body(body, meshes) for body in (*bodies_of(robot, tree), *scene.surroundings)]
     frame = scene.frame or robot.tool_frame
     return {
         "mode": "live" if live else "static",
@@ -241,6 +241,7 @@ def _body(body: Body, meshes: list[Mesh]) -> dict[str, Any]:
         "kind": body.kind,
         "size": [float(value) for value in body.size],
         "colour": [round(float(value), 4) for value in body.colour],
+        "still": body.still,
     }
     if body.mesh is not None:
         known = next((k for k, mesh in enumerate(meshes) if mesh is body.mesh), None)

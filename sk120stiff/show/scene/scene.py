@@ -17,6 +17,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 from sk120stiff.show.scene.elastic import Elastic
 from sk120stiff.show.scene.links import LinkTree, link_tree
+from sk120stiff.show.scene.shapes import Body
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,7 @@ class Scene:
         frame: Name of the frame that carries the point; the tool frame by default.
         marks: Link → what acts there: parts of the arm that are coloured and named, such as those
             of the effects that an explanation added.
+        surroundings: What stands around the arm or hangs on it, on links of `tree`.
         path: What the tool passes, drawn with the freedom that was searched; None for none.
         robot_argument, model_argument: How a command line names robot and model, for "copy as
             command".
@@ -75,6 +77,7 @@ class Scene:
     a: Array | None = None
     frame: str | None = None
     marks: Mapping[str, str] = field(default_factory=dict)
+    surroundings: Sequence[Body] = ()
     path: ScenePath | None = None
     robot_argument: str = ""
     model_argument: str = ""

@@ -39,6 +39,7 @@ class Body:
         size: box: x, y, z; cylinder, capsule: radius, length; sphere: radius; mesh: scale x, y, z.
         colour: Red, green, blue, opacity in 0..1.
         mesh: Triangles of a mesh.
+        still: It is no part of the arm, and has no deflected twin.
     """
 
     link: int
@@ -47,6 +48,7 @@ class Body:
     size: tuple[float, ...]
     colour: Colour
     mesh: Mesh | None = None
+    still: bool = False
 
 
 def reach_of(robot: Robot, frame: str | None = None) -> float:

@@ -101,7 +101,7 @@ SK.start = (scene) => {
   const baseAxes = [1, 0, 0, 0, 1, 0, 0, 0, 1];
   function redraw() {
     if (!frame) return;
-    stage.placeLinks("robot", frame.links);
+    for (const group of ["robot", "around"]) stage.placeLinks(group, frame.links);
     const bent = state.show.deflected && frame.deflected && m.norm(state.wrench) > 0;
     stage.show(["deflected"], Boolean(bent));
     if (bent) stage.placeTwin(frame.deflected, frame.links);

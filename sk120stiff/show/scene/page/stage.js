@@ -52,18 +52,19 @@ SK.makeStage = (pane, scene) => {
   fill.position.set(-1.4 * reach, 1.2 * reach, 0.8 * reach);
   put(["room", "fill"], fill);
 
-  // The robot, and its deflected twin.
-  const nodes = { robot: [], deflected: [] }, marked = new Set(scene.marks.map(([link]) => link));
+  // The robot, its deflected twin, and what stands around: no part of the arm, and of no twin.
+  const nodes = { robot: [], deflected: [], around: [] }, marked = new Set(scene.marks.map(([link]) => link));
   scene.links.forEach((name, link) => {
-    const mine = scene.bodies.filter((body) => body.link === link);
     for (const [group, list] of Object.entries(nodes)) {
+      const around = group === "around";
+      const mine = scene.bodies.filter((body) => body.link === link && Boolean(body.still) === around);
       const path = [group, String(link) + " " + name.replaceAll("/", "_")];
       list.push(mine.length ? find(path) : null);
       mine.forEach((body, k) => {
         const twin = group === "deflected";
-        const mesh = new THREE.Mesh(shapes.geometryOf(body), twin ? (marked.has(link) ? materials.namedGhost : materials.ghost) : marked.has(link) ? materials.named : materials.body(body.colour));
+        const mesh = new THREE.Mesh(shapes.geometryOf(body), twin ? (marked.has(link) ? materials.namedGhost : materials.ghost) : !around && marked.has(link) ? materials.named : materials.body(body.colour));
         if (body.kind === "mesh") mesh.scale.fromArray(body.size);
-        mesh.castShadow = mesh.receiveShadow = !twin;
+        mesh.castShadow = mesh.receiveShadow = !twin && !around;
         viewer.set_object(path.concat(String(k)), mesh);
         move(path.concat(String(k)), body.matrix);
       });
