@@ -8,7 +8,7 @@ import pytest
 
 from sk120stiff.effects import effect
 from sk120stiff.explain.findings import NAMED, Confirmation, Evidence, Finding
-from sk120stiff.explain.judge import attribution, beside_form
+from sk120stiff.explain.judge import attribution, beside_form, selection_uncertainty
 from sk120stiff.explain.judge import confirm as confirming
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy, explained
 from sk120stiff.explain.judge.attribution import Named
@@ -227,6 +227,15 @@ def test_drawings_that_agree_on_the_gear_confirm_it_with_the_laws_that_won(
     told = attribution._confirmed(found, 0, finding, 0)
     assert told.evidence.confirmation.holds == (alternatives is not None)
     assert told.alternatives == (alternatives or ())
+
+
+def test_an_alternative_that_is_no_candidate_beside_model_form_error_is_passed_over(monkeypatch):
+    """Constants of single poses were told apart from a name before, and are part of that error."""
+    tilt = effect(load_robot("motoman_sk120"), "joint_tilt", "joint_2_l")
+    monkeypatch.setattr(selection_uncertainty, "_other_laws", lambda found, place: [])
+    found = SimpleNamespace(regression=SimpleNamespace(candidates=(tilt,)))
+    named = Finding(tilt, ("zero_offset:tracker",), (), Evidence(9.0, 9.0, None, np.inf, SEEN, {}))
+    assert list(selection_uncertainty._others(found, [named])) == []
 
 
 def test_names_that_nothing_tells_apart_share_one_piece_of_evidence():

@@ -84,7 +84,8 @@ def _others(found: Selection, findings: Sequence[Finding]) -> Iterator[tuple[lis
     where = {effect.id: k for k, effect in enumerate(regression.candidates)}
     for finding in findings:
         rest = [other.effect for other in findings if other is not finding]
-        for name in finding.alternatives[:LOOKED_AT]:
+        # Beside model-form error constants of poses are part of it, and no candidates.
+        for name in [each for each in finding.alternatives if each in where][:LOOKED_AT]:
             yield [*rest, regression.candidates[where[name]]], False
         for law in _other_laws(found, where[finding.effect.id]):
             yield [*rest, law], True
