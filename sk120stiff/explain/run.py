@@ -20,7 +20,7 @@ from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
 from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
 from sk120stiff.explain.judge.beside_suspect import Account, complete_account
 from sk120stiff.explain.judge.implausible import implausible
-from sk120stiff.explain.judge.posterior import doubted, one_more
+from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
 from sk120stiff.explain.judge.remainder import Remainder, remainder_of
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.steps import gap_steps
@@ -92,7 +92,7 @@ def explain(
     if left.lacking:
         remainder = remainder.beside(left.probability)
     findings = tuple(
-        each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else)
+        in_full(each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else))
         for k, each in enumerate(named.findings)
     )
     effects = [finding.effect for finding in findings]

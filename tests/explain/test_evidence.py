@@ -12,7 +12,7 @@ from sk120stiff.explain.judge import attribution, beside_form, selection_uncerta
 from sk120stiff.explain.judge import confirm as confirming
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy, explained
 from sk120stiff.explain.judge.attribution import Named
-from sk120stiff.explain.judge.posterior import NONE, doubted, posterior, until_covered
+from sk120stiff.explain.judge.posterior import NONE, doubted, in_full, posterior, until_covered
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.score import score_set
@@ -92,9 +92,20 @@ def test_probabilities_are_shares_of_the_evidence():
 
 def test_names_are_listed_until_nearly_all_that_names_have_is_covered():
     odds = {"a": 0.80, "b": 0.09, "c": 0.04, "d": 0.03}  # 0.04 are left to none of them
-    assert until_covered(odds, "a") == ("b", "c")
-    assert until_covered({"a": 0.50, "b": 0.02}, "a") == ()
-    assert until_covered(odds, "c") == ("a", "b")
+    assert until_covered(odds, {"a"}) == ("b", "c")
+    assert until_covered(odds, {"a", "c"}) == ("b",)
+    assert until_covered({"a": 0.50, "b": 0.02}, {"a"}) == ()
+
+
+def test_an_open_answer_lists_its_names_and_gains_nothing_by_that():
+    tilt = effect(load_robot("motoman_sk120"), "joint_tilt", "joint_2_l")
+    odds, rivals = {tilt.id: 0.80, "b": 0.12, "c": 0.02}, {"b": 4.0, "c": 7.5}
+    before = Finding(tilt, (), (), Evidence(9.0, 9.0, "b", 4.0, SEEN, odds, rivals))
+    after = in_full(before)
+    assert after.alternatives == ("b",)
+    assert (after.evidence.runner_up, after.evidence.runner_up_gap) == ("c", 7.5)
+    sure = replace(before, evidence=replace(before.evidence, odds={tilt.id: 0.97, "b": 0.02}))
+    assert in_full(sure) is sure
 
 
 @pytest.mark.parametrize(

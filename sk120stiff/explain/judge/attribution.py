@@ -13,7 +13,7 @@ from sk120stiff.explain.candidates.aliases import aliases_by_design, exact_alias
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.confirm import UNTRIED, confirm
-from sk120stiff.explain.judge.posterior import posterior, until_covered
+from sk120stiff.explain.judge.posterior import posterior
 from sk120stiff.explain.judge.random_effects import is_constant, joint_that_turns
 from sk120stiff.explain.select.beam import gains
 from sk120stiff.explain.select.score import Scored, score_set
@@ -285,16 +285,10 @@ def _finding(found: Selection, effect: int) -> Finding:
         regression, regression.sums(), found.chosen, untied=effect, start=with_it.by_variant
     ).score
     margin = max(MARGIN, np.log(regression.rows) + 0.5)
-    odds = posterior(
-        {chosen.id: with_it.score}
-        | {regression.candidates[e].id: model.score for e, model in rivals},
-        none=without.score,
-    )
-    listed = {*exact, *until_covered(odds, chosen.id)}
     same = [
         e
         for e, model in rivals
-        if model.score - full < margin or regression.candidates[e].id in listed
+        if model.score - full < margin or regression.candidates[e].id in exact
     ]
     others = [(e, model.score) for e, model in rivals if e not in same]
     runner_up = min(others, key=lambda pair: pair[1], default=None)
@@ -310,7 +304,11 @@ def _finding(found: Selection, effect: int) -> Finding:
             runner_up=None if runner_up is None else regression.candidates[runner_up[0]].id,
             runner_up_gap=np.inf if runner_up is None else runner_up[1] - with_it.score,
             confirmation=UNTRIED,
-            odds=odds,
+            odds=posterior(
+                {chosen.id: with_it.score}
+                | {regression.candidates[e].id: model.score for e, model in rivals},
+                none=without.score,
+            ),
             rivals={regression.candidates[e].id: m.score - with_it.score for e, m in rivals},
         ),
     )

@@ -8,11 +8,12 @@ probabilities within the catalogue: a cause that it lacks has no score.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.explain.candidates.regression import Regression
-from sk120stiff.explain.findings import NAMED
+from sk120stiff.explain.findings import NAMED, Finding
 from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.beam import gains
 from sk120stiff.explain.select.score import score_set
@@ -38,22 +39,35 @@ def posterior(scores: Mapping[str, float], *, none: float) -> dict[str, float]:
     return {name: float(share) for name, share in zip(scores, shares[1:], strict=True)}
 
 
-def until_covered(odds: Mapping[str, float], chosen: str) -> tuple[str, ...]:
-    """The likeliest names beside the chosen one, until `NAMED` of what all names have is covered.
+def until_covered(odds: Mapping[str, float], listed: Collection[str]) -> tuple[str, ...]:
+    """The likeliest names beside those listed, until `NAMED` of what all names have is covered.
 
     Args:
-        odds: As of `posterior`, the chosen name's own among them.
-        chosen: Name that is certain to be listed.
+        odds: As of `posterior`.
+        listed: Names that are listed already.
     """
-    others = sorted((name for name in odds if name != chosen), key=odds.__getitem__, reverse=True)
-    covered, enough = odds[chosen], NAMED * sum(odds.values())
-    listed: list[str] = []
-    for name in others:
-        if covered >= enough:
-            break
-        listed.append(name)
-        covered += odds[name]
-    return tuple(listed)
+    others = sorted((name for name in odds if name not in listed), key=odds.__getitem__)
+    covered = sum(odds.get(name, 0.0) for name in set(listed))
+    more: list[str] = []
+    while others and covered < NAMED * sum(odds.values()):
+        more.append(others.pop())
+        covered += odds[more[-1]]
+    return tuple(more)
+
+
+def in_full(finding: Finding) -> Finding:
+    """The same with all names that an open answer lists; as evidence they count no more."""
+    said = finding.evidence
+    more = until_covered(said.odds, {finding.effect.id, *finding.alternatives})
+    names = (*finding.alternatives, *more)
+    rest = {name: gap for name, gap in said.rivals.items() if name not in names}
+    best = min(rest, key=rest.__getitem__, default=None)
+    if not more:
+        return finding
+    gap = np.inf if best is None else rest[best]
+    return replace(
+        finding, alternatives=names, evidence=replace(said, runner_up=best, runner_up_gap=gap)
+    )
 
 
 def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]:
