@@ -59,11 +59,11 @@ def in_full(finding: Finding) -> Finding:
     """The same with all names that an open answer lists; as evidence they count no more."""
     said = finding.evidence
     more = until_covered(said.odds, {finding.effect.id, *finding.alternatives})
+    if not more:
+        return finding
     names = (*finding.alternatives, *more)
     rest = {name: gap for name, gap in said.rivals.items() if name not in names}
     best = min(rest, key=rest.__getitem__, default=None)
-    if not more:
-        return finding
     gap = np.inf if best is None else rest[best]
     return replace(
         finding, alternatives=names, evidence=replace(said, runner_up=best, runner_up_gap=gap)

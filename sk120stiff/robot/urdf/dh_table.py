@@ -229,7 +229,10 @@ def _row(cells: Mapping[str, str], units: Mapping[str, str | None], number: int,
     }
     name = cells.get("joint") or f"joint_{number}"
     limits = None
-    if moves and cells.get("lower") and cells.get("upper"):
+    stated = [each for each in _LIMITS if cells.get(each)]
+    if moves and len(stated) == 1:
+        raise InputError(f"{stated[0]} is stated without the other limit", where=place)
+    if moves and stated:
         kind = "angle" if moves == "theta" else "length"
         lower, upper = (_number(cells, units, each, kind, place) for each in _LIMITS)
         limits = (lower, upper)

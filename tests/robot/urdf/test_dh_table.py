@@ -105,6 +105,7 @@ def test_what_is_wrong_is_told_with_its_place(tmp_path, was, becomes, told):
         ("0.4,-1,,", "0.4,2,,", "line 4: .* its factor is 2"),
         ("wrist,theta", "turn,theta", "two rows are named 'turn'"),
         ("lift,d", "lift,a", "line 3: moves is 'a'"),
+        ("-200,900", "-200,", "line 3: lower is stated without the other limit"),
     ],
 )
 def test_joints_that_cannot_be_are_refused(tmp_path, was, becomes, told):
