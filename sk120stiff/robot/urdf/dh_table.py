@@ -12,7 +12,7 @@ modified convention C Rz(theta + q) Tz(d) (Craig 1986); b and beta are zero but 
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -90,8 +90,16 @@ def is_dh_table(path: Path) -> bool:
     if path.suffix.lower() != ".csv" or not path.is_file():
         return False
     with path.open(encoding="utf-8-sig", errors="replace") as stream:
-        names = {cell.partition("[")[0].strip().lower() for cell in stream.readline().split(",")}
+        header = next((cells for _, cells in _told(stream)), [])
+    names = {cell.partition("[")[0].strip().lower() for cell in header}
     return {"theta", "alpha", "a", "d"} <= names
+
+
+def _told(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
+    """Number and cells of every line that is neither blank nor a comment."""
+    for number, line in enumerate(lines, 1):
+        if line.strip(" ,;\t\r\n") and not line.lstrip().startswith("#"):
+            yield number, next(csv.reader([line]))
 
 
 def urdf_of_table(text: str, name: str, place: str) -> str:
@@ -183,8 +191,9 @@ def _placed(
 
 
 def _rows(text: str, place: str) -> list[Row]:
-    lines = list(csv.reader(text.splitlines()))
-    headers = [split_header(cell, where=f"{place}, line 1") for cell in lines[0]]
+    lines = _told(text.splitlines())
+    first, cells = next(lines)
+    headers = [split_header(cell, where=f"{place}, line {first}") for cell in cells]
     names = [name.lower() for name, _ in headers]
     units = dict(zip(names, (unit for _, unit in headers), strict=True))
     known = {*_ANGLES, *_LENGTHS, *_LIMITS, *_WORDS}
@@ -195,14 +204,13 @@ def _rows(text: str, place: str) -> list[Row]:
         what = f"lacks {', '.join(missing)}" if missing else f"has unknown or double columns: {odd}"
         raise InputError(
             f"this table of Denavit and Hartenberg's numbers {what}",
-            where=f"{place}, line 1",
+            where=f"{place}, line {first}",
             remedy=f"Write it like {_EXAMPLE}; convention is standard or modified.",
         )
     rows: list[Row] = []
-    for number, cells in enumerate(lines[1:], 2):
-        if any(cell.strip() for cell in cells):
-            filled = dict(zip(names, (cell.strip() for cell in cells), strict=False))
-            rows.append(_row(filled, units, len(rows) + 1, f"{place}, line {number}"))
+    for number, cells in lines:
+        filled = dict(zip(names, (cell.strip() for cell in cells), strict=False))
+        rows.append(_row(filled, units, len(rows) + 1, f"{place}, line {number}"))
     read = "standard" if any(row.convention == "standard" for row in rows) else "modified"
     kept = [row for row in rows if row.convention == read and not row.name.endswith(MARKER)]
     twice = {row.name for row in kept if [each.name for each in kept].count(row.name) > 1}

@@ -115,6 +115,17 @@ def test_joints_that_cannot_be_are_refused(tmp_path, was, becomes, told):
         load(tmp_path, table.replace(was, becomes, 1))
 
 
+def test_comments_and_blank_lines_are_passed_over_and_counted(tmp_path):
+    noted = "# of the maker's data sheet\n\n" + UR5E.replace(
+        "standard,0,0,-392", "# upper arm\n,,\nstandard,0,0,-392"
+    )
+    plain, table = load(tmp_path, UR5E), load(tmp_path, noted)
+    q = np.linspace(-1.0, 1.0, 6)
+    np.testing.assert_array_equal(table.placement(q), plain.placement(q))
+    with pytest.raises(InputError, match="line 8: 'x' in column a"):
+        load(tmp_path, noted.replace("-392.2", "x"))
+
+
 def test_a_driver_that_is_no_joint_is_refused(tmp_path):
     table = UR5E.replace("alpha[deg]\n", "alpha[deg],driver\n").replace(
         "-392.2,0\n", "-392.2,0,crank\n"
