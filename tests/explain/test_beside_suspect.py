@@ -13,10 +13,12 @@ from sk120stiff.explain.judge.beside_suspect import _holds, nuisance
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.identify import fit
 from tests.explain.readings import NOISE, base_fit, hidden
+from tests.hidden.generator.causes_foreign import TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
 
 TEETH = PeriodicGear("joint_2_l", {"share": 0.2}, {"count": 1, "phase": 1.0})
 GEAR = GearHardening("joint_1_s", {"cubic": 0.8}, {"T": 700.0})
+STAND = TrackerStand("tracker", {"compliance": 5e-8}, {"at": (3.5, -0.8, -0.3)})
 TOLD = "with that beside the names, nothing is left beyond the noise"
 
 
@@ -78,10 +80,19 @@ def test_a_suspect_that_holds_a_name_is_known_by_its_columns(springs):
     assert not _holds(free, by_id["gear_hardening:joint_1_s"], found)
 
 
-def test_a_name_stands_beside_a_cause_without_one(springs):
-    """Gear 1 stiffens, gear 2 is softer at some angles: the first is named, the second told."""
-    answer = explain(springs, hidden(GEAR, TEETH))
+@pytest.mark.parametrize(
+    ("foreign", "place"),
+    [
+        (TEETH, "the position of joint_2_l"),
+        (STAND, "the moment that tips the floor under base and tracker"),
+    ],
+)
+def test_a_name_stands_beside_a_cause_without_one(springs, foreign, place):
+    """Gear 1 stiffens, and a cause is at work that no effect is: one is named, the other told."""
+    answer = explain(springs, hidden(GEAR, foreign))
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.remainder.significant
-    assert "the position of joint_2_l" in answer.remainder.where[0]
+    assert place in answer.remainder.where[0]
     assert TOLD in answer.remainder.where[0]
+    without = hidden(GEAR).displacement - hidden(GEAR, foreign).displacement
+    assert answer.remainder.rms < 1.05 * np.sqrt(np.mean(without**2))

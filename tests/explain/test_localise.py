@@ -11,6 +11,7 @@ from sk120stiff.explain.localise.places import holm
 from sk120stiff.measurements import Measurements, NoiseModel
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, ClosureCoupling, JointTilt
+from tests.hidden.generator.causes_foreign import Hose, TrackerStand
 from tests.hidden.generator.causes_joint import FrictionHysteresis, GearHardening, LostMotion
 from tests.hidden.generator.causes_sensor import ForceScale, ReadingDrift, ReadingRotation
 from tests.hidden.generator.world import Cause
@@ -72,6 +73,14 @@ CASES = {
     "linkage": Expected(
         ClosureCoupling("joint_2_l,joint_3_u", {"compliance": 1e-7}),
         ("the torques of joint_2_l and joint_3_u, each moving the other joint",),
+    ),
+    "tracker on the robot's floor": Expected(
+        TrackerStand("tracker", {"compliance": 1e-7}, {"at": (3.5, -0.8, -0.3)}),
+        ("the moment that tips the floor under base and tracker",),
+    ),
+    "hose": Expected(
+        Hose("tool0", {"stiffness": 20e3, "drag": 15.0}),
+        ("something that holds the tool against its motion, a hose or a cable",),
     ),
 }
 

@@ -30,7 +30,7 @@ from sk120stiff.explain.judge.attribution import (
 )
 from sk120stiff.explain.judge.beside_form import unless_imitating, with_model_form
 from sk120stiff.explain.localise.places import line_up, look_at, ranked
-from sk120stiff.explain.localise.suspects import suspects_of
+from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.best_selection import Try
 from sk120stiff.explain.select.stepwise import Selection, refit
@@ -82,32 +82,28 @@ class Nuisance(ReadingError):
     def offsets(self, load_cases: LoadCases) -> Array:
         """The suspect's columns at these readings, base axes; zero where they do not tell it."""
         if id(load_cases) not in self._known:
-            columns = _columns(self.suspect, self.model, load_cases)
-            if columns is None:
-                columns = np.zeros((load_cases.count, 3, len(self.factors)))
+            suspect = suspect_named(self.suspect, self.model, load_cases)
+            nothing = np.zeros((load_cases.count, 3, len(self.factors)))
+            columns = nothing if suspect is None else suspect.columns
             self._known[id(load_cases)] = load_cases, columns @ self.factors
         return self._known[id(load_cases)][1]
 
 
-def _columns(suspect: str, model: Model, load_cases: LoadCases) -> Array | None:
-    every = suspects_of(model, load_cases, model.predict(load_cases))
-    return next((each.columns for each in every if each.name == suspect), None)
-
-
-def nuisance(suspect: str, base: Fit) -> Nuisance:
+def nuisance(name: str, base: Fit) -> Nuisance:
     """A suspect as parameters of the model of a fit.
 
     Raises:
         InputError: The readings of the fit do not tell of it.
     """
-    columns = _columns(suspect, base.model, base.problem.load_cases)
-    if columns is None:
-        raise InputError(f"these readings do not tell of {suspect}")
+    suspect = suspect_named(name, base.model, base.problem.load_cases)
+    if suspect is None:
+        raise InputError(f"these readings do not tell of {name}")
+    columns = suspect.columns
     flat = columns.reshape(-1, columns.shape[2]) / np.sqrt(columns[..., 0].size)
     _, size, right = np.linalg.svd(flat, full_matrices=False)
     seen = size > SMALLEST * size[0]
     factors = right[seen].T / size[seen]
-    return Nuisance("", suspect=suspect, model=base.model, factors=factors)
+    return Nuisance("", suspect=name, model=base.model, factors=factors)
 
 
 @dataclass(frozen=True)

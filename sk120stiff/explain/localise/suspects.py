@@ -109,6 +109,12 @@ def suspects_of(model: Model, load_cases: LoadCases, predicted: Array) -> tuple[
     )
 
 
+def suspect_named(name: str | None, model: Model, load_cases: LoadCases) -> Suspect | None:
+    """The suspect of that name; None where these readings do not tell of it."""
+    every = suspects_of(model, load_cases, model.predict(load_cases)) if name else ()
+    return next((each for each in every if each.name == name), None)
+
+
 def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     """The arm yields somewhere from base to tool, under the moment or force it carries there."""
     robot, count = load_cases.robot, load_cases.count
@@ -116,6 +122,7 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     world = np.broadcast_to(np.eye(3), (count, 3, 3))
     tips = _turning("place", "the moment that tips the base", load_cases, base, world[..., :2])
     yield replace(tips, frees=("base_rocking",))
+    yield _floor(tips)
     name = "the moment that turns the base about z"
     yield _turning("place", name, load_cases, base, world[..., 2:])
     pushes = _pushing("place", "the force that pushes the base", load_cases, world)
@@ -144,6 +151,18 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
         _pushing("place", "the force that the tool carries", load_cases, load_cases.rotation),
     )
     yield from (replace(each, frees=("tool_compliance",)) for each in at_tool)
+
+
+def _floor(tips: Suspect) -> Suspect:
+    """The floor tips, as far about x as about y, and a tracker that stands on it moves with it.
+
+    A turn about an axis through any point is one through the base and a shift across the axis.
+    """
+    moment = np.pad(tips.carried, ((0, 0), (0, 1)))
+    shifts = np.swapaxes(np.cross(moment[:, None, :], np.eye(3)), 1, 2)
+    columns = np.concatenate([tips.columns.sum(axis=2, keepdims=True), shifts], axis=2)
+    name = "the moment that tips the floor under base and tracker"
+    return replace(tips, name=name, columns=columns, carried=np.zeros((0, 0)))
 
 
 def _bent_places(load_cases: LoadCases) -> Iterator[Suspect]:
@@ -266,7 +285,12 @@ def _instruments(model: Model, load_cases: LoadCases, predicted: Array) -> Itera
     wrong = np.einsum("nij,nk->nijk", R, force).reshape(len(force), 3, 9)
     yield Suspect("instrument", "a misread load in tool axes", C @ wrong, size, "load [N]")
     bias = C @ R
-    yield Suspect("instrument", "a constant error of the load in tool axes", bias, size, "load [N]")
+    constant, own = "a constant error of the load in tool axes", ("force_bias",)
+    yield Suspect("instrument", constant, bias, size, "load [N]", frees=own)
+    length = np.linalg.norm(predicted, axis=1, keepdims=True)
+    against = np.stack([predicted, predicted / np.maximum(length, 1e-300)], axis=-1)
+    holds = "something that holds the tool against its motion, a hose or a cable"
+    yield Suspect("instrument", holds, C @ against, 1e6 * length[:, 0], "displacement [µm]")
     axes = load_cases.reading_axes
     d = np.einsum("nij,ni->nj", axes, predicted)
     columns = np.einsum("nij,nk->nijk", axes, d).reshape(len(d), 3, 9)
