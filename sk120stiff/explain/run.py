@@ -88,9 +88,8 @@ def explain(
     found, named, account = _judged(found, base, under, seed=options.seed)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
-    remainder = remainder_of(_as_written(found.final, noise))
-    if left.lacking:
-        remainder = remainder.beside(left.probability)
+    goes_with = None if account is None else account.suspect
+    remainder = remainder_of(_as_written(found.final, noise), left, goes_with)
     findings = tuple(
         in_full(each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else))
         for k, each in enumerate(named.findings)

@@ -16,6 +16,8 @@ from sk120stiff.explain.judge.posterior import NONE, doubted, in_full, posterior
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
 from sk120stiff.explain.select.score import score_set
+from sk120stiff.identify.uncertainty.left_over import LeftOver
+from sk120stiff.identify.uncertainty.variance_components import Components
 from sk120stiff.measurements import ModelForm
 from sk120stiff.robot import load_robot
 from tests.explain.readings import base_fit, hidden
@@ -155,7 +157,9 @@ def test_each_look_at_what_is_left_counts_in_its_probability():
 
 def test_what_is_left_is_significant_where_structure_alone_says_so():
     """Random effects that differ from pose to pose hardly see what is alike at all of them."""
-    left = Remainder(17e-6, (6e-6, 28e-6), 0.024, ModelForm(0.01), something_else=0.45)
+    found = Components(ModelForm(0.01), 1.0, 0.0, 1.0, 0.0)
+    size = LeftOver(17e-6, (6e-6, 28e-6), 30e-6, True, found, 0.024)
+    left = Remainder(size, something_else=0.45)
     assert not left.significant
     assert left.beside(0.5) is left
     seen = left.beside(1e-12)

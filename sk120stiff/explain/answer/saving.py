@@ -49,7 +49,9 @@ def save(
     out = Path(folder)
     following = None if answer.next_poses is None else NEXT_POSES
     document = {"schema": SCHEMA, **verdict_document(answer, answer.readings, following)}
-    fitted = replace(known_model(answer.final), provenance=dict(provenance or {}))
+    fitted = replace(
+        known_model(answer.final, answer.remainder.left), provenance=dict(provenance or {})
+    )
     gaps = _gaps(fitted, answer.readings)
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")

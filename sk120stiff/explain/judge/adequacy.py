@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +42,7 @@ class Adequacy:
         whole: The test of the whole misfit; None where nothing tells the noise.
         understated: By how much a stated σ looks too small, where that is all that is wrong; else
             None.
+        closest: The suspect that the gap goes with most closely; None where there is none.
     """
 
     probability: float
@@ -50,6 +51,7 @@ class Adequacy:
     tests: dict[str, float]
     whole: LackOfFit | None = None
     understated: float | None = None
+    closest: str | None = None
 
     @property
     def lacking(self) -> bool:
@@ -116,20 +118,24 @@ def adequacy(fit: Fit, named: Collection[str]) -> Adequacy:
     noise, whole = yardstick(fit), lack_of_fit(fit)
     size = explained(fit, named) / float(np.sqrt(noise.scale))
     if noise.source == "stated" and whole is not None and whole.probability < LEVEL:
-        free = dict(_structure(fit, _free(fit)))
+        free, closest = _structure(fit, _free(fit))
         free |= unlike_scatter(fit)
         if _nothing_structured(fit, free, whole.factor):
-            return _judged(free, size / whole.factor, whole, whole.factor)
-    tests = dict(_structure(fit, noise))
+            return _judged(free, size / whole.factor, whole, closest, whole.factor)
+    tests, closest = _structure(fit, noise)
     if whole is not None:
         taken = whole.freedom[0]
         beyond = whole.statistic * (1 if whole.freedom[1] is None else taken) - taken
         tests["whole misfit"] = whole.probability, beyond
-    return _judged(tests, size, whole)
+    return _judged(tests, size, whole, closest)
 
 
 def _judged(
-    tests: Tests, explained: float, whole: LackOfFit | None, understated: float | None = None
+    tests: Tests,
+    explained: float,
+    whole: LackOfFit | None,
+    closest: str | None,
+    understated: float | None = None,
 ) -> Adequacy:
     excess = max((beyond for _, beyond in tests.values()), default=0.0)
     return Adequacy(
@@ -139,6 +145,7 @@ def _judged(
         tests={name: chance for name, (chance, _) in tests.items()},
         whole=whole,
         understated=understated,
+        closest=closest,
     )
 
 
@@ -158,19 +165,21 @@ def _nothing_structured(fit: Fit, tests: Tests, factor: float) -> bool:
     return _smallest(tests) >= min(LEVEL * factor**4, 0.05)
 
 
-def _structure(fit: Fit, noise: Yardstick) -> Iterator[tuple[str, tuple[float, float]]]:
-    """All that noise cannot have made, with its probability and its excess."""
-    found = localise(fit, noise)
+def _structure(fit: Fit, noise: Yardstick) -> tuple[Tests, str | None]:
+    """All that noise cannot have made, and the suspect that it goes with most closely."""
+    found, tests = localise(fit, noise), Tests()
     if noise.freedom:
         for order in found.orders:
             if order.probability is not None and order.name in ORDERS:
-                yield ORDERS[order.name], (order.probability, order.excess)
+                tests[ORDERS[order.name]] = order.probability, order.excess
     for own in found.own:
-        yield OWN[own.name], (own.probability, own.statistic - own.freedom)
-    if found.suspects:
-        closest = min(found.suspects, key=lambda suspicion: suspicion.probability)
-        beyond = closest.statistic - closest.freedom
-        yield f"together with {closest.name}", (closest.probability, beyond)
+        tests[OWN[own.name]] = own.probability, own.statistic - own.freedom
+    if not found.suspects:
+        return tests, None
+    closest = min(found.suspects, key=lambda suspicion: suspicion.probability)
+    beyond = closest.statistic - closest.freedom
+    tests[f"together with {closest.name}"] = closest.probability, beyond
+    return tests, closest.name
 
 
 def explained(fit: Fit, named: Collection[str]) -> float:

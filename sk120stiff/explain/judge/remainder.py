@@ -12,9 +12,11 @@ import numpy as np
 from scipy.special import expit
 from scipy.special import logit as _logit
 
+from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.priors import SOMETHING_ELSE
 from sk120stiff.identify import Fit
-from sk120stiff.identify.uncertainty.left_over import left_over
+from sk120stiff.identify.uncertainty.left_over import LeftOver, going_with, left_over
 from sk120stiff.identify.uncertainty.variance_components import Components
 from sk120stiff.measurements.model_form import ModelForm
 
@@ -26,20 +28,34 @@ class Remainder:
     """What a model leaves beyond the noise.
 
     Attributes:
-        rms: Its size at the measured loads, rms per axis [m].
-        interval: 95 % interval of `rms`.
-        probability: Probability that noise alone leaves as much.
-        form: How it goes with the load.
+        left: Its size and how sure it is; the model's file has the same.
         where: Where it lives, in sentences.
         something_else: Probability that a cause is at work which no effect in the model is.
     """
 
-    rms: float
-    interval: tuple[float, float]
-    probability: float
-    form: ModelForm
+    left: LeftOver
     where: tuple[str, ...] = ()
     something_else: float = 0.0
+
+    @property
+    def rms(self) -> float:
+        """Its size at the measured loads, rms per axis [m]."""
+        return self.left.rms
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """95 % interval of `rms`."""
+        return self.left.interval
+
+    @property
+    def probability(self) -> float:
+        """Probability that noise alone leaves as much."""
+        return self.left.probability
+
+    @property
+    def form(self) -> ModelForm:
+        """How it goes with the load at single poses."""
+        return self.left.found.form
 
     @property
     def significant(self) -> bool:
@@ -58,7 +74,7 @@ class Remainder:
         logit = _logit(SOMETHING_ELSE) - 1.0 - float(np.log(-p * np.log(p)))
         return replace(
             self,
-            probability=chance,
+            left=replace(self.left, probability=chance),
             something_else=max(self.something_else, float(expit(logit))),
         )
 
@@ -76,22 +92,31 @@ class Remainder:
             parts.append(f"{100.0 * self.form.proportional:.2g} % of a pose's compliance")
         if self.form.constant:
             parts.append(f"{1e6 * self.form.constant:.3g} µm of its own at every pose")
+        as_if = f", as if every pose had {' and '.join(parts)} that no effect explains"
         return (
             f"Left over beyond the noise are {1e6 * self.rms:.3g} µm rms per axis (95 %: {low:.3g} "
-            f"to {high:.3g}), as if every pose had {' and '.join(parts)} that no effect explains."
+            f"to {high:.3g}){as_if if parts else ''}."
         )
 
 
-def remainder_of(fit: Fit) -> Remainder:
-    """The remainder of a fitted model, the one that its model's file has."""
+def remainder_of(fit: Fit, test: Adequacy | None = None, suspect: str | None = None) -> Remainder:
+    """The remainder of a fitted model, the one that its model's file has.
+
+    Args:
+        fit: The fitted model.
+        test: What else was asked of what it leaves.
+        suspect: What it is known to go with; else what `test` found to come closest.
+    """
     left = left_over(fit)
-    return Remainder(
-        left.rms,
-        left.interval,
-        left.found.probability,
-        left.found.form,
-        something_else=_something_else(left.found, len(fit.problem.measurements.poses)),
-    )
+    something_else = _something_else(left.found, len(fit.problem.measurements.poses))
+    if test is None or not test.lacking:
+        return Remainder(left, something_else=something_else)
+    load_cases = fit.problem.load_cases
+    closest = suspect_named(suspect or test.closest, fit.model, load_cases)
+    if closest is not None:
+        columns = np.swapaxes(load_cases.reading_axes, 1, 2) @ closest.columns
+        left = going_with(left, fit, columns, grows=closest.family != "series")
+    return Remainder(left, something_else=something_else).beside(test.probability)
 
 
 def _something_else(found: Components, poses: int) -> float:

@@ -12,7 +12,7 @@ from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.polish import seen_directions
-from sk120stiff.identify.uncertainty.left_over import left_over
+from sk120stiff.identify.uncertainty.left_over import LeftOver, left_over
 from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
 from sk120stiff.robot.anatomy import arm_length
@@ -21,21 +21,25 @@ COUNTS = 0.05  # probability of noise alone below which the remainder counts in 
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 
 
-def known_model(fit: Fit) -> Model:
+def known_model(fit: Fit, left: LeftOver | None = None) -> Model:
     """The fitted model with its uncertainty, as it is written to a file.
 
     It has none where as many values were estimated as were read and no σ was stated. Estimates on
     a physical bound count as free: to be cut by a bound takes an estimate no farther from the
     truth (a projection on a convex set), so nothing is said too surely.
+
+    Args:
+        fit: The fitted model.
+        left: Its remainder, where that is known already.
     """
     if not np.isfinite(fit.unit):
         return fit.model
     test, noise = lack_of_fit(fit), yardstick(fit)
     sigma = noise.sigma or fit.problem.noise.sigma * fit.noise_factor
     known = known_estimates(fit, sigma, _source(fit, noise))
-    left = _remainder(fit) if fit.problem.weights is None else None
-    if left is not None and (test is not None or left.significant):
-        known = replace(known, remainder=left)
+    told = None if fit.problem.weights is not None else _remainder(fit, left or left_over(fit))
+    if told is not None and (test is not None or told.significant):
+        known = replace(known, remainder=told)
     return fit.model.known(known)
 
 
@@ -79,12 +83,11 @@ def _source(fit: Fit, noise: Yardstick) -> str:
     return f"{measurements.n_readings} readings at {poses} poses; {said}"
 
 
-def _remainder(fit: Fit) -> Remainder | None:
+def _remainder(fit: Fit, left: LeftOver) -> Remainder | None:
     """What the fit leaves over, as predictions need it; None where no load tells its size."""
     problem = fit.problem
     length = arm_length(problem.model.robot) or 1.0
     load = float(np.sqrt(np.mean(load_size(problem.load_cases.wrench, length) ** 2)))
-    left = left_over(fit)
     if load == 0.0 or not np.isfinite(left.upper):
         return None
     return Remainder(
@@ -94,8 +97,8 @@ def _remainder(fit: Fit) -> Remainder | None:
         load=load,
         length=length,
         grows=left.grows,
-        probability=left.found.probability,
-        significant=left.found.probability < COUNTS,
+        probability=left.probability,
+        significant=left.probability < COUNTS,
     )
 
 

@@ -7,23 +7,27 @@ restricted likelihood: what is left is the size of the random effects that these
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
 from scipy.optimize import brentq, minimize_scalar
 
+from sk120stiff.arrays import Array
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import against_noise_alone
+from sk120stiff.identify.uncertainty.effects_left import LeftByPoses, left_by_all
 from sk120stiff.identify.uncertainty.variance_components import (
     Components,
     Deviance,
     variance_components,
 )
-from sk120stiff.measurements.model_form import ModelForm, form_columns, rows_of_poses
+from sk120stiff.measurements.model_form import ModelForm
 
 INTERVAL = float(stats.chi2.isf(0.05, 1))  # rise of -2 ln L at the ends of a 95 % interval
 ONE = 1.0  # rise of -2 ln L one standard error away
+# relative standard uncertainty of a stated σ: that of a scatter of 15 readings (GUM, table E.1)
+STATED = 0.19
 NORMAL = float(stats.norm.isf(0.025))  # standard deviations of a 95 % interval
 SMALLEST = 1e-6  # of a pose's compliance: where an upper limit is looked for from
 NOISE = 1.5  # ln of the factors by which noise is looked for
@@ -41,7 +45,8 @@ class LeftOver:
         upper: Size of such random effects at poses like these, rms per axis, with one standard
             error more: what they may be at other poses [m].
         grows: More of it goes in proportion to the load than is constant.
-        found: How it goes with the load, and how sure it is.
+        found: How it goes with the load at single poses.
+        probability: Of as much where there is noise alone.
     """
 
     rms: float
@@ -49,18 +54,20 @@ class LeftOver:
     upper: float
     grows: bool
     found: Components
+    probability: float
 
 
 def left_over(fit: Fit) -> LeftOver:
     """The remainder of a fitted model; a model-form error that its noise holds is found anew.
 
-    Its size is told beside the noise as it was stated. Its interval is a profile likelihood over
-    the noise, since what is stated of it is an estimate too.
+    Size, significance and interval are a profile likelihood over the noise, since what is stated of
+    it is an estimate too.
     """
     fit = against_noise_alone(fit)
-    found = variance_components(fit)
+    slack = _slack(fit)
+    found = variance_components(fit, slack)
     readings = fit.problem.measurements
-    deviance = Deviance.of(fit)
+    deviance, left = Deviance.of(fit, slack=slack), LeftByPoses.of(fit)
     form = found.form or ModelForm(proportional=SMALLEST)
 
     def profile(logarithm: float) -> tuple[float, ModelForm, float]:
@@ -85,37 +92,68 @@ def left_over(fit: Fit) -> LeftOver:
             return None
         return profile(float(brentq(beyond, *sorted((start, far)), xtol=0.01)))[1:]
 
-    rms = _left(fit, found.form, found.noise_factor)[1]
+    rms = left.of_sizes(found.form, found.noise_factor)[1]
     smallest = end(INTERVAL, -WIDEST) if found.form else None
     largest, larger = end(INTERVAL, WIDEST), end(ONE, WIDEST)
-    low = 0.0 if smallest is None else min(_left(fit, *smallest)[0], rms)
-    high = np.inf if largest is None else max(_left(fit, *largest)[2], rms)
+    low = 0.0 if smallest is None else min(left.of_sizes(*smallest)[0], rms)
+    high = np.inf if largest is None else max(left.of_sizes(*largest)[2], rms)
+    if found.form:  # no structure is known to the last reading
+        high = _with_single_readings(rms, high, _in_single_readings(fit, deviance, found))
     upper = np.inf if larger is None else max(larger[0].rms(readings), rms)
     grows = found.form.rms(readings) ** 2 >= 2.0 * found.form.constant**2
-    return LeftOver(rms, (low, high), upper, grows, found)
+    return LeftOver(rms, (low, high), upper, grows, found, found.probability)
 
 
-def _left(fit: Fit, form: ModelForm, noise_factor: float) -> tuple[float, float, float]:
-    """What random effects of one size left in these readings: 2.5 %, mean, 97.5 %, rms [m].
+def going_with(left: LeftOver, fit: Fit, columns: Array, *, grows: bool) -> LeftOver:
+    """The remainder where the gap goes with one thing at all poses.
 
-    Their distribution given the gap is normal (Searle, Casella & McCulloch, chapter 7); what the
-    model's parameters took on is not left, and no remainder is larger than the gap.
+    What all poses share shows where no single pose shows anything. The larger of both sizes
+    counts; the interval holds both.
+
+    Args:
+        left: The remainder by what single poses have of their own.
+        fit: The fitted model.
+        columns: (N, 3, k) what it goes with, reading axes [m].
+        grows: That goes with the load.
     """
-    problem = fit.problem
-    readings = problem.measurements
-    gap = problem.measured - fit.model.predict(problem.load_cases)
-    proportional, constant = form_columns(readings)
-    Z = np.concatenate([form.proportional * proportional, form.constant * constant], axis=2)
-    white = problem.whitener.apply(np.concatenate([Z, gap[:, :, None]], axis=2)) / noise_factor
-    Z = Z.reshape(len(white), -1)
-    mean = variance = 0.0
-    for rows in rows_of_poses(readings):
-        drawn, rest = white[rows, :-1], white[rows, -1]
-        spread = np.linalg.inv(np.eye(drawn.shape[1]) + drawn.T @ drawn)
-        likeliest = Z[rows] @ (spread @ (drawn.T @ rest))
-        covariance = Z[rows] @ spread @ Z[rows].T
-        mean += float(likeliest @ likeliest + np.trace(covariance))
-        variance += float(2.0 * (covariance**2).sum() + 4.0 * likeliest @ covariance @ likeliest)
-    ends = mean + NORMAL * np.sqrt(variance) * np.array([-1.0, 0.0, 1.0])
-    low, middle, high = np.sqrt(np.maximum(ends, 0.0) / max(len(white), 1))
-    return float(low), float(middle), float(high)
+    fit = against_noise_alone(fit)
+    low, rms, high = left_by_all(fit, columns, left.found.noise_factor)
+    deviance = Deviance.of(fit, slack=_slack(fit))
+    high = _with_single_readings(rms, high, _in_single_readings(fit, deviance, left.found))
+    if rms == 0.0:
+        return left
+    return replace(
+        left,
+        rms=max(rms, left.rms),
+        interval=(min(low, left.interval[0] or low), max(high, left.interval[1])),
+        upper=max(high, left.upper),
+        grows=grows if rms > left.rms else left.grows,
+    )
+
+
+def _with_single_readings(rms: float, high: float, hidden: float) -> float:
+    """The upper end of a size with what single readings may have of their own [m²] beside it."""
+    return float(np.sqrt(rms**2 + np.hypot(high**2 - rms**2, hidden)))
+
+
+def _slack(fit: Fit) -> float:
+    """Relative standard uncertainty of σ: as stated, or as repeats tell it."""
+    freedom = fit.problem.noise.freedom
+    return STATED if np.isinf(freedom) else 1.0 / np.sqrt(2.0 * max(freedom, 1.0))
+
+
+def _in_single_readings(fit: Fit, deviance: Deviance, found: Components) -> float:
+    """Upper end of the variance that readings have of their own beyond the noise [m²].
+
+    Model-form error without any pattern looks like noise: what is left beside the random effects is
+    the sum of both, and σ is known to so much of itself only. 97.5 % limit of the difference of two
+    variances (MOVER: Zou & Donner 2008); 0 where nothing but the gap tells the noise.
+    """
+    noise, freedom = fit.problem.noise, deviance.freedom
+    if np.isinf(deviance.slack):
+        return 0.0
+    square = deviance.unexplained(found.form.scaled(1.0 / found.noise_factor))
+    both, most = square / freedom, square / float(stats.chi2.isf(0.975, freedom))
+    least = float(np.exp(-2.0 * NORMAL * deviance.slack))
+    size = sum(part.mean() for part in noise.variances(fit.problem.measurements))
+    return float(size) * max(both - 1.0 + float(np.hypot(most - both, 1.0 - least)), 0.0)

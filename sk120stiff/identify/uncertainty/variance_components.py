@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
-from scipy.optimize import minimize
+from scipy.optimize import brentq, minimize
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements.model_form import (
@@ -30,8 +30,6 @@ from sk120stiff.measurements.model_form import (
 PROPORTIONS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)  # of a pose's compliance, where the search starts
 ROUNDING = 1e-13  # of the largest random effect, so that none outweighs the noise by rounding
 FAR = 4.0  # ln of the factor by which a size is sought away from its start
-# relative standard uncertainty of a stated σ: that of a scatter of 15 readings (GUM, table E.1)
-STATED = 0.19
 CONSTANTS = (0.0, 0.3, 1.0, 3.0, 10.0, 30.0)  # of the noise of one reading
 
 
@@ -41,7 +39,7 @@ class Components:
 
     Attributes:
         form: The likeliest sizes of the model-form error.
-        noise_factor: Likeliest noise over the one assumed; 1 where σ is known.
+        noise_factor: Likeliest noise over the one assumed; 1 where σ counts as known.
         gain: Fall of -2 ln L against noise alone.
         inflation: Factor by which σ would have to grow, were the gap noise alone.
         inflation_gain: Fall of -2 ln L by that factor.
@@ -59,9 +57,14 @@ class Components:
         return float(0.5 * stats.chi2.sf(max(self.gain, 0.0), 2)) if self.gain > 0.0 else 1.0
 
 
-def variance_components(fit: Fit) -> Components:
-    """The likeliest model-form error beside the noise of a fit's readings."""
-    sums = Deviance.of(fit)
+def variance_components(fit: Fit, slack: float = 0.0) -> Components:
+    """The likeliest model-form error beside the noise of a fit's readings.
+
+    Args:
+        fit: The fitted model.
+        slack: Relative standard uncertainty of its σ, where that is known.
+    """
+    sums = Deviance.of(fit, slack=slack)
     grid = [ModelForm(p, c * sums.scale) for p in PROPORTIONS for c in CONSTANTS]
     values = [sums(form) for form in grid]
     plain = values[0]
@@ -120,7 +123,8 @@ class Deviance:
             (p) and gap, whitened by the noise alone; the gap is the last of p + 1 columns.
         rows: Whitened readings.
         scale: σ of one reading [m].
-        known: σ is known; else its likeliest value is taken at every form.
+        slack: Relative standard uncertainty of σ: 0 where it counts as known, infinite where
+            nothing tells it.
         signatures: How many of the random effects, the last ones, are signatures.
     """
 
@@ -130,7 +134,7 @@ class Deviance:
     xx: Array  # (p + 1, p + 1)
     rows: int
     scale: float  # m
-    known: bool
+    slack: float
     signatures: int = 0
 
     @property
@@ -139,29 +143,45 @@ class Deviance:
         return max(self.rows - len(self.xx) + 1, 1)
 
     def __call__(self, form: ModelForm, spread: float = 0.0) -> float:
-        """-2 ln L, up to a constant; where σ is not known, at its likeliest value.
+        """-2 ln L, up to a constant, at the likeliest noise.
 
-        Then `form` is relative to the noise assumed: the likeliest factor goes over both. `spread`
-        is the size of what poses have of the signature.
+        `form` is relative to the noise assumed: the likeliest factor goes over both. `spread` is
+        the size of what poses have of the signature.
         """
         logdet, information, square = self._terms(form, spread)
-        if self.known:
+        if not self.slack:
             return logdet + information + square
-        return logdet + information + self.freedom * float(np.log(square / self.freedom))
+        return logdet + information + self._of_noise(self._likeliest(square), square)
 
     def noise_factor(self, form: ModelForm, spread: float = 0.0) -> float:
-        """The likeliest noise beside a form, over the one assumed; 1 where σ is known."""
-        return 1.0 if self.known else float(np.sqrt(self._terms(form, spread)[2] / self.freedom))
+        """The likeliest noise beside a form, over the one assumed."""
+        return float(np.exp(self._likeliest(self._terms(form, spread)[2]))) if self.slack else 1.0
+
+    def unexplained(self, form: ModelForm) -> float:
+        """Square of the gap over the noise assumed, beyond parameters and random effects."""
+        return self._terms(form)[2]
 
     def with_noise(self, form: ModelForm, factor: float) -> float:
-        """-2 ln L of a form in metres beside noise so many times as large as assumed.
-
-        A stated σ is known to `STATED` of itself, as a normal prior of its logarithm.
-        """
+        """-2 ln L of a form in metres beside noise so many times as large as assumed."""
         logdet, information, square = self._terms(form.scaled(1.0 / factor), 0.0)
-        logarithm = float(np.log(factor))
-        held = (logarithm / STATED) ** 2 if self.known else 0.0
-        return logdet + information + 2.0 * self.freedom * logarithm + square / factor**2 + held
+        return logdet + information + self._of_noise(float(np.log(factor)), square)
+
+    def _of_noise(self, logarithm: float, square: float) -> float:
+        """What the noise's factor adds to -2 ln L; σ has a normal prior of its logarithm."""
+        held = (logarithm / self.slack) ** 2
+        return 2.0 * self.freedom * logarithm + square * float(np.exp(-2.0 * logarithm)) + held
+
+    def _likeliest(self, square: float) -> float:
+        """Logarithm of the likeliest factor of the noise."""
+        free = 0.5 * float(np.log(square / self.freedom))
+        if np.isinf(self.slack) or free == 0.0:
+            return free
+
+        def rise(logarithm: float) -> float:
+            pull = square * float(np.exp(-2.0 * logarithm))
+            return self.freedom - pull + logarithm / self.slack**2
+
+        return float(brentq(rise, *sorted((0.0, free)), xtol=1e-6))
 
     def _terms(self, form: ModelForm, spread: float = 0.0) -> tuple[float, float, float]:
         """ln|V| beyond the noise, ln|XᵀV⁻¹X| and rᵀPr."""
@@ -190,51 +210,105 @@ class Deviance:
         return float(information + self.freedom * (1.0 + np.log(square / self.freedom)))
 
     @classmethod
-    def of(cls, fit: Fit, signature: Array | None = None) -> Deviance:
+    def of(cls, fit: Fit, signature: Array | None = None, slack: float = 0.0) -> Deviance:
         """From a fitted model; a model-form error that its noise holds already does not count.
 
         Args:
             fit: The fitted model.
             signature: (N, 3) what every pose may have a share of its own of [m].
+            slack: Relative standard uncertainty of σ, where that is known.
         """
+        laid = LaidOut.of(fit, signature)
+        noise = laid.problem.whitener
+        white = Products.of(noise.apply(laid.drawn), noise.apply(laid.derivative), laid.poses)
+        return cls(
+            proportional=laid.proportional,
+            zz=white.zz,
+            zx=white.zx,
+            xx=white.xx,
+            rows=laid.drawn[:, :, 0].size,
+            scale=float(laid.problem.noise.sigma),
+            slack=slack if fit.problem.noise.known else np.inf,
+            signatures=0 if signature is None else 1,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class LaidOut:
+    """Random effects of unit size, derivative and gap of one fit, reading axes.
+
+    Attributes:
+        problem: That of the fit beside exact laws.
+        drawn: (N, 3, q) random effects; every pose has its own.
+        derivative: (N, 3, p + 1) by the parameters that move; the last column is the gap [m].
+        proportional: How many of the q go in proportion to the load.
+    """
+
+    problem: Problem
+    drawn: Array
+    derivative: Array
+    proportional: int
+
+    @property
+    def poses(self) -> list[Index]:
+        """Rows of each pose among the 3N."""
+        return rows_of_poses(self.problem.measurements)
+
+    @classmethod
+    def of(cls, fit: Fit, signature: Array | None = None) -> LaidOut:
+        """From a fit, and (N, 3) what every pose may have a share of its own of [m]."""
         exact = replace(fit.problem.noise, form=EXACT)
         problem = Problem(fit.model, fit.problem.measurements, exact, fit.problem.weights)
-        readings = problem.measurements
         predicted, full = fit.model.predict_with_sensitivities(problem.load_cases)
         moving = problem.free[~fit.at_bound]
-        both = np.concatenate(
-            [
-                full[:, :, moving] * problem.scale[~fit.at_bound],
-                (problem.measured - predicted)[:, :, None],
-            ],
-            axis=2,
-        )
-        noise = problem.whitener
-        proportional, constant = form_columns(readings)
+        gap = (problem.measured - predicted)[:, :, None]
+        columns = full[:, :, moving] * problem.scale[~fit.at_bound]
+        proportional, constant = form_columns(problem.measurements)
         more = [] if signature is None else [signature[:, :, None]]
-        Z = noise.apply(np.concatenate([proportional, constant, *more], axis=2))
-        white = noise.apply(both)
-        poses = rows_of_poses(readings)
         return cls(
-            proportional=proportional.shape[2],
-            zz=np.stack([Z[rows].T @ Z[rows] for rows in poses]),
-            zx=np.stack([Z[rows].T @ white[rows] for rows in poses]),
-            xx=white.T @ white,
-            rows=len(white),
-            scale=float(exact.sigma),
-            known=fit.problem.noise.known,
-            signatures=len(more),
+            problem,
+            np.concatenate([proportional, constant, *more], axis=2),
+            np.concatenate([columns, gap], axis=2),
+            proportional.shape[2],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Products:
+    """Products of random effects (q) and derivative with gap (p + 1), by poses and over all."""
+
+    zz: Array  # (G, q, q)
+    zx: Array  # (G, q, p + 1)
+    xx: Array  # (p + 1, p + 1)
+
+    @classmethod
+    def of(cls, drawn: Array, derivative: Array, poses: list[Index]) -> Products:
+        """Of (3N, q) and (3N, p + 1), and the rows of each pose."""
+        return cls(
+            np.stack([drawn[rows].T @ drawn[rows] for rows in poses]),
+            np.stack([drawn[rows].T @ derivative[rows] for rows in poses]),
+            derivative.T @ derivative,
         )
 
 
 def _projected(sums: Array) -> tuple[float, float]:
     """Square of the gap beyond the parameters, and ln det of their information."""
     p = len(sums) - 1
-    if not p:
-        return max(float(sums[-1, -1]), 1e-300), 0.0
-    scale = np.sqrt(np.maximum(np.diag(sums)[:p], 1e-300))
-    values, vectors = np.linalg.eigh(sums[:p, :p] / np.outer(scale, scale))
+    scale, values, vectors = _seen(sums[:p, :p])
+    along = vectors.T @ (sums[:p, -1] / scale)
+    information = float(np.log(values).sum() + 2.0 * np.log(scale).sum())
+    return max(float(sums[-1, -1] - (along**2 / values).sum()), 1e-300), information
+
+
+def orthonormal_parameters(information: Array) -> Array:
+    """(p, k) combinations of parameters that the readings see, with information of one each."""
+    scale, values, vectors = _seen(information)
+    return np.asarray(vectors / np.sqrt(values) / scale[:, None])
+
+
+def _seen(information: Array) -> tuple[Array, Array, Array]:
+    """Scale (p,) of parameters, and eigenvalues (k,) and vectors (p, k) of what is seen of them."""
+    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
+    values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
     seen = values > 1e-10
-    along = vectors[:, seen].T @ (sums[:p, -1] / scale)
-    information = float(np.log(values[seen]).sum() + 2.0 * np.log(scale).sum())
-    return max(float(sums[-1, -1] - (along**2 / values[seen]).sum()), 1e-300), information
+    return scale, values[seen], vectors[:, seen]
