@@ -12,7 +12,12 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, ClosureCoupling, JointTilt
 from tests.hidden.generator.causes_foreign import Hose, TrackerStand
-from tests.hidden.generator.causes_joint import FrictionHysteresis, GearHardening, LostMotion
+from tests.hidden.generator.causes_joint import (
+    Creep,
+    FrictionHysteresis,
+    GearHardening,
+    LostMotion,
+)
 from tests.hidden.generator.causes_sensor import ForceScale, ReadingDrift, ReadingRotation
 from tests.hidden.generator.world import Cause
 
@@ -77,6 +82,10 @@ CASES = {
     "tracker on the robot's floor": Expected(
         TrackerStand("tracker", {"compliance": 1e-7}, {"at": (3.5, -0.8, -0.3)}),
         ("the moment that tips the floor under base and tracker",),
+    ),
+    "creep": Expected(
+        Creep(SHOULDER, {"share": 0.5}, {"time": 3.0}),
+        ("the torque of joint_2_l as it lasts, in creep",),
     ),
     "hose": Expected(
         Hose("tool0", {"stiffness": 20e3, "drag": 15.0}),
