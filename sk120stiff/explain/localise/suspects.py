@@ -18,7 +18,7 @@ from sk120stiff.effects import LoadCases
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import ArmJoint, arm_joints
 
-CREEPS = np.array([1.0, 10.0, 100.0])  # readings that creep takes, one term of a series a decade
+CREEPS = (1.0, 10.0, 100.0)  # readings that creep takes, one term of a series a decade
 SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
 
 
@@ -236,7 +236,7 @@ def _laws(load_cases: LoadCases) -> Iterator[Suspect]:
             rubs = (f"friction_hysteresis:{joint}",)
             yield Suspect("law", name, columns, load[:, i], label, along, frees=rubs)
         if load_cases.order is not None and np.ptp(load_cases.order) > 0.0:
-            lasting = 1.0 - np.exp(-load_cases.order[:, None] / CREEPS)
+            lasting = 1.0 - np.exp(-load_cases.order[:, None] / np.array(CREEPS))
             columns = (push * load[:, i, None])[:, :, None] * lasting[:, None, :]
             name = f"the {what} of {joint} as it lasts, in creep"
             yield Suspect("law", name, columns, load_cases.order, "readings since the zero", along)
