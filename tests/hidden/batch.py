@@ -1,4 +1,4 @@
-"""Runs the public command many times in one process, to save its start-up; for quick looks only.
+"""Runs the public command many times in one process, to save its start-up.
 
 `python -m tests.hidden.batch < LINES`: every line is a JSON list: files for stdout and stderr,
 then the command's arguments. Exit codes are printed, one per line. Only the command's entry point

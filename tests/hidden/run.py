@@ -1,12 +1,13 @@
 """Lets the public command answer all cases, then freezes the answers.
 
-`python -m tests.hidden.run FOLDER [--jobs 2] [--timeout 300] [--batch] [--fresh]`
+`python -m tests.hidden.run FOLDER [--jobs 2] [--timeout 300] [--batch [--again 25]] [--fresh]`
 
 For every case: `sk120stiff explain train.csv --holdout holdout.csv --out ... --json`, then
 `sk120stiff predict` with the model that was written, on readings it has not seen. Interrupted runs
-go on where they were. `--batch` uses one process for many cases: quick, but no table for
-publication. `truth/` is never opened here. One case in ten, by its name, draws its report and scene
-too, and a page that fails is a failed case.
+go on where they were. `--batch` uses one process for many cases; `--again` answers so many of them
+once more, each in processes of its own, and writes down which come out otherwise: a table for
+publication needs the one or the other. `truth/` is never opened here. One case in ten, by its name,
+draws its report and scene too, and a page that fails is a failed case.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from threading import local
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = [sys.executable, "-m", "sk120stiff"]
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+SAID = ("verdict.json", "next_poses.csv", "predicted.csv")
 ANSWER_FILES = ("verdict.json", "model.yaml", "next_poses.csv", "predicted.csv", "run.json")
 
 
@@ -92,9 +94,9 @@ class Batched(Separate):
         return code, seconds
 
 
-def answer(folder: Path, name: str, runner: Separate) -> None:
+def answer(folder: Path, name: str, runner: Separate, answers: str = "answers") -> None:
     """Everything that the program says about one case, in FOLDER/answers/NAME."""
-    case, target = folder / "cases" / name, folder / "answers" / name
+    case, target = folder / "cases" / name, folder / answers / name
     if (target / "run.json").exists():
         return
     shutil.rmtree(target, ignore_errors=True)
@@ -131,7 +133,17 @@ def digest(folder: Path) -> dict[str, str]:
     return found
 
 
-def freeze(folder: Path, batched: bool) -> None:
+def otherwise(folder: Path, name: str) -> bool:
+    """Does a case come out otherwise in processes of its own than in the batch?"""
+
+    def said(answers: str) -> list[bytes | None]:
+        files = [folder / answers / name / file for file in SAID]
+        return [file.read_bytes() if file.exists() else None for file in files]
+
+    return said("answers") != said("again")
+
+
+def freeze(folder: Path, batched: bool, again: Sequence[str] = ()) -> None:
     """Writes down what was answered, by which state of the program, and when."""
     commit = subprocess.run(
         ["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True,
@@ -141,6 +153,8 @@ def freeze(folder: Path, batched: bool) -> None:
         "when": datetime.now(UTC).isoformat(timespec="seconds"),
         "program": commit,
         "batched": batched,
+        "again": len(again),
+        "otherwise": [name for name in again if otherwise(folder, name)],
         "files": digest(folder),
     }
     (folder / "frozen.json").write_text(json.dumps(frozen, indent=1), encoding="utf-8")
@@ -152,22 +166,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--timeout", type=float, default=300.0)
     parser.add_argument("--batch", action="store_true")
+    parser.add_argument("--again", type=int, default=0, help="cases that are answered twice")
     parser.add_argument("--fresh", action="store_true", help="throw old answers away")
     given = parser.parse_args(arguments)
     folder = given.folder.resolve()
     if given.fresh:
-        shutil.rmtree(folder / "answers", ignore_errors=True)
+        for answers in ("answers", "again"):
+            shutil.rmtree(folder / answers, ignore_errors=True)
         (folder / "frozen.json").unlink(missing_ok=True)
     cases = sorted(path.name for path in (folder / "cases").iterdir())
     runner = Batched(given.timeout) if given.batch else Separate(given.timeout)
+    twice = cases[: given.again] if given.batch else []  # names tell nothing of their content
+    alone = Separate(given.timeout)
     started = time.perf_counter()
     with ThreadPoolExecutor(given.jobs) as pool:
         tasks = [pool.submit(answer, folder, name, runner) for name in cases]
+        tasks += [pool.submit(answer, folder, name, alone, "again") for name in twice]
         for number, task in enumerate(tasks, 1):
             task.result()
             if number % 10 == 0 or number == len(tasks):
                 print(f"{number}/{len(tasks)} in {time.perf_counter() - started:.0f} s", flush=True)
-    freeze(folder, given.batch)
+    freeze(folder, given.batch, twice)
     return 0
 
 

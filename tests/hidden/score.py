@@ -194,7 +194,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
             rows.append(line(level, cases))
     print(f"answers of {frozen['program']}, frozen {frozen['when']}")
     if frozen["batched"]:
-        print("run in batch mode: not for publication")
+        print(
+            f"many cases in one process; {frozen['again']} of them once more in processes of "
+            f"their own, {len(frozen['otherwise'])} of which came out otherwise"
+            if frozen.get("again")
+            else "run in batch mode: not for publication"
+        )
     print(table(rows))
     for row in rows:
         if row["settled"][1]:

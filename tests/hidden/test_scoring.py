@@ -261,3 +261,16 @@ def test_levels_may_have_counts_of_their_own():
     listed = names(wished, 5)
     assert [name for name, _, _ in listed] == [f"case_{k:04d}" for k in range(5)]
     assert Counter(level for _, level, _ in listed) == wished
+
+
+@pytest.mark.parametrize("twin", ["{}", "{1}", None])
+def test_an_answer_that_depends_on_its_process_is_told(tmp_path, twin):
+    """Batches count only as far as single processes say the same."""
+    for answers, said in (("answers", "{}"), ("again", twin)):
+        (tmp_path / answers / "case_0000").mkdir(parents=True)
+        if said is not None:
+            (tmp_path / answers / "case_0000" / "verdict.json").write_text(said)
+    run.freeze(tmp_path, batched=True, again=["case_0000"])
+    frozen = json.loads((tmp_path / "frozen.json").read_text())
+    assert frozen["again"] == 1
+    assert frozen["otherwise"] == ([] if twin == "{}" else ["case_0000"])
