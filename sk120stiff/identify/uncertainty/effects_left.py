@@ -132,4 +132,4 @@ def _ends(mean: float, variance: float, rows: int) -> tuple[float, float, float]
     freedom = 2.0 * mean**2 / variance
     low, high = stats.chi2.ppf(ENDS, freedom) / freedom
     low, middle, high = np.sqrt(mean / rows * np.array([low, 1.0, high]))
-    return float(low), float(middle), float(high)
+    return float(low), float(middle), float(max(high, middle))

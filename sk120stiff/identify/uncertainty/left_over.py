@@ -117,16 +117,16 @@ def going_with(left: LeftOver, fit: Fit, columns: Array, *, grows: bool) -> Left
         grows: That goes with the load.
     """
     fit = against_noise_alone(fit)
-    low, rms, high = left_by_all(fit, columns, left.found.noise_factor)
-    deviance = Deviance.of(fit, slack=_slack(fit))
-    high = _with_single_readings(rms, high, _in_single_readings(fit, deviance, left.found))
+    low, rms, most = left_by_all(fit, columns, left.found.noise_factor)
     if rms == 0.0:
         return left
+    deviance = Deviance.of(fit, slack=_slack(fit))
+    high = _with_single_readings(rms, most, _in_single_readings(fit, deviance, left.found))
     return replace(
         left,
         rms=max(rms, left.rms),
         interval=(min(low, left.interval[0] or low), max(high, left.interval[1])),
-        upper=max(high, left.upper),
+        upper=max(rms + (most - rms) / NORMAL, left.upper),
         grows=grows if rms > left.rms else left.grows,
     )
 
