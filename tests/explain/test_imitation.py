@@ -19,7 +19,7 @@ from sk120stiff.explain.judge.imitation import _Lineup as Lineup
 from sk120stiff.explain.judge.imitation import _precision as precision
 from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
 from sk120stiff.explain.judge.outweighed import outweighed
-from sk120stiff.explain.localise.suspects import Suspect
+from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.explain.select.stepwise import refit, select
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, ModelForm

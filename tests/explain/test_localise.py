@@ -17,6 +17,7 @@ from tests.hidden.generator.causes_joint import (
     FrictionHysteresis,
     GearHardening,
     LostMotion,
+    PeriodicGear,
 )
 from tests.hidden.generator.causes_sensor import ForceScale, ReadingDrift, ReadingRotation
 from tests.hidden.generator.world import Cause
@@ -86,6 +87,10 @@ CASES = {
     "creep": Expected(
         Creep(SHOULDER, {"share": 0.5}, {"time": 3.0}),
         ("the torque of joint_2_l as it lasts, in creep",),
+    ),
+    "teeth": Expected(
+        PeriodicGear(SHOULDER, {"share": 0.3}, {"count": 7, "phase": 1.0}),
+        ("the torque of joint_2_l, to which it yields in 7 waves a turn",),
     ),
     "hose": Expected(
         Hose("tool0", {"stiffness": 20e3, "drag": 15.0}),

@@ -26,7 +26,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
 from sk120stiff.explain.judge.budget import brought
 from sk120stiff.explain.localise.places import INDISTINCT, line_up, look_at
-from sk120stiff.explain.localise.suspects import Suspect
+from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.identify import Fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.uncertainty.variance_components import Deviance

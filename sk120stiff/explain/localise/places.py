@@ -32,7 +32,8 @@ from sk120stiff.explain.localise.localisation import (
     Whole,
 )
 from sk120stiff.explain.localise.random_effects import RandomEffects
-from sk120stiff.explain.localise.suspects import Suspect, axes_of, reach_of, suspects_of
+from sk120stiff.explain.localise.suspect import Suspect
+from sk120stiff.explain.localise.suspects import axes_of, reach_of, suspects_of
 from sk120stiff.explain.localise.within_poses import WithinPoses, within_poses
 from sk120stiff.identify import Fit, Yardstick, lack_of_fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal

@@ -8,44 +8,18 @@ what a cause is called; suspects tell where a gap lives, also where the catalogu
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
-from itertools import combinations
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
+from sk120stiff.explain.localise.drives import angles, drives, laws, waves
+from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import ArmJoint, arm_joints
 
-CREEPS = (1.0, 10.0, 100.0)  # readings that creep takes, one term of a series a decade
 SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
-
-
-@dataclass(frozen=True, eq=False)
-class Suspect:
-    """One thing that the gap may go with.
-
-    Attributes:
-        family: ``place``, ``law``, ``linkage``, ``angle``, ``axes``, ``instrument`` or ``series``.
-        name: Completes the sentence "The gap goes with ...".
-        columns: (N, 3, k) change of the readings per unit of each of k free factors, base axes [m].
-        abscissa: (N,) the variable that a figure draws the gap against.
-        label: Name and unit of the abscissa.
-        direction: (N, 3) direction in which it moves the point, base axes; None where the fit
-            decides it.
-        carried: (N, k) load behind each column, where a place yields [N or N·m].
-        frees: Effects (``name`` or ``name:where``) of whose law it is the free form.
-    """
-
-    family: str
-    name: str
-    columns: Array
-    abscissa: Array
-    label: str
-    direction: Array | None = None
-    carried: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    frees: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +75,10 @@ def suspects_of(model: Model, load_cases: LoadCases, predicted: Array) -> tuple[
     """
     return (
         *_places(load_cases),
-        *_laws(load_cases),
+        *laws(load_cases),
         *_bent_places(load_cases),
-        *_angles(model, load_cases),
+        *angles(model, load_cases),
+        *waves(load_cases),
         *_loads_in_axes(load_cases),
         *_instruments(model, load_cases, predicted),
         *_series(load_cases),
@@ -129,7 +104,7 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     pushes = _pushing("place", "the force that pushes the base", load_cases, world)
     yield replace(pushes, frees=("base_sliding",))
     screws = load_cases.nominal
-    yield from _drives(load_cases)
+    yield from drives(load_cases)
     for joint in arm_joints(robot):
         at = screws.origins[:, joint.index]
         frames = _frames(load_cases, joint)
@@ -188,83 +163,6 @@ def _bent_places(load_cases: LoadCases) -> Iterator[Suspect]:
         columns = np.concatenate([straight.columns * sign, curved], axis=2)
         name = f"{straight.name}, not in proportion to it"
         yield replace(straight, name=name, columns=columns, frees=(frees,))
-
-
-def _drives(load_cases: LoadCases) -> Iterator[Suspect]:
-    """Drives that yield in proportion to their torque; those with a spring are the model's own."""
-    J = load_cases.nominal.linear_jacobian
-    load = load_cases.nominal.at(load_cases.force_point).torques(load_cases.wrench)
-    for i, joint in enumerate(load_cases.robot.actuated):
-        what, unit = _effort(load_cases, i)
-        columns = (J[:, :, i] * load[:, i, None])[..., None]
-        label = f"{what} of {joint} [{unit}]"
-        yield Suspect("place", f"the {what} of {joint}", columns, load[:, i], label)
-
-
-def _effort(load_cases: LoadCases, joint: int) -> tuple[str, str]:
-    return ("force", "N") if load_cases.robot.prismatic[joint] else ("torque", "N·m")
-
-
-def _laws(load_cases: LoadCases) -> Iterator[Suspect]:
-    """A drive whose law is not a straight line, or two drives that a linkage ties together."""
-    J = load_cases.nominal.linear_jacobian  # (N, 3, n)
-    at_force = load_cases.nominal.at(load_cases.force_point)
-    torque = at_force.torques(load_cases.wrench) + load_cases.gravity_torque
-    load = at_force.torques(load_cases.wrench)
-    both = len(np.unique(load_cases.branch)) > 1
-    names = load_cases.robot.actuated
-    for i, joint in enumerate(names):
-        tau, push = torque[:, i], J[:, :, i]
-        what, unit = _effort(load_cases, i)
-        label = f"{what} of {joint} [{unit}]"
-        largest = float(np.abs(tau).max(initial=0.0)) or 1.0
-        size = np.linalg.norm(push, axis=1, keepdims=True)
-        along = push / np.where(size > 0.0, size, 1.0)
-        sign = np.sign(tau) - np.sign(load_cases.gravity_torque[:, i])
-        jump = f"the sign of the {what} of {joint}"
-        bent = (f"gear_hardening:{joint}", f"lost_motion:{joint}")
-        columns = (push * sign[:, None])[..., None]
-        yield Suspect("law", jump, columns, tau, label, along, frees=bent)
-        curved = tau[:, None] * np.stack([np.abs(tau) / largest, (tau / largest) ** 2], axis=-1)
-        name = f"the {what} of {joint}, not in proportion to it"
-        columns = push[:, :, None] * curved[:, None, :]
-        yield Suspect("law", name, columns, tau, label, along, frees=bent)
-        if both:
-            turn = -load_cases.branch * np.sign(load[:, i])
-            name = f"loading or unloading of {joint}"
-            columns = (push * turn[:, None])[..., None]
-            rubs = (f"friction_hysteresis:{joint}",)
-            yield Suspect("law", name, columns, load[:, i], label, along, frees=rubs)
-        if load_cases.order is not None and np.ptp(load_cases.order) > 0.0:
-            lasting = 1.0 - np.exp(-load_cases.order[:, None] / np.array(CREEPS))
-            columns = (push * load[:, i, None])[:, :, None] * lasting[:, None, :]
-            name = f"the {what} of {joint} as it lasts, in creep"
-            yield Suspect("law", name, columns, load_cases.order, "readings since the zero", along)
-    for i, k in combinations(range(len(names)), 2):
-        column = J[:, :, i] * load[:, k, None] + J[:, :, k] * load[:, i, None]
-        name = f"the torques of {names[i]} and {names[k]}, each moving the other joint"
-        what, unit = _effort(load_cases, i)
-        label = f"{what} of {names[i]} [{unit}]"
-        yield Suspect("linkage", name, column[..., None], load[:, i], label)
-
-
-def _angles(model: Model, load_cases: LoadCases) -> Iterator[Suspect]:
-    """Drives whose stiffness changes with the angle of a joint."""
-    J = load_cases.nominal.linear_jacobian
-    load = load_cases.nominal.at(load_cases.force_point).torques(load_cases.wrench)
-    soft = np.flatnonzero(np.isfinite(model.joint_stiffness()))
-    yielding = J[:, :, soft] * load[:, None, soft]  # (N, 3, s)
-    for i, joint in enumerate(load_cases.robot.actuated):
-        q = load_cases.a[:, i]
-        if np.ptp(q) < 1e-6:
-            continue
-        if load_cases.robot.prismatic[i]:
-            factors, shown, unit = [q / np.ptp(q)], 1e3 * q, "mm"
-        else:
-            factors, shown, unit = [np.cos(q), np.sin(q)], np.degrees(q), "deg"
-        columns = np.concatenate([yielding * f[:, None, None] for f in factors], axis=-1)
-        name = f"the position of {joint}, on which a drive's stiffness may depend"
-        yield Suspect("angle", name, columns, shown, f"position of {joint} [{unit}]")
 
 
 def _loads_in_axes(load_cases: LoadCases) -> Iterator[Suspect]:

@@ -1,0 +1,35 @@
+"""What a gap may go with: a handful of columns, a name that completes a sentence, an abscissa."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Suspect:
+    """One thing that the gap may go with.
+
+    Attributes:
+        family: ``place``, ``law``, ``linkage``, ``angle``, ``axes``, ``instrument`` or ``series``.
+        name: Completes the sentence "The gap goes with ...".
+        columns: (N, 3, k) change of the readings per unit of each of k free factors, base axes [m].
+        abscissa: (N,) the variable that a figure draws the gap against.
+        label: Name and unit of the abscissa.
+        direction: (N, 3) direction in which it moves the point, base axes; None where the fit
+            decides it.
+        carried: (N, k) load behind each column, where a place yields [N or N·m].
+        frees: Effects (``name`` or ``name:where``) of whose law it is the free form.
+    """
+
+    family: str
+    name: str
+    columns: Array
+    abscissa: Array
+    label: str
+    direction: Array | None = None
+    carried: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    frees: tuple[str, ...] = ()
