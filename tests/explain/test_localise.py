@@ -90,7 +90,7 @@ CASES = {
     ),
     "teeth": Expected(
         PeriodicGear(SHOULDER, {"share": 0.3}, {"count": 7, "phase": 1.0}),
-        ("the torque of joint_2_l, to which it yields in 7 waves a turn",),
+        ("the position of joint_2_l, on which its own stiffness depends in 7 waves a turn",),
     ),
     "hose": Expected(
         Hose("tool0", {"stiffness": 20e3, "drag": 15.0}),

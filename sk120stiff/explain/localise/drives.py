@@ -101,9 +101,10 @@ def waves(load_cases: LoadCases) -> Iterator[Suspect]:
         if load_cases.robot.prismatic[i] or np.ptp(q) < 1e-6:
             continue
         yielding = (J[:, :, i] * load[:, i, None])[:, :, None]
-        for count in range(2, min(int(np.pi * poses / np.ptp(q)), MOST_WAVES) + 1):
+        for count in range(1, min(int(np.pi * poses / np.ptp(q)), MOST_WAVES) + 1):
             wave = np.stack([np.cos(count * q), np.sin(count * q)], axis=-1)
-            name = f"the torque of {joint}, to which it yields in {count} waves a turn"
+            turns = f"{count} wave{'s' if count > 1 else ''} a turn"
+            name = f"the position of {joint}, on which its own stiffness depends in {turns}"
             label = f"position of {joint} [deg]"
             yield Suspect("angle", name, yielding * wave[:, None, :], np.degrees(q), label)
 
