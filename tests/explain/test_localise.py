@@ -8,6 +8,7 @@ from scipy import stats
 
 from sk120stiff.explain import Localisation, localise, where_sentences
 from sk120stiff.explain.localise.places import holm
+from sk120stiff.explain.localise.suspects import suspects_of
 from sk120stiff.measurements import Measurements, NoiseModel
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, ClosureCoupling, JointTilt
@@ -231,3 +232,16 @@ def test_readings_that_cannot_tell_the_order_in_the_load_do_not_claim_it() -> No
 def test_holm() -> None:
     assert holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
     assert holm([0.5, 0.9]) == pytest.approx([1.0, 1.0])
+
+
+def test_a_zero_that_was_read_last_leaves_every_suspect_finite() -> None:
+    readings = hidden(CASES["creep"].cause)
+    assert readings.order is not None and readings.zero_order is not None
+    late = replace(readings, zero_order=np.full(readings.n_readings, readings.order.max() + 900.0))
+    fit = base_fit(late)
+    cases = fit.problem.load_cases
+    assert cases.order is not None and cases.order.max() < 0.0
+    for suspect in suspects_of(fit.model, cases, fit.model.predict(cases)):
+        assert np.isfinite(suspect.columns).all(), suspect.name
+        assert np.abs(suspect.columns).max() < 1e9, suspect.name
+    assert localise(fit).suspects

@@ -79,7 +79,7 @@ def test_intervals_hold_what_was_drawn(springs):
 
 
 def test_what_all_poses_share_is_found_by_its_columns(springs):
-    """An error of the load in tool axes, two thirds of the noise: no single pose shows it."""
+    """Two columns of any shape, at 0.7 of the noise: no single pose shows them."""
     data = readings_of(springs, poses=15, sigma=SIGMA, seed=3)
     found = fit(springs, data, noise=NoiseModel(SIGMA, zero=data.zero))
     columns = np.random.default_rng(1).normal(size=(data.n_readings, 3, 2))

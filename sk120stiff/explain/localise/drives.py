@@ -57,7 +57,8 @@ def laws(load_cases: LoadCases) -> Iterator[Suspect]:
             rubs = (f"friction_hysteresis:{joint}",)
             yield Suspect("law", name, columns, load[:, i], label, along, frees=rubs)
         if load_cases.order is not None and np.ptp(load_cases.order) > 0.0:
-            lasting = 1.0 - np.exp(-load_cases.order[:, None] / np.array(CREEPS))
+            since = np.maximum(load_cases.order, 0.0)[:, None]  # a zero may have been read after
+            lasting = 1.0 - np.exp(-since / np.array(CREEPS))
             columns = (push * load[:, i, None])[:, :, None] * lasting[:, None, :]
             name = f"the {what} of {joint} as it lasts, in creep"
             yield Suspect("law", name, columns, load_cases.order, "readings since the zero", along)
