@@ -92,11 +92,14 @@ def test_probabilities_are_shares_of_the_evidence():
     assert list(found.values()) == pytest.approx(list(weights[:2] / weights.sum()))
 
 
-def test_names_are_listed_until_nearly_all_that_names_have_is_covered():
-    odds = {"a": 0.80, "b": 0.09, "c": 0.04, "d": 0.03}  # 0.04 are left to none of them
-    assert until_covered(odds, {"a"}) == ("b", "c")
-    assert until_covered(odds, {"a", "c"}) == ("b",)
+def test_names_are_listed_until_nearly_all_is_covered():
+    odds = {"a": 0.80, "b": 0.09, "c": 0.05, "d": 0.02}  # 0.04 are left to none of them
+    assert until_covered(odds, {"a"}) == ("b", "c", "d")
+    assert until_covered(odds, {"a", "d"}) == ("b", "c")
+    assert until_covered({"a": 0.94, "b": 0.009}, {"a"}) == ()
     assert until_covered({"a": 0.50, "b": 0.02}, {"a"}) == ()
+    # A name that is unsettled because it may imitate what has no name does not stand alone.
+    assert until_covered({"a": 0.918, "b": 0.038, "c": 0.004}, {"a"}) == ("b",)
 
 
 def test_an_open_answer_lists_its_names_and_gains_nothing_by_that():

@@ -40,7 +40,10 @@ def posterior(scores: Mapping[str, float], *, none: float) -> dict[str, float]:
 
 
 def until_covered(odds: Mapping[str, float], listed: Collection[str]) -> tuple[str, ...]:
-    """The likeliest names beside those listed, until `NAMED` of what all names have is covered.
+    """The likeliest names beside those listed, until `NAMED` is covered.
+
+    Where all names together have less, `NAMED` of what they have is covered; where they have hardly
+    more, none is listed for the sake of less than `LISTED`.
 
     Args:
         odds: As of `posterior`.
@@ -48,8 +51,10 @@ def until_covered(odds: Mapping[str, float], listed: Collection[str]) -> tuple[s
     """
     others = sorted((name for name in odds if name not in listed), key=odds.__getitem__)
     covered = sum(odds.get(name, 0.0) for name in set(listed))
+    whole = sum(odds.values())
+    enough = NAMED * whole if whole < NAMED else min(NAMED, whole - LISTED)
     more: list[str] = []
-    while others and covered < NAMED * sum(odds.values()):
+    while others and covered < enough:
         more.append(others.pop())
         covered += odds[more[-1]]
     return tuple(more)
