@@ -8,8 +8,8 @@ from scipy import stats
 
 from sk120stiff.identify import fit
 from sk120stiff.identify.uncertainty.effects_left import LeftByPoses, left_by_all
+from sk120stiff.identify.uncertainty.laid_out import LaidOut
 from sk120stiff.identify.uncertainty.left_over import left_over
-from sk120stiff.identify.uncertainty.variance_components import LaidOut
 from sk120stiff.measurements import ModelForm, NoiseModel
 from tests.identify.conftest import readings_of
 from tests.identify.test_variance_components import SIGMA, fits
@@ -55,7 +55,8 @@ def test_low_rank_algebra_is_that_of_dense_matrices(springs):
     freedom = 2 * mean**2 / variance
     ends = stats.chi2.ppf([0.025, 0.975], freedom) / freedom
     expected = np.sqrt(mean / len(y) * np.array([ends[0], 1.0, ends[1]]))
-    assert LeftByPoses.of(found).of_sizes(FORM, factor) == pytest.approx(expected, rel=1e-9)
+    told = LeftByPoses.of(LaidOut.of(found)).of_sizes(FORM, factor)
+    assert told == pytest.approx(expected, rel=1e-9)
 
 
 def test_intervals_hold_what_was_drawn(springs):
@@ -85,9 +86,9 @@ def test_what_all_poses_share_is_found_by_its_columns(springs):
     columns = np.random.default_rng(1).normal(size=(data.n_readings, 3, 2))
     added = 0.7 * SIGMA * columns @ np.array([0.8, -0.6])
     rough = fit(springs, moved(data, added), noise=NoiseModel(SIGMA, zero=data.zero))
-    low, middle, high = left_by_all(rough, columns, 1.0)
+    low, middle, high = left_by_all(LaidOut.of(rough), columns, 1.0)
     true = np.sqrt(np.mean(added**2))
     assert low < true < high
     assert middle == pytest.approx(true, rel=0.3)
-    nothing = left_by_all(found, columns, 1.0)[1]
+    nothing = left_by_all(LaidOut.of(found), columns, 1.0)[1]
     assert nothing < 0.3 * middle

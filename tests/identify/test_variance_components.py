@@ -7,6 +7,7 @@ import pytest
 
 from sk120stiff.effects import load_cases_of
 from sk120stiff.identify import Fit, fit
+from sk120stiff.identify.uncertainty.laid_out import LaidOut
 from sk120stiff.identify.uncertainty.variance_components import Deviance, variance_components
 from sk120stiff.measurements import Measurements, ModelForm, NoiseModel
 from sk120stiff.measurements.model_form import EXACT
@@ -88,8 +89,20 @@ def test_parameters_are_taken_off_the_freedom_of_an_unknown_noise(springs):
     """Few readings: sigma comes from χ² over rows less parameters, as least squares have it."""
     data = readings_of(springs, poses=3, sigma=SIGMA, seed=1)
     found = fit(springs, data, noise=NoiseModel(3e-5, freedom=0, zero=data.zero))
-    sums = Deviance.of(found)
+    sums = Deviance.of(LaidOut.of(found))
     assert sums.freedom == found.degrees_of_freedom == len(found.residual) - len(found.x)
     assert sums.noise_factor(EXACT) == pytest.approx(
         np.sqrt(found.chi_square / found.degrees_of_freedom), rel=1e-6
     )
+
+
+def test_a_noise_that_is_known_is_no_other(springs):
+    """Known to nothing of itself, to a little, and by the gap alone."""
+    found = fit(springs, readings_of(springs, poses=3, sigma=SIGMA, seed=1))
+    laid, form = LaidOut.of(found), ModelForm(0.02, 1e-5)
+    known, nearly = Deviance.of(laid), Deviance.of(laid, slack=1e-4)
+    assert known.noise_factor(form) == 1.0
+    assert known.with_noise(form, 1.0) == pytest.approx(known(form), rel=1e-12)
+    assert known.with_noise(form, 1.1) == np.inf
+    assert nearly.noise_factor(form) == pytest.approx(1.0, abs=1e-4)
+    assert nearly(form) == pytest.approx(known(form), rel=1e-3)

@@ -29,6 +29,7 @@ from sk120stiff.explain.localise.places import INDISTINCT, line_up, look_at
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.identify import Fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.identify.uncertainty.laid_out import LaidOut
 from sk120stiff.identify.uncertainty.variance_components import Deviance
 from sk120stiff.measurements.model_form import ModelForm
 
@@ -80,7 +81,7 @@ def spread_over_poses(fit: Fit, effect: Effect) -> tuple[float, float]:
 
 def _spread(fit: Fit, signature: Array) -> tuple[float, float]:
     """Likeliest κ of what every pose has a share of its own of, (N, 3) [m], and its gain."""
-    sums = Deviance.of(fit, signature=signature)
+    sums = Deviance.of(LaidOut.of(fit, signature))
     form = fit.problem.noise.form
     free = np.array([form.proportional, form.constant]) > 0.0
 

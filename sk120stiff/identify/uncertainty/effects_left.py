@@ -16,12 +16,7 @@ import numpy as np
 from scipy import stats
 
 from sk120stiff.arrays import Array
-from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.uncertainty.variance_components import (
-    LaidOut,
-    Products,
-    orthonormal_parameters,
-)
+from sk120stiff.identify.uncertainty.laid_out import LaidOut, Products, orthonormal_parameters
 from sk120stiff.measurements.model_form import ModelForm
 
 ENDS = (0.025, 0.975)  # of an interval that holds 95 %
@@ -41,17 +36,9 @@ class LeftByPoses:
     rows: int
 
     @classmethod
-    def of(cls, fit: Fit) -> LeftByPoses:
-        """From a fitted model."""
-        laid = LaidOut.of(fit)
-        drawn, derivative, poses = laid.drawn, laid.derivative, laid.poses
-        noise, rows = laid.problem.whitener, drawn[:, :, 0].size
-        return cls(
-            Products.of(noise.apply(drawn), noise.apply(derivative), poses),
-            Products.of(drawn.reshape(rows, -1), derivative.reshape(rows, -1), poses),
-            laid.proportional,
-            rows,
-        )
+    def of(cls, laid: LaidOut) -> LeftByPoses:
+        """From the gap of a fitted model."""
+        return cls(laid.white(), laid.raw(), laid.proportional, laid.rows)
 
     def of_sizes(self, form: ModelForm, noise_factor: float) -> tuple[float, float, float]:
         """2.5 %, mean and 97.5 % of what is left, rms per axis [m]."""
@@ -95,16 +82,15 @@ def _dot(x: Array, y: Array) -> Array:
     return np.asarray(np.einsum("gqm,gqn->mn", x, y))
 
 
-def left_by_all(fit: Fit, columns: Array, noise_factor: float) -> tuple[float, float, float]:
+def left_by_all(laid: LaidOut, columns: Array, noise_factor: float) -> tuple[float, float, float]:
     """What columns that all poses share leave, as `LeftByPoses.of_sizes`.
 
     Args:
-        fit: The fitted model.
+        laid: The gap of a fitted model.
         columns: (N, 3, k) change of the readings per unit of each of k factors, reading axes [m].
         noise_factor: The noise over the one assumed.
     """
-    laid = LaidOut.of(fit)
-    rows, noise = laid.drawn[:, :, 0].size, laid.problem.whitener
+    rows, noise = laid.rows, laid.problem.whitener
     white, taken = noise.apply(columns), noise.apply(laid.derivative)
     T = orthonormal_parameters(taken[:, :-1].T @ taken[:, :-1])
     inside, gap = taken[:, :-1] @ T, taken[:, -1]

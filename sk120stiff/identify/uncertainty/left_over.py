@@ -17,10 +17,11 @@ from sk120stiff.arrays import Array
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import against_noise_alone
 from sk120stiff.identify.uncertainty.effects_left import LeftByPoses, left_by_all
+from sk120stiff.identify.uncertainty.laid_out import LaidOut
 from sk120stiff.identify.uncertainty.variance_components import (
     Components,
     Deviance,
-    variance_components,
+    likeliest_components,
 )
 from sk120stiff.measurements.model_form import ModelForm
 
@@ -63,11 +64,10 @@ def left_over(fit: Fit) -> LeftOver:
     Size, significance and interval are a profile likelihood over the noise, since what is stated of
     it is an estimate too.
     """
-    fit = against_noise_alone(fit)
-    slack = _slack(fit)
-    found = variance_components(fit, slack)
-    readings = fit.problem.measurements
-    deviance, left = Deviance.of(fit, slack=slack), LeftByPoses.of(fit)
+    laid = LaidOut.of(against_noise_alone(fit))
+    readings = laid.problem.measurements
+    deviance, left = Deviance.of(laid, _slack(laid)), LeftByPoses.of(laid)
+    found = likeliest_components(deviance)
     form = found.form or ModelForm(proportional=SMALLEST)
 
     def profile(logarithm: float) -> tuple[float, ModelForm, float]:
@@ -98,7 +98,7 @@ def left_over(fit: Fit) -> LeftOver:
     low = 0.0 if smallest is None else min(left.of_sizes(*smallest)[0], rms)
     high = np.inf if largest is None else max(left.of_sizes(*largest)[2], rms)
     if found.form:  # no structure is known to the last reading
-        high = _with_single_readings(rms, high, _in_single_readings(fit, deviance, found))
+        high = _with_single_readings(rms, high, _in_single_readings(laid, deviance, found))
     upper = np.inf if larger is None else max(larger[0].rms(readings), rms)
     grows = found.form.rms(readings) ** 2 >= 2.0 * found.form.constant**2
     return LeftOver(rms, (low, high), upper, grows, found, found.probability)
@@ -116,12 +116,12 @@ def going_with(left: LeftOver, fit: Fit, columns: Array, *, grows: bool) -> Left
         columns: (N, 3, k) what it goes with, reading axes [m].
         grows: That goes with the load.
     """
-    fit = against_noise_alone(fit)
-    low, rms, most = left_by_all(fit, columns, left.found.noise_factor)
+    laid = LaidOut.of(against_noise_alone(fit))
+    low, rms, most = left_by_all(laid, columns, left.found.noise_factor)
     if rms == 0.0:
         return left
-    deviance = Deviance.of(fit, slack=_slack(fit))
-    high = _with_single_readings(rms, most, _in_single_readings(fit, deviance, left.found))
+    hidden = _in_single_readings(laid, Deviance.of(laid, _slack(laid)), left.found)
+    high = _with_single_readings(rms, most, hidden)
     return replace(
         left,
         rms=max(rms, left.rms),
@@ -136,24 +136,25 @@ def _with_single_readings(rms: float, high: float, hidden: float) -> float:
     return float(np.sqrt(rms**2 + np.hypot(high**2 - rms**2, hidden)))
 
 
-def _slack(fit: Fit) -> float:
+def _slack(laid: LaidOut) -> float:
     """Relative standard uncertainty of σ: as stated, or as repeats tell it."""
-    freedom = fit.problem.noise.freedom
+    freedom = laid.problem.noise.freedom
     return STATED if np.isinf(freedom) else 1.0 / np.sqrt(2.0 * max(freedom, 1.0))
 
 
-def _in_single_readings(fit: Fit, deviance: Deviance, found: Components) -> float:
+def _in_single_readings(laid: LaidOut, deviance: Deviance, found: Components) -> float:
     """Upper end of the variance that readings have of their own beyond the noise [m²].
 
     Model-form error without any pattern looks like noise: what is left beside the random effects is
     the sum of both, and σ is known to so much of itself only. 97.5 % limit of the difference of two
     variances (MOVER: Zou & Donner 2008); 0 where nothing but the gap tells the noise.
     """
-    noise, freedom = fit.problem.noise, deviance.freedom
+    freedom = deviance.freedom
     if np.isinf(deviance.slack):
         return 0.0
     square = deviance.unexplained(found.form.scaled(1.0 / found.noise_factor))
     both, most = square / freedom, square / float(stats.chi2.isf(0.975, freedom))
     least = float(np.exp(-2.0 * NORMAL * deviance.slack))
-    size = sum(part.mean() for part in noise.variances(fit.problem.measurements))
+    problem = laid.problem
+    size = sum(part.mean() for part in problem.noise.variances(problem.measurements))
     return float(size) * max(both - 1.0 + float(np.hypot(most - both, 1.0 - least)), 0.0)

@@ -17,15 +17,10 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import brentq, minimize
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.solve.problem import Problem
-from sk120stiff.measurements.model_form import (
-    EXACT,
-    ModelForm,
-    form_columns,
-    rows_of_poses,
-)
+from sk120stiff.identify.uncertainty.laid_out import LaidOut, seen_directions
+from sk120stiff.measurements.model_form import EXACT, ModelForm
 
 PROPORTIONS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)  # of a pose's compliance, where the search starts
 ROUNDING = 1e-13  # of the largest random effect, so that none outweighs the noise by rounding
@@ -64,7 +59,11 @@ def variance_components(fit: Fit, slack: float = 0.0) -> Components:
         fit: The fitted model.
         slack: Relative standard uncertainty of its σ, where that is known.
     """
-    sums = Deviance.of(fit, slack=slack)
+    return likeliest_components(Deviance.of(LaidOut.of(fit), slack))
+
+
+def likeliest_components(sums: Deviance) -> Components:
+    """The sizes at which the deviance of a gap is least, each of them worth its freedom."""
     grid = [ModelForm(p, c * sums.scale) for p in PROPORTIONS for c in CONSTANTS]
     values = [sums(form) for form in grid]
     plain = values[0]
@@ -149,13 +148,11 @@ class Deviance:
         the size of what poses have of the signature.
         """
         logdet, information, square = self._terms(form, spread)
-        if not self.slack:
-            return logdet + information + square
         return logdet + information + self._of_noise(self._likeliest(square), square)
 
     def noise_factor(self, form: ModelForm, spread: float = 0.0) -> float:
         """The likeliest noise beside a form, over the one assumed."""
-        return float(np.exp(self._likeliest(self._terms(form, spread)[2]))) if self.slack else 1.0
+        return float(np.exp(self._likeliest(self._terms(form, spread)[2])))
 
     def unexplained(self, form: ModelForm) -> float:
         """Square of the gap over the noise assumed, beyond parameters and random effects."""
@@ -168,11 +165,15 @@ class Deviance:
 
     def _of_noise(self, logarithm: float, square: float) -> float:
         """What the noise's factor adds to -2 ln L; σ has a normal prior of its logarithm."""
+        if not self.slack:
+            return square if logarithm == 0.0 else np.inf
         held = (logarithm / self.slack) ** 2
         return 2.0 * self.freedom * logarithm + square * float(np.exp(-2.0 * logarithm)) + held
 
     def _likeliest(self, square: float) -> float:
         """Logarithm of the likeliest factor of the noise."""
+        if not self.slack:
+            return 0.0
         free = 0.5 * float(np.log(square / self.freedom))
         if np.isinf(self.slack) or free == 0.0:
             return free
@@ -210,105 +211,30 @@ class Deviance:
         return float(information + self.freedom * (1.0 + np.log(square / self.freedom)))
 
     @classmethod
-    def of(cls, fit: Fit, signature: Array | None = None, slack: float = 0.0) -> Deviance:
-        """From a fitted model; a model-form error that its noise holds already does not count.
+    def of(cls, laid: LaidOut, slack: float = 0.0) -> Deviance:
+        """From the gap of a fitted model.
 
         Args:
-            fit: The fitted model.
-            signature: (N, 3) what every pose may have a share of its own of [m].
+            laid: Its gap; a model-form error that its noise holds already does not count.
             slack: Relative standard uncertainty of σ, where that is known.
         """
-        laid = LaidOut.of(fit, signature)
-        noise = laid.problem.whitener
-        white = Products.of(noise.apply(laid.drawn), noise.apply(laid.derivative), laid.poses)
+        white = laid.white()
         return cls(
             proportional=laid.proportional,
             zz=white.zz,
             zx=white.zx,
             xx=white.xx,
-            rows=laid.drawn[:, :, 0].size,
+            rows=laid.rows,
             scale=float(laid.problem.noise.sigma),
-            slack=slack if fit.problem.noise.known else np.inf,
-            signatures=0 if signature is None else 1,
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class LaidOut:
-    """Random effects of unit size, derivative and gap of one fit, reading axes.
-
-    Attributes:
-        problem: That of the fit beside exact laws.
-        drawn: (N, 3, q) random effects; every pose has its own.
-        derivative: (N, 3, p + 1) by the parameters that move; the last column is the gap [m].
-        proportional: How many of the q go in proportion to the load.
-    """
-
-    problem: Problem
-    drawn: Array
-    derivative: Array
-    proportional: int
-
-    @property
-    def poses(self) -> list[Index]:
-        """Rows of each pose among the 3N."""
-        return rows_of_poses(self.problem.measurements)
-
-    @classmethod
-    def of(cls, fit: Fit, signature: Array | None = None) -> LaidOut:
-        """From a fit, and (N, 3) what every pose may have a share of its own of [m]."""
-        exact = replace(fit.problem.noise, form=EXACT)
-        problem = Problem(fit.model, fit.problem.measurements, exact, fit.problem.weights)
-        predicted, full = fit.model.predict_with_sensitivities(problem.load_cases)
-        moving = problem.free[~fit.at_bound]
-        gap = (problem.measured - predicted)[:, :, None]
-        columns = full[:, :, moving] * problem.scale[~fit.at_bound]
-        proportional, constant = form_columns(problem.measurements)
-        more = [] if signature is None else [signature[:, :, None]]
-        return cls(
-            problem,
-            np.concatenate([proportional, constant, *more], axis=2),
-            np.concatenate([columns, gap], axis=2),
-            proportional.shape[2],
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Products:
-    """Products of random effects (q) and derivative with gap (p + 1), by poses and over all."""
-
-    zz: Array  # (G, q, q)
-    zx: Array  # (G, q, p + 1)
-    xx: Array  # (p + 1, p + 1)
-
-    @classmethod
-    def of(cls, drawn: Array, derivative: Array, poses: list[Index]) -> Products:
-        """Of (3N, q) and (3N, p + 1), and the rows of each pose."""
-        return cls(
-            np.stack([drawn[rows].T @ drawn[rows] for rows in poses]),
-            np.stack([drawn[rows].T @ derivative[rows] for rows in poses]),
-            derivative.T @ derivative,
+            slack=slack if laid.problem.noise.known else np.inf,
+            signatures=laid.signatures,
         )
 
 
 def _projected(sums: Array) -> tuple[float, float]:
     """Square of the gap beyond the parameters, and ln det of their information."""
     p = len(sums) - 1
-    scale, values, vectors = _seen(sums[:p, :p])
+    scale, values, vectors = seen_directions(sums[:p, :p])
     along = vectors.T @ (sums[:p, -1] / scale)
     information = float(np.log(values).sum() + 2.0 * np.log(scale).sum())
     return max(float(sums[-1, -1] - (along**2 / values).sum()), 1e-300), information
-
-
-def orthonormal_parameters(information: Array) -> Array:
-    """(p, k) combinations of parameters that the readings see, with information of one each."""
-    scale, values, vectors = _seen(information)
-    return np.asarray(vectors / np.sqrt(values) / scale[:, None])
-
-
-def _seen(information: Array) -> tuple[Array, Array, Array]:
-    """Scale (p,) of parameters, and eigenvalues (k,) and vectors (p, k) of what is seen of them."""
-    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
-    values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
-    seen = values > 1e-10
-    return scale, values[seen], vectors[:, seen]
