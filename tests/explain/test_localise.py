@@ -245,3 +245,20 @@ def test_a_zero_that_was_read_last_leaves_every_suspect_finite() -> None:
         assert np.isfinite(suspect.columns).all(), suspect.name
         assert np.abs(suspect.columns).max() < 1e9, suspect.name
     assert localise(fit).suspects
+
+
+def test_waves_of_one_joint_are_one_cause() -> None:
+    """Any of so many fits by chance sooner than one: which of them it is has its price."""
+    base = base_fit(hidden())
+    load_cases = base.problem.load_cases
+    every = suspects_of(base.model, load_cases, base.model.predict(load_cases))
+    waves = [s for s in every if s.name.startswith("the position of joint_2_l, on which its own")]
+    assert len(waves) > 3
+    assert {s.price_of_choice for s in waves} == {2.0 * np.log(len(waves))}
+    assert {s.price_of_choice for s in every if "a turn" not in s.name} == {0.0}
+    freedom = len(base.residual) - len(base.x)
+    told = {s.name: s for s in localise(base).suspects}
+    for wave in waves:
+        said = told[wave.name]
+        paid = said.freedom * np.log(freedom) + wave.price_of_choice
+        assert said.evidence == pytest.approx(said.statistic - paid, rel=1e-9)

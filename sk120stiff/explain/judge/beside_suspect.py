@@ -54,11 +54,13 @@ class Nuisance(ReadingError):
         suspect: Its name.
         model: The base model, whose predictions the suspect may go with.
         factors: (k, P) combinations of its k columns, each 1 m rms long in the readings fitted.
+        price: What which of several alike it is costs, in -2 ln L.
     """
 
     suspect: str = field(kw_only=True)
     model: Model = field(kw_only=True)
     factors: Array = field(kw_only=True)
+    price: float = field(kw_only=True, default=0.0)
     name: ClassVar[str] = "nuisance"
     says: ClassVar[str] = "Something without a name is at work."
 
@@ -103,7 +105,8 @@ def nuisance(name: str, base: Fit) -> Nuisance:
     _, size, right = np.linalg.svd(flat, full_matrices=False)
     seen = size > SMALLEST * size[0]
     factors = right[seen].T / size[seen]
-    return Nuisance("", suspect=name, model=base.model, factors=factors)
+    price = suspect.price_of_choice
+    return Nuisance("", suspect=name, model=base.model, factors=factors, price=price)
 
 
 @dataclass(frozen=True)
@@ -214,7 +217,7 @@ def _at_best(at: Fit, beside: Nuisance, candidates: Regression) -> float:
     )
     best = beam_search(regression, width=NARROW)[0]
     left = best.solved.rss / max(regression.rows - len(best.solved.columns), 1)
-    return float(np.inf) if regression.sigma_known and left > LEFT else best.score
+    return float(np.inf) if regression.sigma_known and left > LEFT else best.score + beside.price
 
 
 def _fallen(named: Named, stand: set[str], suspect: str) -> tuple[Fallen, ...]:

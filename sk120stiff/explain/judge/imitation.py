@@ -213,6 +213,7 @@ class _Lineup:
         price = sum(self.price(e) for e in chosen)
         if suspect is not None:
             price += self.unit * len(self.parts[suspect])
+            price += self.suspects[suspect].price_of_choice
         return price - self.takes(chosen, suspect)
 
 

@@ -102,12 +102,14 @@ def waves(load_cases: LoadCases) -> Iterator[Suspect]:
         if load_cases.robot.prismatic[i] or np.ptp(q) < 1e-6:
             continue
         yielding = (J[:, :, i] * load[:, i, None])[:, :, None]
-        for count in range(1, min(int(np.pi * poses / np.ptp(q)), MOST_WAVES) + 1):
+        most = min(int(np.pi * poses / np.ptp(q)), MOST_WAVES)
+        for count in range(1, most + 1):
             wave = np.stack([np.cos(count * q), np.sin(count * q)], axis=-1)
             turns = f"{count} wave{'s' if count > 1 else ''} a turn"
             name = f"the position of {joint}, on which its own stiffness depends in {turns}"
             label = f"position of {joint} [deg]"
-            yield Suspect("angle", name, yielding * wave[:, None, :], np.degrees(q), label)
+            columns = yielding * wave[:, None, :]
+            yield Suspect("angle", name, columns, np.degrees(q), label, alike=most)
 
 
 def _effort(load_cases: LoadCases, joint: int) -> tuple[str, str]:

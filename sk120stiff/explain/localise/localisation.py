@@ -125,7 +125,7 @@ class Suspicion:
         explained: Share of the whole that it takes away, beyond what its freedom takes of mere
             noise.
         evidence: Decides the order: what is left of T when every degree of freedom has been paid
-            for.
+            for, and which of several alike it is.
         abscissa, partial: (N,) the variable, and the gap along the suspect's direction [m], freed
             of what the model's own parameters had covered up; empty far down the list.
     """

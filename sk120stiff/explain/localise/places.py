@@ -322,7 +322,7 @@ def _suspicion(
         freedom=rank,
         probability=p,
         explained=float(np.clip((T - rank * unit) / max(whole, 1e-300), 0.0, 1.0)),
-        evidence=T - rank * float(np.log(max(freedom, 2))),
+        evidence=T - rank * float(np.log(max(freedom, 2))) - suspect.price_of_choice,
     )
 
 

@@ -23,6 +23,7 @@ class Suspect:
             decides it.
         carried: (N, k) load behind each column, where a place yields [N or N·m].
         frees: Effects (``name`` or ``name:where``) of whose law it is the free form.
+        alike: How many suspects, itself among them, differ by a whole number alone.
     """
 
     family: str
@@ -33,3 +34,9 @@ class Suspect:
     direction: Array | None = None
     carried: Array = field(default_factory=lambda: np.zeros((0, 0)))
     frees: tuple[str, ...] = ()
+    alike: int = 1
+
+    @property
+    def price_of_choice(self) -> float:
+        """What which of those alike it is costs, in -2 ln L: all of them together are one cause."""
+        return 2.0 * float(np.log(self.alike))
