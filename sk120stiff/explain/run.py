@@ -22,6 +22,7 @@ from sk120stiff.explain.judge.beside_suspect import Account, complete_account
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
 from sk120stiff.explain.judge.remainder import Remainder, remainder_of
+from sk120stiff.explain.judge.rigid_gears import without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.localise.places import localise
@@ -86,6 +87,7 @@ def explain(
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
     found, named, account = _judged(found, base, under, seed=options.seed)
+    found, named = without_rigid_gears(found, named)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     goes_with = None if account is None else account.suspect

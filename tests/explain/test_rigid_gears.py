@@ -1,0 +1,57 @@
+"""A law that takes a drive's spring away gives way to another law of the same name."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff import joint_spring_model
+from sk120stiff.effects import effect
+from sk120stiff.explain.findings import Evidence, Finding
+from sk120stiff.explain.judge.attribution import Named
+from sk120stiff.explain.judge.confirm import UNTRIED
+from sk120stiff.explain.judge.rigid_gears import UNLIKELY, without_rigid_gears
+from sk120stiff.explain.select.stepwise import Selection, select, with_effects
+from sk120stiff.measurements import NoiseModel
+from tests.explain.readings import base_fit, hidden
+from tests.real_arms import fanuc
+
+
+def named(found: Selection) -> Named:
+    (law,) = found.effects
+    return Named((Finding(law, (), (), Evidence(9.0, 9.0, None, np.inf, UNTRIED, {}, {})),))
+
+
+def springs(found: Selection) -> list[float]:
+    return [p.value for p in found.final.parameters if p.effect.joint_spring]
+
+
+if fanuc.FOLDER.is_dir():
+
+    def test_a_beam_leaves_a_real_arm_all_its_gears(tmp_path):
+        """One bending axis takes joint 3 away from the arm; two of them fit nearly as well."""
+        arm = fanuc.robot(tmp_path, 1, 1, 1, 1, 1, 1)
+        beam = effect(arm, "link_bending", "link_3")
+        settled = select(
+            joint_spring_model(arm), fanuc.readings(fanuc.MAPPED), NoiseModel(150e-6),
+            (beam,), max_effects=1, alpha=0.01,
+        )  # fmt: skip
+        found = with_effects(settled, [replace(beam, taper=-0.5, roll=True, planes=False)])
+        assert np.isinf(springs(found)[2])
+        other, said = without_rigid_gears(found, named(found))
+        assert np.isfinite(springs(other)).all()
+        assert said.findings[0].effect == other.effects[0] != found.effects[0]
+        assert said.findings[0].effect.id == beam.id
+        assert other.final.chi_square < found.final.chi_square + UNLIKELY
+
+
+def test_a_law_that_leaves_all_springs_stays(tmp_path):
+    base = base_fit(hidden())
+    robot = base.model.robot
+    tilt = effect(robot, "joint_tilt", "joint_2_l")
+    found = select(
+        base.model, base.problem.measurements, base.problem.noise, (tilt,),
+        max_effects=1, alpha=0.01,
+    )  # fmt: skip
+    found = with_effects(found, [tilt])
+    assert np.isfinite(springs(found)).all()
+    assert without_rigid_gears(found, named(found)) == (found, named(found))
