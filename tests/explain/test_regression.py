@@ -9,11 +9,11 @@ from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
-from sk120stiff.explain.candidates.regression import Regression, solve_columns
+from sk120stiff.explain.candidates.regression import Regression, price_of_choice
+from sk120stiff.explain.candidates.sums import solve_columns
 from sk120stiff.explain.select.beam import beam_search, gains
 from sk120stiff.explain.select.score import (
     _deviance,
-    price_of_choice,
     price_of_looking,
     price_of_sizes,
     score_set,

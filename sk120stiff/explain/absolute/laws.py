@@ -17,13 +17,14 @@ from sk120stiff.effects import Effect, LoadCases
 from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
 from sk120stiff.explain.absolute.choose import alternatives
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.candidates.regression import price_of_law
 from sk120stiff.explain.judge.selection_uncertainty import (
     LAWS,
     LOOKED_AT,
     REFUTED,
     bent_at_no_load,
 )
-from sk120stiff.explain.select.score import SWEEPS, price_of_law
+from sk120stiff.explain.select.score import SWEEPS
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import COUNTED, frames_off
 from sk120stiff.identify.absolute.start import options_of

@@ -9,7 +9,8 @@ import numpy as np
 from scipy import stats
 
 from sk120stiff.arrays import Array
-from sk120stiff.explain.candidates.regression import Regression, Sums
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.candidates.sums import Sums
 from sk120stiff.explain.findings import Confirmation
 from sk120stiff.explain.select.beam import largest, likeliest, promises
 from sk120stiff.explain.select.score import Scored, score_set

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.explain.candidates.regression import Regression, Solved, Sums
-from sk120stiff.explain.select.score import Scored, price_of_choice, price_of_sizes, score_set
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.candidates.sums import Solved, Sums
+from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set
 
 BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
@@ -127,11 +128,11 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
 def likeliest(regression: Regression, sums: Sums, effect: int, promised: Array) -> int:
     """The variant that promises the best score."""
     rows = max(sums.count, 2.0)
-    worth = [
-        gain - price_of_sizes(gain, len(part), rows) - price_of_choice(regression, effect, k)
-        for k, (gain, part) in enumerate(zip(promised, regression.variants[effect], strict=True))
+    sizes = [
+        price_of_sizes(gain, len(part), rows)
+        for gain, part in zip(promised.tolist(), regression.variants[effect], strict=True)
     ]
-    return int(np.argmax(worth))
+    return int(np.argmax(promised - sizes - regression.prices_of_choice[effect]))
 
 
 def _all_gears(

@@ -19,7 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Index
-from sk120stiff.explain.candidates.regression import Regression, Solved, Sums, solve_columns
+from sk120stiff.explain.candidates.regression import Regression, price_of_choice
+from sk120stiff.explain.candidates.sums import Solved, Sums, solve_columns
 
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
 PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit
@@ -119,33 +120,16 @@ def _at(
     added = ~regression.in_base[solved.columns]
     limits = regression.plausible[solved.columns[added]]
     plausible = bool((np.abs(solved.values[added]) <= limits).all())
-    score += sum(price_of_choice(regression, e, k, e != untied) for e, k in variants.items())
+    score += sum(_of_choice(regression, e, k, e != untied) for e, k in variants.items())
     made = Scored(chosen, float(score), solved, plausible, tuple(variants.values()))
     sums.scores[key] = made
     return made
 
 
-def price_of_choice(regression: Regression, effect: int, variant: int, tied: bool = True) -> float:
-    """What an effect pays for the variant by which it enters, and for being less usual.
-
-    The law that the catalogue gives it is the usual one, with its parameters equal or not. The
-    others together are as likely, those less that are rarer by themselves (`Effect.law_prior`).
-    """
-    usual = {regression.usual[effect]}
-    if regression.usual[effect] == 0 and regression.tied[effect] > 0 and tied:
-        usual.add(regression.tied[effect])
-    others = len(regression.variants[effect]) - len(usual)
-    own = price_of_law(len(usual) if variant in usual else others, usual=variant in usual)
-    rare = -2.0 * float(np.log(regression.law(effect, variant).law_prior))
-    return own + rare + regression.unusual[effect]
-
-
-def price_of_law(count: int, *, usual: bool) -> float:
-    """What one of `count` laws pays: the usual ones nothing but for being several, any other twice.
-
-    So much must the misfit fall for it in units of the noise's variance.
-    """
-    return 2.0 * float(np.log(count if usual else 2.0 * count))
+def _of_choice(regression: Regression, effect: int, variant: int, tied: bool) -> float:
+    if tied:
+        return float(regression.prices_of_choice[effect][variant])
+    return price_of_choice(regression, effect, variant, tied=False)
 
 
 def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> tuple[Solved, float]:
@@ -243,7 +227,7 @@ def entry_fall(regression: Regression, effect: int) -> float:
     """
     count, rows = len(regression.columns[effect]), float(regression.rows)
     rest = price_of_looking(regression, rows) + price_of_choice(
-        regression, effect, regression.usual[effect], True
+        regression, effect, regression.usual[effect]
     )
     fall = rest
     for _ in range(PRICED):  # the price of sizes grows with the logarithm of the fall
