@@ -141,7 +141,8 @@ def complete_account(
     """The likeliest account by names and one suspect that leaves noise alone; None: there is none.
 
     A suspect that holds a name, or is the free form of a candidate's law, says what that says. It
-    is not tried.
+    is not tried. Where only the account itself tells the noise, that it leaves nothing beyond that
+    noise is no reason to say nothing: names stand against an account without any.
 
     Args:
         at: Fit of the base model under the noise of the readings.
@@ -172,6 +173,8 @@ def complete_account(
     kept = with_the_strongest(beside, effects)
     stand = {effect.id for effect in kept.effects}
     findings = tuple(each for each in said.findings if each.effect.id in stand)
+    if named.findings and not findings and not at.sigma_known:
+        return None
     return Account(kept, Named(findings, (*_fallen(named, stand, suspect), *said.fallen)), suspect)
 
 
