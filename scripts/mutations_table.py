@@ -18,7 +18,7 @@ class Fault:
     file
         Where, from the root.
     old, new
-        The text, found exactly once, and what replaces it.
+        The text, found exactly once (the suite holds it to that), and what replaces it.
     tests
         Files or folders of tests that own the file.
     """
@@ -174,9 +174,12 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "identify/uncertainty/variance_components.py", *_tests("identify", "variance_components"),
-        REML_without_the_information=("return logdet + information + square", "return logdet + square"),
-        REML_without_its_log_determinant=("return logdet + information + square",
-                                          "return information + square"),
+        REML_without_the_information=(
+            "return logdet + information + self._of_noise(self._likeliest(square), square)",
+            "return logdet + self._of_noise(self._likeliest(square), square)"),
+        REML_without_its_log_determinant=(
+            "return logdet + information + self._of_noise(self._likeliest(square), square)",
+            "return information + self._of_noise(self._likeliest(square), square)"),
         REML_log_determinant_halved=("logdet = 2.0 * np.log(", "logdet = np.log("),
         REML_freedom_of_plain_likelihood=("self.rows - len(self.xx) + 1, 1)", "self.rows, 1)"),
     ),
@@ -209,7 +212,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/select/score.py", *_tests("explain", "regression"),
-        sizes_for_nothing=("price += price_of_sizes(gain, len(own), n)", "price += 0.0"),
+        sizes_for_nothing=("        price_of_sizes(gain, count, n)\n", "        0.0\n"),
         looking_for_nothing=("price = len(parts) * price_of_looking(regression, n) +", "price ="),
     ),
     *_of(
@@ -224,6 +227,16 @@ FAULTS: tuple[Fault, ...] = (
         "explain/judge/posterior.py", *_tests("explain", "evidence"),
         evidence_counted_twice=("np.exp(-0.5 * (values", "np.exp(-1.0 * (values"),
         none_never_likely=("weights / weights.sum()", "weights / weights[1:].sum()"),
+        names_listed_until_most_of_what_names_have=("else min(NAMED, whole - LISTED)",
+                                                    "else NAMED * whole"),
+    ),
+    *_of(
+        "explain/judge/rigid_gears.py", *_tests("explain", "rigid_gears"),
+        rigid_gears_for_nothing=("model.score + UNLIKELY * rigid", "model.score"),
+    ),
+    *_of(
+        "explain/localise/suspect.py", *_tests("explain", "localise"),
+        a_wave_among_many_for_nothing=("return 2.0 * float(np.log(self.alike))", "return 0.0"),
     ),
     *_of(
         "explain/absolute/choose.py", *POSITIONS,

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from scripts.mutations_table import FAULTS
+
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 LONGEST_FILE = 400
@@ -64,3 +66,13 @@ def test_types_of_arrays_live_on_the_ground_floor() -> None:
         if path.stem != "arrays" and spelled.search(path.read_text(encoding="utf-8"))
     ]
     assert not again
+
+
+def test_every_fault_of_the_mutation_script_has_its_place() -> None:
+    """A fault whose text is gone would be no fault, and what the tests do not see stay unknown."""
+    lost = [
+        fault.name
+        for fault in FAULTS
+        if (ROOT / fault.file).read_text(encoding="utf-8").count(fault.old) != 1
+    ]
+    assert lost == []

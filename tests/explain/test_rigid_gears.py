@@ -1,6 +1,7 @@
 """A law that takes a drive's spring away gives way to another law of the same name."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.confirm import UNTRIED
-from sk120stiff.explain.judge.rigid_gears import UNLIKELY, without_rigid_gears
+from sk120stiff.explain.judge.rigid_gears import UNLIKELY, _total, without_rigid_gears
 from sk120stiff.explain.select.stepwise import Selection, select, with_effects
 from sk120stiff.measurements import NoiseModel
 from tests.explain.readings import base_fit, hidden
@@ -55,3 +56,17 @@ def test_a_law_that_leaves_all_springs_stays(tmp_path):
     found = with_effects(found, [tilt])
     assert np.isfinite(springs(found)).all()
     assert without_rigid_gears(found, named(found)) == (found, named(found))
+
+
+def test_every_rigid_gear_has_its_price():
+    """Columns 0 and 1 are springs, 2 is a zero offset, 3 the effect's."""
+    regression = SimpleNamespace(base=np.array([0, 1, 2]), lower=np.array([0, 0, -np.inf, 0]))
+
+    def model(*columns: int, plausible: bool = True) -> SimpleNamespace:
+        solved = SimpleNamespace(columns=np.array(columns))
+        return SimpleNamespace(score=7.0, solved=solved, plausible=plausible)
+
+    assert _total(regression, model(0, 1, 3)) == 7.0
+    assert _total(regression, model(3, 0)) == 7.0 + UNLIKELY
+    assert _total(regression, model(2, 3)) == 7.0 + 2.0 * UNLIKELY
+    assert _total(regression, model(0, 1, 2, 3, plausible=False)) == np.inf
