@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 from functools import cache
 from html import unescape
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from sk120stiff.model import base_model
 from sk120stiff.robot import load_robot
 from sk120stiff.show import scene_html
 from sk120stiff.show.stories import explain_report, explain_scene
+from sk120stiff.show.stories.explain_report import _left
 from sk120stiff.show.stories.pictures import ArmView, exaggeration, gap_vectors, suspect_panels
 from sk120stiff.show.stories.verdicts import lead_of
 from sk120stiff.show.wording import number, percent, said_as, um, unit_of, with_error
@@ -263,3 +265,11 @@ def test_what_is_left_stands_in_the_report_with_its_size() -> None:
     for verdict in ("none", "named", "outside"):
         found, text = answer(verdict), plain(page(verdict))
         assert found.remainder.sentence() in text
+
+
+@pytest.mark.parametrize(("significant", "told"), [(True, ("117", "µm")), (False, ("?", ""))])
+def test_what_poses_have_of_their_own_is_told_where_the_noise_is_unknown(significant, told) -> None:
+    remainder = SimpleNamespace(rms=1.17e-4, significant=significant)
+    answered = SimpleNamespace(adequacy=SimpleNamespace(chance=None), remainder=remainder)
+    assert _left(answered)[:2] == told
+    assert "the noise is unknown" in _left(answered)[2]

@@ -151,6 +151,8 @@ def _left(answer: Explanation) -> tuple[str, str, str]:
     """What is left beyond noise: word or size, unit, and the probability that noise makes it."""
     left = answer.adequacy
     if left.chance is None:
+        if answer.remainder.significant:
+            return um(answer.remainder.rms), "µm", "rms per axis; the noise is unknown"
         return "?", "", "the noise is unknown"
     if left.understated is not None:
         return f"{left.understated:.2f}", "σ", "as stated, which looks too small"
