@@ -37,7 +37,9 @@ def without_rigid_gears(found: Selection, named: Named) -> tuple[Selection, Name
     others: list[tuple[float, int, int]] = []
     for finding in named.findings:
         e = place[finding.effect.id]
-        for k in range(1, len(regression.variants[e])):
+        for k, law in enumerate(regression.laws[e]):
+            if law == finding.effect:  # its parameters tied or not, it is the law that is fitted
+                continue
             start = now.by_variant | {e: k}
             model = score_set(regression, regression.sums(), found.chosen, start=start, only=())
             others.append((_total(regression, model), e, k))
@@ -65,7 +67,10 @@ def _rigid(fit: Fit) -> int:
 
 
 def _total(regression: Regression, model: Scored) -> float:
-    """Score of a model with what its rigid gears cost; infinite where a size is beyond belief."""
+    """Score of a model with the price of every compliance of the base model that vanishes in it.
+
+    Infinite where a size is beyond belief.
+    """
     base = regression.base[regression.lower[regression.base] == 0.0]
     rigid = len(base) - int(np.isin(base, model.solved.columns).sum())
     return model.score + UNLIKELY * rigid if model.plausible else np.inf
