@@ -85,14 +85,8 @@ def _settled(
         now = {finding.effect.id for finding in named.findings}
         if now == before:
             break
-        at, before = _asked_anew(found.final, at), now
+        at, before = asked_anew(found.final, at), now
     return found, named, tried.total + found.scored.score - tried.scored.score
-
-
-def _asked_anew(fit: Fit, at: Fit) -> Fit:
-    """The fit with the size of its noise as well known as that of another."""
-    noise = replace(fit.problem.noise, freedom=at.problem.noise.freedom)
-    return replace(fit, problem=replace(fit.problem, noise=noise))
 
 
 def _nearest(found: Selection) -> Effect | None:
@@ -118,6 +112,12 @@ def unless_imitating(found: Selection, named: Named, seed: int) -> tuple[Selecti
     found, again = judged(with_the_strongest(found, kept), seed=seed, least=MARGIN)
     fallen = (*named.fallen, Fallen(*reason), *again.fallen)
     return unless_imitating(found, Named(again.findings, fallen), seed)
+
+
+def asked_anew(fit: Fit, at: Fit) -> Fit:
+    """The fit with the size of its noise as well known as that of another."""
+    noise = replace(fit.problem.noise, freedom=at.problem.noise.freedom)
+    return replace(fit, problem=replace(fit.problem, noise=noise))
 
 
 def with_model_form(fit: Fit) -> NoiseModel:

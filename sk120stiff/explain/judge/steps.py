@@ -10,7 +10,7 @@ from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
-from sk120stiff.explain.judge.beside_form import with_model_form
+from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
 from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
@@ -63,16 +63,14 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
     """Learning as `explain` learns: noise, effects and values from the readings at hand alone.
 
     It gives the base model, and for every count the best model with so many effects at most; the
-    names need not be those that all readings bring.
+    names need not be those that all readings bring. Beside laws that are not exact, the search is
+    made once more beside the model-form error that its first model leaves.
     """
     start, alpha = found.base.problem.model, found.regression.alpha
     ids = [effect.id for effect in start.effects]
     whole = found.base.problem.noise
 
-    def learn(readings: Measurements) -> list[Fit]:
-        base = fit(start, readings)
-        if whole.form or (base.sigma_known and not whole.known):  # laws that are not exact
-            base = fit(start, readings, noise=with_model_form(base))
+    def searched(base: Fit, counts: Sequence[int]) -> list[Fit]:
         if not any(counts):
             return [base for _ in counts]
         regression = regression_at(
@@ -83,6 +81,19 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
         return [
             _first_fit(base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count])
             for count in counts
+        ]
+
+    def beside_what_is_left(at: Fit, counts: Sequence[int]) -> list[Fit]:
+        return searched(fit(start, at.problem.measurements, noise=with_model_form(at)), counts)
+
+    def learn(readings: Measurements) -> list[Fit]:
+        base = fit(start, readings)
+        if not whole.form and (whole.known or not base.sigma_known):  # laws that are exact
+            return searched(base, counts)
+        once = beside_what_is_left(base, counts)
+        return [
+            beside_what_is_left(asked_anew(each, base), [count])[0] if count else each
+            for count, each in zip(counts, once, strict=True)
         ]
 
     return learn
