@@ -14,7 +14,7 @@ from tests.hidden.generator.case import Case
 from tests.hidden.generator.causes_elastic import BaseRocking
 from tests.hidden.generator.causes_foreign import RubberMount
 from tests.hidden.generator.design import plan
-from tests.hidden.generator.draw import unit_causes
+from tests.hidden.generator.draw import choices, unit_causes
 from tests.hidden.generator.draw_real import real
 from tests.hidden.generator.levels import setting, shows
 from tests.hidden.generator.levels_real import lifelike_pool, remainder
@@ -54,6 +54,17 @@ def test_schedules_load_as_they_say(schedule: str, loads: int, rows: int) -> Non
         assert first.repeat.tolist() == [1] * 4 + [2] * 4
     if schedule == "single":
         assert len(np.unique(found.pose)) == 6
+
+
+@pytest.mark.parametrize(("schedule", "loads", "seen"), [("single", 1, False), ("ladder", 3, True)])
+def test_a_constant_of_a_pose_is_hidden_where_a_pose_is_read_twice(
+    schedule: str, loads: int, seen: bool
+) -> None:
+    """Read once, it is noise of another size, and nothing can tell the two apart."""
+    rng = np.random.default_rng(5)
+    at = setting("L1", (5,), rng, schedule=schedule, loads=loads, shared=False, positions=False)
+    constant = next(choice for choice in choices(at.arm) if choice.name == "zero_offset")
+    assert shows(constant, at) is seen
 
 
 def test_a_technician_measures_around_a_few_places() -> None:
