@@ -29,7 +29,12 @@ from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
 from sk120stiff.explain.priors import FURTHER_IMPOSTOR, IMPOSTOR
-from sk120stiff.explain.select.best_selection import Try, best_selection, held_against
+from sk120stiff.explain.select.best_selection import (
+    Try,
+    best_selection,
+    held_against,
+    of_readings,
+)
 from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import Fit, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
@@ -88,6 +93,7 @@ def explain(
     tell("confirming on other poses", 0.3)
     found, named, account = _judged(found, base, under, seed=options.seed)
     found, named = without_rigid_gears(found, named)
+    base = of_readings(found.base.problem.measurements, base)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)
     goes_with = None if account is None else account.suspect
@@ -163,7 +169,9 @@ def _judged(
         found,
         named,
         under=under,
-        complete=lambda tried, said: not tried.final.exceeds and _explains(tried, said, noise),
+        complete=lambda tried, said, noise: (
+            not tried.final.exceeds and _explains(tried, said, noise)
+        ),
         seed=seed,
     )
     return (found, named, None) if account is None else (account.selection, account.named, account)

@@ -12,7 +12,9 @@ from sk120stiff.explain import explain
 from sk120stiff.explain.judge.beside_suspect import _holds, nuisance
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.identify import fit
-from tests.explain.readings import NOISE, base_fit, hidden
+from sk120stiff.measurements import NoiseStatement
+from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
+from tests.hidden.generator.causes_elastic import ToolCompliance
 from tests.hidden.generator.causes_foreign import TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
 
@@ -96,3 +98,21 @@ def test_a_name_stands_beside_a_cause_without_one(springs, foreign, place):
     assert TOLD in answer.remainder.where[0]
     without = hidden(GEAR).displacement - hidden(GEAR, foreign).displacement
     assert answer.remainder.rms < 1.05 * np.sqrt(np.mean(without**2))
+
+
+def test_a_sigma_that_was_stated_too_small_hides_no_account(springs):
+    """Less than a third too small: what is left has no structure, and its size is let free."""
+    readings = replace(hidden(GEAR, TEETH), noise=NoiseStatement(sigma=0.72 * SIGMA))
+    answer = explain(springs, readings)
+    assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
+    assert TOLD in answer.remainder.where[0]
+
+
+def test_what_hides_behind_a_name_that_fell_is_looked_for(springs):
+    """A gear's teeth outweigh a soft tool, which falls; beside it they show, and it stands."""
+    waves = PeriodicGear("joint_2_l", {"share": 0.2}, {"count": 7, "phase": 1.0})
+    tool = ToolCompliance("tool0", {"rx": 2e-5, "ry": 2e-5})
+    answer = explain(springs, hidden(tool, waves))
+    assert [finding.effect.id for finding in answer.findings] == ["tool_compliance:tool0"]
+    assert "its own stiffness depends in 7 waves a turn" in answer.remainder.where[0]
+    assert TOLD in answer.remainder.where[0]

@@ -284,7 +284,7 @@ def test_where_nothing_is_named_the_search_begins_again_beside_the_nearest(monke
         return standing, Named((finding,) if tried.final != "springs" else ())
 
     monkeypatch.setattr(beside_form, "with_model_form", lambda fit: fit)
-    monkeypatch.setattr(beside_form, "_asked_anew", lambda fit, at: fit)
+    monkeypatch.setattr(beside_form, "asked_anew", lambda fit, at: fit)
     monkeypatch.setattr(beside_form, "judged", judged)
     monkeypatch.setattr(beside_form, "_nearest", lambda found: tilt)
     monkeypatch.setattr(beside_form, "refit", lambda fit, effects: f"{fit} and tilt")

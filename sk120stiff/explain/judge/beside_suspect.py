@@ -9,7 +9,7 @@ takes the place of names that were judged beside an error of unknown form.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
@@ -36,11 +36,12 @@ from sk120stiff.explain.select.best_selection import Try
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit, fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import Model
 
 TRIED = 1  # suspects, of those that come nearest to the gap of the springs and of the names
 NARROW = 4  # models kept by the search that tells which suspect is worth a whole one
-LEFT = 1.5  # times the noise's variance: what names may leave, before any law is exact
+LEFT = 2.5  # times the noise's variance: what names may leave, before any law is exact
 INSIDE = 0.3  # share of its length below which an effect is part of a suspect
 WIDEST = 0.1  # m; no factor moves a reading by more
 SMALLEST = 1e-6  # of the largest singular value: what columns have of their own
@@ -135,7 +136,7 @@ def complete_account(
     named: Named,
     *,
     under: Try,
-    complete: Callable[[Selection, Named], bool],
+    complete: Callable[[Selection, Named, NoiseModel], bool],
     seed: int,
 ) -> Account | None:
     """The likeliest account by names and one suspect that leaves noise alone; None: there is none.
@@ -148,10 +149,11 @@ def complete_account(
         at: Fit of the base model under the noise of the readings.
         found, named: What was named beside model-form error.
         under: Makes a selection.
-        complete: Nothing is left that noise does not explain.
+        complete: Nothing is left that this noise does not explain.
         seed: Of folds and resampling.
     """
-    suspects = {name: nuisance(name, at) for name in _nearest(at, found)}
+    fits = [at, found.final, *_with_the_last_fallen(found, named)]
+    suspects = {name: nuisance(name, at) for name in _nearest(fits, found)}
     names = [finding.effect for finding in named.findings]
     scores = {
         name: _at_best(at, each, found.regression)
@@ -162,10 +164,10 @@ def complete_account(
     if suspect is None or scores[suspect] == np.inf:
         return None
     try:
-        tried, said = judged(under(at.problem.noise, suspects[suspect]), seed=seed)
-        if not complete(tried, said):
+        told = _beside(suspects[suspect], at, under, complete, seed)
+        if told is None:
             return None
-        _, said = unless_imitating(tried, said, seed)
+        _, said = unless_imitating(*told, seed)
         effects = [finding.effect for finding in said.findings]
         beside = under(with_model_form(refit(at, effects)))
     except Refusal:
@@ -176,6 +178,29 @@ def complete_account(
     if named.findings and not findings and not at.sigma_known:
         return None
     return Account(kept, Named(findings, (*_fallen(named, stand, suspect), *said.fallen)), suspect)
+
+
+def _beside(
+    suspect: Nuisance,
+    at: Fit,
+    under: Try,
+    complete: Callable[[Selection, Named, NoiseModel], bool],
+    seed: int,
+) -> tuple[Selection, Named] | None:
+    """What is named beside a suspect, where nothing else is left; None where something is.
+
+    Where more is left than the noise that was stated, and it has no structure, σ was understated:
+    its size is let free.
+    """
+    noise = at.problem.noise
+    for _ in range(2):
+        tried, said = judged(under(noise, suspect), seed=seed)
+        if complete(tried, said, noise):
+            return tried, said
+        noise = with_model_form(tried.final)
+        if noise.form or not at.problem.noise.known:
+            return None
+    return None
 
 
 def _holds(suspect: Nuisance, effect: Effect, found: Selection) -> bool:
@@ -192,11 +217,21 @@ def _holds(suspect: Nuisance, effect: Effect, found: Selection) -> bool:
     return bool((left**2).sum() < INSIDE**2 * (own**2).sum())
 
 
-def _nearest(at: Fit, found: Selection) -> list[str]:
-    """Suspects that come nearest to what springs leave, and to what names leave."""
+def _with_the_last_fallen(found: Selection, named: Named) -> list[Fit]:
+    """The fit with the name that stood longest: beside it a suspect may show that hides without."""
+    last = named.fallen[-1].id if named.fallen else None
+    effects = [each for each in found.regression.candidates if each.id == last]
+    try:
+        return [refit(found.base, [*found.effects, *effects])] if effects else []
+    except Refusal:
+        return []
+
+
+def _nearest(fits: Sequence[Fit], found: Selection) -> list[str]:
+    """Suspects that come nearest to what each fit leaves: of springs, of names."""
     free = {name for e in found.regression.candidates for name in (e.id, e.name)}
     out: list[str] = []
-    for each in (at, found.final):
+    for each in fits:
         look = look_at(each, yardstick(each))
         lineup = line_up(look)
         order = [k for _, k in ranked(look, lineup, look.inside)]

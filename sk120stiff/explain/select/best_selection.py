@@ -54,3 +54,11 @@ def held_against(noise: NoiseModel, fit: Fit) -> Fit:
     return with_values(
         replace(again, selection_uncertainty=fit.selection_uncertainty, left_out=fit.left_out)
     )
+
+
+def of_readings(measurements: Measurements, fit: Fit) -> Fit:
+    """The same model under the same noise, for the readings that a later search kept."""
+    problem = Problem(fit.problem.model, measurements, fit.problem.noise)
+    if np.array_equal(problem.measured, fit.problem.measured):
+        return fit
+    return solve_near(problem, fit.x)
