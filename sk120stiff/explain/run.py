@@ -35,6 +35,7 @@ from sk120stiff.explain.select.best_selection import (
     held_against,
     of_readings,
 )
+from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import Fit, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
@@ -93,6 +94,7 @@ def explain(
     tell("confirming on other poses", 0.3)
     found, named, account = _judged(found, base, under, seed=options.seed)
     found, named = without_rigid_gears(found, named)
+    found = replace(found, final=with_settled_sizes(found.final))
     base = of_readings(found.base.problem.measurements, base)
     left = _adequacy(found, noise)
     tell("the gap step by step", 0.7)

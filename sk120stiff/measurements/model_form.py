@@ -49,7 +49,7 @@ class ModelForm:
                 raise InputError(f"a model-form error of size {size} is not zero or positive")
 
     def __bool__(self) -> bool:
-        return self.proportional > 0.0 or self.constant > 0.0
+        return bool(self.proportional > 0.0 or self.constant > 0.0)
 
     def scaled(self, factor: float) -> ModelForm:
         """Both sizes times a factor."""

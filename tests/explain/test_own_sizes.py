@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
-from sk120stiff.explain.select.own_sizes import price_of_factors
+from sk120stiff.explain.select.own_sizes import price_of_factors, with_settled_sizes
 from sk120stiff.explain.select.stepwise import with_own_sizes
-from sk120stiff.identify import Fit, fit
+from sk120stiff.identify import Fit, Problem, fit
 from sk120stiff.measurements import Measurements, ModelForm, NoiseModel
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.explain.test_beside_form import roughened
@@ -86,3 +87,41 @@ def test_factors_cost_what_their_distribution_says():
     """-2 ln p of ln s under a t of four degrees of freedom, beside s = 1."""
     form = ModelForm(0.1, of_poses=(("a", 1.0), ("b", 4.0)))
     assert price_of_factors(form) == pytest.approx(4.0 * (np.log(4.0) + 0.25 - 1.0))
+
+
+def test_settled_values_are_those_of_maximum_likelihood_of_the_t_distribution():
+    """Against a direct minimisation, where the noise is nothing beside the model-form error."""
+    rough = roughened(hidden(poses=36, sigma=1e-8), SHARE)
+    wild = off_at(rough, rough.poses[20], 8 * SHARE)
+    noise = NoiseModel(3e-7, form=ModelForm(proportional=SHARE))
+    even = fit(base_fit(wild).model, wild, noise=noise)
+    found = with_settled_sizes(even)
+    scale = NoiseModel(3e-7, form=ModelForm(proportional=SHARE * float(np.sqrt(0.5))))
+    problem = Problem(even.model, wild, scale)
+    whitener = problem.whitener
+    free = (wild.displacement.size - even.estimated) / wild.displacement.size
+
+    def deviance(x: np.ndarray) -> float:
+        white = whitener.apply(problem.gap(x))
+        drawn = [(rows, U[:, size > 1.0]) for rows, U, size in whitener.strengths]
+        squares = [((U.T @ white[rows]) ** 2).sum() / free for rows, U in drawn]
+        axes = [U.shape[1] for _, U in drawn]
+        return sum((4.0 + k) * np.log1p(s / 4.0) for s, k in zip(squares, axes, strict=True))
+
+    best = minimize(lambda v: deviance(v * even.x), np.ones(len(even.x)), method="Nelder-Mead",
+                    options={"xatol": 1e-6, "fatol": 1e-8, "maxiter": 4000}).x * even.x  # fmt: skip
+    assert np.abs(found.x - best).max() < 0.1 * np.abs(even.x - best).max()
+
+
+def test_settled_factors_leave_the_errors_the_size_of_the_whole():
+    even = fit(base_fit(hidden()).model, roughened(hidden(poses=36), SHARE), noise=NOISE)
+    found = with_settled_sizes(even)
+    weights = [1.0 / s for _, s in found.problem.noise.form.of_poses]
+    assert np.mean(weights) == pytest.approx(1.0)
+    errors = [np.sqrt(np.diag(each.covariance)) for each in (found, even)]
+    assert errors[0] == pytest.approx(errors[1], rel=0.25)
+
+
+def test_beside_exact_laws_nothing_is_settled():
+    found = fit(base_fit(hidden()).model, hidden(), noise=NoiseModel(SIGMA))
+    assert with_settled_sizes(found) is found

@@ -21,6 +21,7 @@ from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.attribution import unit
 from sk120stiff.explain.judge.foreign_cause import moved_by_a_foreign_cause
 from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.explain.select.own_sizes import price_of_factors, with_settled_sizes
 from sk120stiff.explain.select.score import score_set
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
@@ -44,10 +45,10 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
     here = _at_no_load(final)
     for effects, must_fit in _others(found, findings):
         try:
-            other = refit(found.base, effects)
+            other = with_settled_sizes(refit(found.base, effects))
         except Refusal:
             continue
-        if must_fit and 2.0 * (final.log_likelihood - other.log_likelihood) > REFUTED:
+        if must_fit and _deviance(other) - _deviance(final) > REFUTED:
             continue
         for parameter, value in zip(other.parameters, _at_no_load(other), strict=True):
             if parameter.quantity in place:
@@ -56,6 +57,11 @@ def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) ->
     if found.base.problem.noise.form:
         moves = np.hypot(moves, moved_by_a_foreign_cause(final, remainder_of(final).rms))
     return with_values(replace(final, selection_uncertainty=moves))
+
+
+def _deviance(fit: Fit) -> float:
+    """-2 ln L with the sizes of its poses, up to a constant."""
+    return price_of_factors(fit.problem.noise.form) - 2.0 * fit.log_likelihood
 
 
 def _at_no_load(fit: Fit) -> Array:

@@ -12,6 +12,7 @@ from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
 from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
 from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
 from sk120stiff.measurements import Measurements
@@ -42,7 +43,7 @@ def gap_steps(
         if count:
             joined.append(f"+ {effects[count - 1].id}")
         try:
-            fits.append(refit(found.base, effects[:count]))
+            fits.append(with_settled_sizes(refit(found.base, effects[:count])))
         except Refusal:
             if count == len(effects):
                 raise
@@ -72,7 +73,7 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
 
     def searched(base: Fit, counts: Sequence[int]) -> list[Fit]:
         if not any(counts):
-            return [base for _ in counts]
+            return [with_settled_sizes(base) for _ in counts]
         regression = regression_at(
             base, found.candidates, ids, alpha=alpha, prior=found.regression.prior
         )
@@ -103,10 +104,10 @@ def _first_fit(base: Fit, choices: Sequence[Sequence[Effect]]) -> Fit:
     """The first of some sets of effects that can be fitted at exact equilibrium."""
     for effects in choices[:TRIED]:
         try:
-            return refit(base, effects)
+            return with_settled_sizes(refit(base, effects))
         except Refusal:
             continue
-    return base
+    return with_settled_sizes(base)
 
 
 def _base_name(base: Fit) -> str:

@@ -2,8 +2,9 @@
 
 What a model lacks is no normal error: it is large where a joint is bent hard and small elsewhere.
 Random effects of a t distribution have a variance of their own at every pose (Lange, Little &
-Taylor 1989; Pinheiro, Liu & Wu 2001). It is found from what the whole catalogue leaves, so that
-no cause like those in it is taken for such an error.
+Taylor 1989; Pinheiro, Liu & Wu 2001). While causes are sought it is found from what the whole
+catalogue leaves, so that none of them is taken for such an error. Once the names stand, what they
+leave themselves tells it, together with their values.
 """
 
 from __future__ import annotations
@@ -15,12 +16,13 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.select.outliers import LEAST_LEFT, everything, robust_scale
-from sk120stiff.identify import Problem
+from sk120stiff.identify import Fit, Problem, solve_near
 from sk120stiff.measurements import FormWhitener
 from sk120stiff.measurements.model_form import ModelForm
 
 TAILS = 4.0  # degrees of freedom, the usual choice where they are not estimated
 FACTORS = np.exp(np.linspace(-3.0, 4.0, 141))  # on a pose's variance, that are tried
+ROUNDS = 20  # of sizes and values, until they agree
 
 
 def own_sizes(regression: Regression, problem: Problem) -> ModelForm:
@@ -31,8 +33,40 @@ def own_sizes(regression: Regression, problem: Problem) -> ModelForm:
     residual, leverage = everything(regression)
     scale = robust_scale(residual, leverage)
     fair = residual / (scale * np.sqrt(np.maximum(1.0 - leverage, LEAST_LEFT)))
+    return _with_factors(problem, whitener, fair)
+
+
+def with_settled_sizes(found: Fit) -> Fit:
+    """The same model with the likeliest values and factors together; as it is beside exact laws.
+
+    That is maximum likelihood of the t distribution whose variance is the one found of all poses.
+    The factors are given back as weights of one on average, so that standard errors stay those of
+    that variance.
+    """
+    noise = found.problem.noise
+    even = replace(noise.form, of_poses=())
+    scale = even.scaled(float(np.sqrt((TAILS - 2.0) / TAILS)))
+    problem = replace(found.problem, noise=replace(noise, form=scale))
+    whitener = problem.whitener
+    if not isinstance(whitener, FormWhitener):
+        return found
+    rows = found.gap.size
+    free = np.sqrt(max(rows - found.estimated, 1) / rows)  # share that the parameters leave
+    for _ in range(ROUNDS):
+        form = _with_factors(problem, whitener, whitener.apply(found.gap) / free)
+        mean = len(form.of_poses) / sum(1.0 / s for _, s in form.of_poses)
+        form = replace(even, of_poses=tuple((pose, s / mean) for pose, s in form.of_poses))
+        if form == found.problem.noise.form:
+            break
+        found = solve_near(replace(problem, noise=replace(noise, form=form)), found.x)
+    return found
+
+
+def _with_factors(problem: Problem, whitener: FormWhitener, fair: Array) -> ModelForm:
+    """The form with the likeliest factors, from residuals (R,) whitened without any."""
     factors = [_likeliest(U.T @ fair[rows], strength) for rows, U, strength in whitener.strengths]
-    return replace(form, of_poses=tuple(zip(problem.measurements.poses, factors, strict=True)))
+    poses = tuple(zip(problem.measurements.poses, factors, strict=True))
+    return replace(problem.noise.form, of_poses=poses)
 
 
 def price_of_factors(form: ModelForm) -> float:
