@@ -1,18 +1,21 @@
 """Are the stated probabilities frequencies? The table and picture of docs/RELIABILITY.md.
 
-    python scripts/reliability.py FOLDER ... --out docs
+    python scripts/reliability.py FOLDER ... --seed 20261501 --out docs
 
 FOLDER: sealed cases that were answered (`python -m tests.hidden.run`), of draws that were not used
 to make the procedure. Writes RELIABILITY.md and reliability.png: how often names at each stated
-probability were true, the expected calibration error and the Brier score.
+probability were true, the expected calibration error and the Brier score. Every draw that was ever
+published stays in reliability_draws.csv, and all of them together have a section of their own.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +24,7 @@ from scipy import stats
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from tests.hidden.calibration import Calibration, calibration, reliability, stated
+from tests.hidden.calibration import Bin, Calibration, calibration, reliability, stated
 from tests.hidden.judge import Mark
 from tests.hidden.score import check_frozen, judge_case, level_of
 
@@ -38,10 +41,22 @@ Made by `python scripts/reliability.py`.
 ![stated against true](reliability.png)
 """
 
+ALL = """
+## All draws that were published
+
+{cases} cases of {draws} draws. Each was fresh for the state of the program that answered it, and
+the procedure was changed between them, partly by what they showed: this is how far stated
+probabilities could be believed over its history, the last draw alone is how far they can be now.
+
+"""
+DRAWS = "reliability_draws.csv"
+COLUMNS = ("seed", "date", "cases", "what", "from", "count", "stated", "true", "brier")
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folders", type=Path, nargs="+")
+    parser.add_argument("--seed", required=True, help="of the draw, under which it is kept")
     parser.add_argument("--out", type=Path, default=Path("docs"))
     asked = parser.parse_args(arguments)
     judged, levels, marks = [], Counter[str](), defaultdict[str, list[Mark]](list)
@@ -66,10 +81,53 @@ def main(arguments: Sequence[str] | None = None) -> int:
     text += "".join(
         f"\n## {w.capitalize()}\n\n{reliability(w, seen)}\n" for w, seen in told.items()
     )
+    kept = with_draw(asked.out / DRAWS, asked.seed, len(judged), told)
+    text += of_all(kept)
     (asked.out / "RELIABILITY.md").write_text(text, encoding="utf-8")
     drawn(told).savefig(asked.out / "reliability.png", dpi=110)
     print(text)
     return 0
+
+
+def with_draw(
+    file: Path, seed: str, cases: int, told: Mapping[str, Calibration]
+) -> list[dict[str, str]]:
+    """The rows of all draws, this one in the place of what its seed had; written to the file."""
+    with file.open(encoding="utf-8", newline="") as text:
+        rows = [row for row in csv.DictReader(text) if row["seed"] != seed]
+    today = datetime.now(UTC).date().isoformat()
+    for what, seen in told.items():
+        for b in seen.bins:
+            numbers = (b.low, b.count, f"{b.stated:.3f}", f"{b.true:.3f}", f"{seen.brier:.3f}")
+            row = (seed, today, cases, what, *numbers)
+            rows.append(dict(zip(COLUMNS, map(str, row), strict=True)))
+    with file.open("w", encoding="utf-8", newline="") as text:
+        out = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+        out.writeheader()
+        out.writerows(rows)
+    return rows
+
+
+def of_all(rows: Sequence[Mapping[str, str]]) -> str:
+    """The section on all draws together."""
+    cases = {row["seed"]: int(row["cases"]) for row in rows}
+    kinds = list(dict.fromkeys(row["what"] for row in rows))
+    pooled = [reliability(what, together(r for r in rows if r["what"] == what)) for what in kinds]
+    return ALL.format(cases=sum(cases.values()), draws=len(cases)) + "\n\n".join(pooled) + "\n"
+
+
+def together(rows: Iterable[Mapping[str, str]]) -> Calibration:
+    """One calibration of the bins of several draws."""
+    numbers = [[float(row[name]) for name in COLUMNS[4:]] for row in rows]
+    bins = []
+    for low in sorted({each[0] for each in numbers}):
+        _, n, *shares = np.array([each for each in numbers if each[0] == low]).T
+        stated_, true, _ = (float(np.average(share, weights=n)) for share in shares)
+        bins.append(Bin(low, low + 0.1, int(n.sum()), stated_, true))
+    count = sum(b.count for b in bins)
+    error = sum(b.count * abs(b.stated - b.true) for b in bins) / count
+    brier = float(np.average([each[4] for each in numbers], weights=[each[1] for each in numbers]))
+    return Calibration(count, error, brier, bins)
 
 
 def drawn(told: Mapping[str, Calibration]) -> Figure:

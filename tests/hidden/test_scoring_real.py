@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import runpy
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.hidden import score
@@ -193,3 +195,21 @@ def test_only_plain_gears_are_asked_for_their_springs(tmp_path: Path) -> None:
     assert coverage(truth("L1", TILT), answer, 1.0) == ([False], [True])
     assert coverage(truth("L10", TILT), answer, 1.0) == ([], [True])
     assert coverage(truth("L10", PLAY), answer, 1.0) == ([], [])  # its gear has a curve
+
+
+def test_draws_together_are_calibrated_as_their_cases_are():
+    """Bins of two draws, kept as numbers, against one calibration of all pairs."""
+    script = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "reliability.py"))
+    rng = np.random.default_rng(3)
+    draws = [[(float(p), bool(rng.random() < p)) for p in rng.random(n)] for n in (300, 700)]
+    rows = [
+        dict(zip(script["COLUMNS"], (k, "", len(draw), "names", b.low, b.count, b.stated, b.true,
+                                     found.brier), strict=True))
+        for k, draw in enumerate(draws)
+        if (found := calibration(draw)) is not None
+        for b in found.bins
+    ]  # fmt: skip
+    whole, pooled = calibration(draws[0] + draws[1]), script["together"](rows)
+    assert (pooled.count, pooled.error, pooled.brier) == pytest.approx(
+        (whole.count, whole.error, whole.brier)
+    )
