@@ -21,8 +21,8 @@ from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imita
 from sk120stiff.explain.judge.beside_suspect import Account, complete_account
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
-from sk120stiff.explain.judge.remainder import Remainder, remainder_of
-from sk120stiff.explain.judge.rigid_gears import without_rigid_gears
+from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.steps import gap_steps
 from sk120stiff.explain.localise.places import localise
@@ -105,7 +105,8 @@ def explain(
         for k, each in enumerate(named.findings)
     )
     effects = [finding.effect for finding in findings]
-    final = with_selection_uncertainty(found, findings)
+    beside = None if account is None else account.fit
+    final = with_selection_uncertainty(found, findings, beside)
     verdict = _verdict(findings, left)
     if verdict == "none":
         left.refuse_contradicted(str(measurements.path or "the measurements"))
@@ -114,8 +115,9 @@ def explain(
         if account is not None:  # of another suspect in its place no more need be said
             lives = (*lives[:1], account.sentence())
         remainder = replace(remainder, where=lives[1 : 1 + TOLD])
-    fallen = named.doubted if verdict == "outside" else ()
-    suspects, guess = contenders(found, fallen, seed=options.seed)
+    beyond = implausible(found) if remainder.significant else None
+    near = (*named.doubted, *([] if beyond is None else [beyond.id]))
+    suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
     answer = Explanation(
         verdict=verdict,
         findings=findings,
@@ -130,7 +132,8 @@ def explain(
         remainder=remainder,
         unnamed=(
             *named.reasons,
-            *_beyond_belief(found, remainder),
+            *([] if beyond is None else [beyond.sentence]),
+            *held_rigid(final),
             *_where_it_binds(found, options),
         ),
         limits=options.limits,
@@ -187,12 +190,6 @@ def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:
         f"All {options.max_effects} effects that may be named at most were found; there may be "
         "more: ask for more with --max-effects.",
     )
-
-
-def _beyond_belief(found: Selection, remainder: Remainder) -> tuple[str, ...]:
-    """What would explain the remainder, if its size could be believed."""
-    told = implausible(found) if remainder.significant else None
-    return () if told is None else (told,)
 
 
 def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:

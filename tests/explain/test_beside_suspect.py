@@ -17,6 +17,7 @@ from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_elastic import ToolCompliance
 from tests.hidden.generator.causes_foreign import TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
+from tests.hidden.generator.sk120 import sk120
 
 TEETH = PeriodicGear("joint_2_l", {"share": 0.2}, {"count": 1, "phase": 1.0})
 GEAR = GearHardening("joint_1_s", {"cubic": 0.8}, {"T": 700.0})
@@ -98,6 +99,8 @@ def test_a_name_stands_beside_a_cause_without_one(springs, foreign, place):
     assert TOLD in answer.remainder.where[0]
     without = hidden(GEAR).displacement - hidden(GEAR, foreign).displacement
     assert answer.remainder.rms < 1.05 * np.sqrt(np.mean(without**2))
+    for spring, true in zip(answer.final.parameters, sk120().typical.joint.values(), strict=False):
+        assert abs(spring.value - true) < 3.0 * spring.std
 
 
 def test_a_sigma_that_was_stated_too_small_hides_no_account(springs):

@@ -4,16 +4,18 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
-from sk120stiff import joint_spring_model
-from sk120stiff.effects import effect
+from sk120stiff import joint_spring_model, load_robot
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.confirm import UNTRIED
-from sk120stiff.explain.judge.rigid_gears import UNLIKELY, _total, without_rigid_gears
+from sk120stiff.explain.judge.rigid_gears import UNLIKELY, _total, held_rigid, without_rigid_gears
 from sk120stiff.explain.select.stepwise import Selection, select, with_effects
-from sk120stiff.measurements import NoiseModel
-from tests.explain.readings import base_fit, hidden
+from sk120stiff.measurements import Measurements, NoiseModel, NoiseStatement
+from tests.corpus.robots import example
+from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.real_arms import fanuc
 
 
@@ -70,3 +72,34 @@ def test_every_rigid_gear_has_its_price():
     assert _total(regression, model(3, 0)) == 7.0 + UNLIKELY
     assert _total(regression, model(2, 3)) == 7.0 + 2.0 * UNLIKELY
     assert _total(regression, model(0, 1, 2, 3, plausible=False)) == np.inf
+
+
+def test_a_tilt_about_the_next_joint_leaves_that_joint_its_spring():
+    """The tilt of panda_joint2 along its link turns about the axis of panda_joint3."""
+    robot = load_robot(example("panda.urdf"), base="panda_link0", tool="panda_link8")
+    rng = np.random.default_rng(2)
+    joints = np.repeat(rng.uniform(-1.0, 1.0, (20, 7)) + [0, 0, 0, -1.5, 0, 1.5, 0], 3, axis=0)
+    tilt = effect(robot, "joint_tilt", "panda_joint2")
+    true = joint_spring_model(robot, np.full(7, 3e4)) + tilt
+    true = true.with_public({f"{tilt.id}.stiffness_along": 6e4, f"{tilt.id}.stiffness_across": 4e4})
+    silent = Measurements(
+        pose=tuple(str(k // 3) for k in range(60)),
+        joint_names=robot.actuated,
+        joints=joints,
+        wrench=np.hstack([rng.normal(0.0, 20.0, (60, 3)), np.zeros((60, 3))]),
+        displacement=np.zeros((60, 3)),
+        point=np.array([0.05, 0.02, 0.1]),
+        zero="separate",
+        noise=NoiseStatement(sigma=SIGMA),
+    )
+    moved = true.predict(load_cases_of(robot, silent)) + rng.normal(0.0, SIGMA, (60, 3))
+    settled = select(
+        joint_spring_model(robot), replace(silent, displacement=moved), NoiseModel(SIGMA),
+        (tilt,), max_effects=1, alpha=0.01,
+    )  # fmt: skip
+    other, _ = without_rigid_gears(settled, named(settled))
+    assert np.isinf(springs(settled)[2])
+    assert springs(other)[2] == pytest.approx(1.0 / (1.0 / 3e4 + 1.0 / 6e4), rel=0.05)
+    assert other.final.chi_square < settled.final.chi_square + UNLIKELY
+    (said,) = held_rigid(other.final)
+    assert said.startswith("joint_tilt:panda_joint2.stiffness_along is held rigid")

@@ -27,15 +27,15 @@ GOALS: dict[str, tuple[str, float | None, float | None]] = {
     "L0": ("clean", 0.99, None),
     "L1": ("one effect, strong", 0.95, None),
     "L2": ("one effect, 8-25", 0.90, None),
-    "L3": ("one effect, 4-8", 0.60, 0.03),
-    "L4": ("one of a near pair", None, None),
+    "L3": ("one effect, 4-8", 0.80, 0.03),
+    "L4": ("one of a near pair", 0.90, None),
     "L5": ("exact alias", 1.00, 0.0),
     "L6.2": ("2 effects at once", 0.95, None),
     "L6.3": ("3 effects at once", 0.80, None),
-    "L6.4": ("4 effects at once", 0.75, None),
+    "L6.4": ("4 effects at once", 0.88, None),
     "L7": ("not in the catalogue", None, 0.20),
     "L8": ("clean, messy noise", 0.98, None),
-    "L9": ("unknown robot, all at once", None, None),
+    "L9": ("unknown robot, all at once", 0.80, None),
     "L10": ("right in kind, wrong in detail", 0.80, 0.03),
     "L11": ("positions of a sagging arm", 0.80, None),
     "L11.rigid": ("positions, geometry alone", 0.98, 0.02),
@@ -94,7 +94,7 @@ def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[s
     if level == "L9":
         # a case without predictions is a failure
         close = sum(r <= 1.2 for r in ratios) / count
-        met = bool(ratios) and median(ratios) <= 1.2
+        met = bool(met) and bool(ratios) and median(ratios) <= 1.2
     covered = [hit for m in marks for hit in m.effects_covered]
     springs = [hit for m in marks for hit in m.springs_covered]
     settled = [m.settled for m in marks if m.settled is not None]

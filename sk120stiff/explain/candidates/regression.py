@@ -24,8 +24,6 @@ from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
 
-FAR_SOFTER = 10.0  # times as soft as usual: less than that ranges of plausible values allow for
-
 
 @dataclass(frozen=True, eq=False)
 class Regression:
@@ -252,16 +250,15 @@ def regression_at(
 
 
 def softness(fit: Fit) -> float:
-    """How many times softer than others of its length an arm is, by its springs; 1 if not by far.
+    """How many times softer than others of its length an arm is, by its springs; 1 if it is not.
 
-    What is plausible of a bearing or a link goes with the whole arm: where every drive is a hundred
-    times softer than usual, a bearing may be.
+    What is plausible of a bearing or a link goes with the whole arm: where every drive is seven
+    times softer than usual, as in arms that work beside people, a bearing may be.
     """
     springs = [p for p in fit.parameters if p.effect.joint_spring and p.internal > 0.0]
     if not springs:
         return 1.0
-    ratio = float(np.exp(np.mean([np.log(p.internal / p.spec.typical) for p in springs])))
-    return ratio if ratio > FAR_SOFTER else 1.0
+    return max(float(np.exp(np.mean([np.log(p.internal / p.spec.typical) for p in springs]))), 1.0)
 
 
 def _variants(

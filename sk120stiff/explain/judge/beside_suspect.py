@@ -118,11 +118,13 @@ class Account:
         selection: The names beside model-form error, without the suspect.
         named: What was said of each name beside the suspect.
         suspect: Completes the sentence "The gap goes with ...".
+        fit: Of names and suspect together.
     """
 
     selection: Selection
     named: Named
     suspect: str
+    fit: Fit
 
     def sentence(self) -> str:
         """Where the remainder lives."""
@@ -167,7 +169,7 @@ def complete_account(
         told = _beside(suspects[suspect], at, under, complete, seed)
         if told is None:
             return None
-        _, said = unless_imitating(*told, seed)
+        told_beside, said = unless_imitating(*told, seed)
         effects = [finding.effect for finding in said.findings]
         beside = under(with_model_form(refit(at, effects)))
     except Refusal:
@@ -177,7 +179,8 @@ def complete_account(
     findings = tuple(each for each in said.findings if each.effect.id in stand)
     if named.findings and not findings and not at.sigma_known:
         return None
-    return Account(kept, Named(findings, (*_fallen(named, stand, suspect), *said.fallen)), suspect)
+    fallen = (*_fallen(named, stand, suspect), *said.fallen)
+    return Account(kept, Named(findings, fallen), suspect, told_beside.final)
 
 
 def _beside(

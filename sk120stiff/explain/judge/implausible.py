@@ -7,6 +7,8 @@ it: units may be wrong, or the arm is not what was thought.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from sk120stiff.explain.candidates.regression import Regression
@@ -17,8 +19,16 @@ from sk120stiff.explain.select.stepwise import Selection
 DECISIVE = 10.0  # difference of scores (BIC: Kass & Raftery 1995) that is worth a sentence
 
 
-def implausible(found: Selection) -> str | None:
-    """The one effect more that explains by far the most, if its size is beyond belief; in words."""
+@dataclass(frozen=True)
+class Implausible:
+    """An effect that would explain by far the most, and by what size, in a sentence."""
+
+    id: str
+    sentence: str
+
+
+def implausible(found: Selection) -> Implausible | None:
+    """The one effect more that explains by far the most, if its size is beyond belief."""
     regression, sums, now = found.regression, found.regression.sums(), found.scored
     promised = promises(regression, sums, now.solved)
     tried: dict[int, Scored] = {}
@@ -33,7 +43,7 @@ def implausible(found: Selection) -> str | None:
     believed = min([now.score, *(model.score for model in tried.values() if model.plausible)])
     if tried[best].score > believed - DECISIVE:
         return None
-    return _told(regression, best, tried[best])
+    return Implausible(regression.candidates[best].id, _told(regression, best, tried[best]))
 
 
 def _told(regression: Regression, effect: int, model: Scored) -> str:

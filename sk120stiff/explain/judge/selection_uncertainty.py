@@ -32,24 +32,30 @@ LOOKED_AT = 8  # alternatives of one name
 LAWS = 3  # other laws of one name
 
 
-def with_selection_uncertainty(found: Selection, findings: Sequence[Finding]) -> Fit:
+def with_selection_uncertainty(
+    found: Selection, findings: Sequence[Finding], beside: Fit | None = None
+) -> Fit:
     """The final fit, its standard errors and intervals widened by the models that remain possible.
 
     Args:
         found: The selection with its final fit.
         findings: The named effects with their alternatives.
+        beside: The same names beside a cause that has none, where it leaves noise alone: there the
+            estimates have not taken on what that cause does.
     """
     final = found.final
     place = {parameter.quantity: k for k, parameter in enumerate(final.parameters)}
     moves = np.zeros(len(final.x))
     here = _at_no_load(final)
-    for effects, must_fit in _others(found, findings):
+    others = [] if beside is None else [beside]
+    for effects in _others(found, findings):
         try:
             other = with_settled_sizes(refit(found.base, effects))
         except Refusal:
             continue
-        if must_fit and _deviance(other) - _deviance(final) > REFUTED:
-            continue
+        if _deviance(other) - _deviance(final) <= REFUTED:
+            others.append(other)
+    for other in others:
         for parameter, value in zip(other.parameters, _at_no_load(other), strict=True):
             if parameter.quantity in place:
                 k = place[parameter.quantity]
@@ -84,17 +90,17 @@ def bent_at_no_load(effect: Effect, load_cases: LoadCases, values: Array) -> flo
     return float(effect.elongation(rest, load_cases, values).by_torque.mean())
 
 
-def _others(found: Selection, findings: Sequence[Finding]) -> Iterator[tuple[list[Effect], bool]]:
-    """Sets of effects that may be meant as well; and whether they have to prove that they fit."""
+def _others(found: Selection, findings: Sequence[Finding]) -> Iterator[list[Effect]]:
+    """Sets of effects that may be meant as well, if they fit."""
     regression = found.regression
     where = {effect.id: k for k, effect in enumerate(regression.candidates)}
     for finding in findings:
         rest = [other.effect for other in findings if other is not finding]
         # Beside model-form error constants of poses are part of it, and no candidates.
         for name in [each for each in finding.alternatives if each in where][:LOOKED_AT]:
-            yield [*rest, regression.candidates[where[name]]], False
+            yield [*rest, regression.candidates[where[name]]]
         for law in _other_laws(found, where[finding.effect.id]):
-            yield [*rest, law], True
+            yield [*rest, law]
 
 
 def _other_laws(found: Selection, effect: int) -> list[Effect]:
