@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,10 @@ from sk120stiff import units
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 
+if TYPE_CHECKING:
+    from sk120stiff.measurements.data import Measurements
+
+_ARTICLE = {"angle": "an angle", "length": "a length"}
 # Joint values of one pose that differ by less are the same value written twice.
 SAME_JOINT = 1e-9  # rad or m
 
@@ -66,3 +71,34 @@ def refuse_differing_joints(
         remedy="Rows of one pose have the same joint values: "
         "correct the value, or give the row a pose label of its own.",
     )
+
+
+def refuse_joint_column(readings: Measurements, name: str, kind: str | None, listed: str) -> None:
+    """Raise an `InputError` where an actuated joint has no column, or one of another kind.
+
+    Args:
+        readings: With the columns that the file has.
+        name, kind: The joint, and whether it takes an angle or a length; None: as the file says.
+        listed: The sentence that lists the joints.
+    """
+    where = str(readings.path) if readings.path else None
+    header = f"{name}[{'mm' if kind == 'length' else 'deg'}]"
+    if name not in readings.joint_names:
+        as_written = next((key for key in readings.extra if key.startswith(name)), None)
+        what = f"the joint {name!r} has no column"
+        if as_written is not None:
+            what = f"the column {as_written!r} is a joint without a unit that is known"
+        raise InputError(
+            what,
+            where=where,
+            remedy=f"Add the column {header}; no joint value is assumed. {listed}"
+            if as_written is None
+            else f"Write its header as {header}.",
+        )
+    written = readings.joint_kinds[readings.joint_names.index(name)]
+    if kind is not None and written != kind:
+        raise InputError(
+            f"the joint {name!r} takes {_ARTICLE[kind]}, its column holds {_ARTICLE[written]}",
+            where=f"{where}, column {name}" if where else f"column {name}",
+            remedy=f"Write its header as {header}.",
+        )
