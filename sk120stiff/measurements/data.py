@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute
-from sk120stiff.measurements.frame import Tabular
 from sk120stiff.measurements.cells_read import refuse_unread
+from sk120stiff.measurements.frame import Tabular
 from sk120stiff.measurements.poses import (
     SAME_JOINT,
     refuse_differing_joints,

@@ -122,7 +122,7 @@ class FormWhitener:
 
     def __init__(self, noise: Whitener, form: ModelForm, measurements: Measurements) -> None:
         self._noise = noise
-        self.n_readings = noise.n_readings
+        self.n_readings, self.reading = noise.n_readings, noise.reading
         proportional, constant = form_columns(measurements)
         columns = [form.proportional * proportional, form.constant * constant]
         own = np.sqrt(form.factors(measurements))[:, None, None]

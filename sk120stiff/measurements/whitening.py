@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Integers
+from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 
 
@@ -35,6 +35,8 @@ class Whitener:
         self.n_readings = len(own)
         read = np.isfinite(own)
         self._read = None if read.all() else read  # (N, 3); None: everything
+        self.reading: Index = np.nonzero(read)[0]
+        """(R,) reading of each number that `apply` whitens."""
         self._blocks: list[tuple[Integers, Array, Array, Array]] = []
         logdet = 0.0
         for rows in _blocks(np.asarray(group)):
