@@ -74,8 +74,7 @@ class Measurements(Tabular):
         zero: ``"shared"``: rows of equal `zero_group` subtract the same zero reading;
             ``"separate"``: each row its own; ``"unknown"``: nobody said (then `zero_group` is what
             sharing within a pose would mean).
-        sigma: (N, 3) standard uncertainty of the loaded reading of each row, m, or None; it may
-            be NaN where the axis was not read.
+        sigma: (N, 3) standard uncertainty of each loaded reading, m (NaN where not read), or None.
         order, time, branch, repeat: When and how each row was read, or None. `branch` holds load,
             unload or "".
         use: (N,) False masks a row. Nothing is deleted.
@@ -164,7 +163,7 @@ class Measurements(Tabular):
         self._check_words(count)
         self._check_joints()
         self._check_zero()
-        refuse_unread(self)
+        refuse_unread(self.read, self.sigma, self.use, self.line, self._file())
 
     def __repr__(self) -> str:
         masked = int((~self.use).sum())
@@ -317,7 +316,8 @@ class Measurements(Tabular):
                 )
         for k, name in enumerate(names):
             kind = kinds[k] if kinds is not None else None
-            refuse_joint_column(self, name, kind, listed)
+            own = self.joint_names, self.joint_kinds, tuple(self.extra)
+            refuse_joint_column(name, kind, *own, listed, self._file())
         index = [self.joint_names.index(name) for name in names]
         return dataclasses.replace(
             self,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +10,6 @@ from numpy.typing import NDArray
 from sk120stiff import units
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
-
-if TYPE_CHECKING:
-    from sk120stiff.measurements.data import Measurements
 
 _ARTICLE = {"angle": "an angle", "length": "a length"}
 # Joint values of one pose that differ by less are the same value written twice.
@@ -73,32 +69,39 @@ def refuse_differing_joints(
     )
 
 
-def refuse_joint_column(readings: Measurements, name: str, kind: str | None, listed: str) -> None:
+def refuse_joint_column(
+    name: str,
+    kind: str | None,
+    names: Sequence[str],
+    kinds: Sequence[str],
+    others: Sequence[str],
+    listed: str,
+    file: str | None,
+) -> None:
     """Raise an `InputError` where an actuated joint has no column, or one of another kind.
 
     Args:
-        readings: With the columns that the file has.
         name, kind: The joint, and whether it takes an angle or a length; None: as the file says.
-        listed: The sentence that lists the joints.
+        names, kinds, others: The joint columns, their kinds, and the columns that are notes.
+        listed, file: The sentence that lists the joints, and the file, for the message.
     """
-    where = str(readings.path) if readings.path else None
     header = f"{name}[{'mm' if kind == 'length' else 'deg'}]"
-    if name not in readings.joint_names:
-        as_written = next((key for key in readings.extra if key.startswith(name)), None)
+    if name not in names:
+        as_written = next((key for key in others if key.startswith(name)), None)
         what = f"the joint {name!r} has no column"
         if as_written is not None:
             what = f"the column {as_written!r} is a joint without a unit that is known"
         raise InputError(
             what,
-            where=where,
+            where=file,
             remedy=f"Add the column {header}; no joint value is assumed. {listed}"
             if as_written is None
             else f"Write its header as {header}.",
         )
-    written = readings.joint_kinds[readings.joint_names.index(name)]
+    written = kinds[names.index(name)]
     if kind is not None and written != kind:
         raise InputError(
             f"the joint {name!r} takes {_ARTICLE[kind]}, its column holds {_ARTICLE[written]}",
-            where=f"{where}, column {name}" if where else f"column {name}",
+            where=f"{file}, column {name}" if file else f"column {name}",
             remedy=f"Write its header as {header}.",
         )
