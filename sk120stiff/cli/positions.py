@@ -93,6 +93,12 @@ def predicted_positions(model: Model, readings: Measurements, out: Path | None) 
             f"Gap over {len(gap)} positions: {document['rms_um']:.4g} µm rms per axis, "
             f"{document['mean_distance_um']:.4g} µm mean distance."
         )
+    if "gap_d[um]" in columns:
+        gauge = np.array(columns["gap_d[um]"], dtype=float)[readings.use]
+        gauge = gauge[np.isfinite(gauge)]
+        left = float(np.sqrt(np.mean(gauge**2)))
+        document.setdefault("rms_um", left)
+        parts.append(f"Gap over {len(gauge)} readings of gauges: {left:.4g} µm rms.")
     if out is not None:
         parts.append(f"Written to {out}.")
     return Answer(document, parts)

@@ -57,13 +57,12 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     left: float | None = None
     used = readings.use & np.isfinite(predicted.displacement).all(axis=1)
     if measured is not None and used.any():
-        gap = measured - predicted.displacement
-        left = 1e6 * rms(gap[used])
+        gap, told = measured - predicted.displacement, readings.read & used[:, None]
+        left = 1e6 * rms(gap[told])
         for label in readings.poses:
             rows = readings.rows_of(label)
-            rows = rows[used[rows]]
-            if len(rows):
-                per_pose.append({"pose": label, "rms_um": 1e6 * rms(gap[rows])})
+            if used[rows].any():
+                per_pose.append({"pose": label, "rms_um": 1e6 * rms(gap[rows][told[rows]])})
     document = {
         "rows": rows_of(columns),
         "rms_um": left,

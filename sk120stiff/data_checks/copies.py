@@ -13,6 +13,7 @@ from sk120stiff.measurements import Measurements
 def repeated_rows(measurements: Measurements) -> Index:
     """(k,) rows that repeat an earlier one to the last digit, load and all three axes.
 
+    A row with an axis that is zero, or was not read, says too little to be told for one.
     Such rows are copies, not repeats: the noise that they claim to show is zero. Rows that the file
     itself tells apart, by order, time, branch or repeat, are readings of their own.
     """
@@ -22,7 +23,7 @@ def repeated_rows(measurements: Measurements) -> Index:
     first: dict[tuple[bytes, tuple[object, ...]], int] = {}
     copies = []
     for row in np.flatnonzero(measurements.use):
-        if not measurements.displacement[row].all():
+        if not (np.abs(measurements.displacement[row]) > 0.0).all():
             continue
         told_apart = tuple(
             None if column is None else column[row]

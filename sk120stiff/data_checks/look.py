@@ -78,7 +78,7 @@ def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurem
             the stated uncertainty is larger than the readings and than anything they show.
     """
     sheet = sheet_of(model.robot, measurements)
-    if sheet is None or not sheet.exists() or not sheet.measured.any():
+    if sheet is None or not sheet.exists() or not sheet.moves:
         return
     where = str(measurements.path or "the measurements")
     found = as_it_stands(sheet).found
@@ -108,9 +108,9 @@ def _refuse_overstated(
     """A σ above the readings that scatter far less than it: its unit is wrong."""
     if stated is None:
         return
-    size = float(np.sqrt(np.mean(measured**2)))
+    size = float(np.sqrt(np.nanmean(measured**2)))
     above = stated > size and OVERSTATED * np.sqrt(found.left) < stated
-    if above or stated > np.abs(measured).max():
+    if above or stated > np.nanmax(np.abs(measured)):
         raise Refusal(
             f"the stated uncertainty of one reading, {_length(stated)}, is larger than the "
             f"readings themselves ({_length(size)} rms per axis)",

@@ -30,7 +30,7 @@ class Passive:
     Attributes:
         share: Of ‖d‖² that they explain, from 0 to 1.
         left: Mean square of what they leave, per axis [m²].
-        count: Numbers that were explained, three per reading.
+        count: Numbers that were explained, three per reading or as many as were read.
     """
 
     share: float
@@ -39,9 +39,14 @@ class Passive:
 
 
 def passive(columns: Array, d: Array) -> Passive:
-    """How far columns (N, 3, k) of unit compliances explain displacements (N, 3) [m]."""
-    A = columns.reshape(d.size, -1)
-    y = d.ravel()
+    """How far columns (N, 3, k) of unit compliances explain displacements (N, 3) [m].
+
+    NaN is what was not read.
+    """
+    A, y = columns.reshape(d.size, -1), d.ravel()
+    known = np.isfinite(y)
+    if not known.all():
+        A, y = A[known], y[known]
     size = float(y @ y)
     if size == 0.0 or not A.shape[1]:
         return Passive(0.0, size / max(len(y), 1), len(y))

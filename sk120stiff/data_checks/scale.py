@@ -60,10 +60,10 @@ def yields_times(model: Model, measurements: Measurements) -> float | None:
     elastic = [k for k, p in enumerate(model.parameters) if p.spec.reciprocal]
     load_cases = load_cases_of(model.robot, used)
     _, S = model.predict_with_sensitivities(load_cases, np.zeros(len(model.values)))
-    expected = S[:, :, elastic] @ model.values[elastic]
+    expected = np.where(used.read, S[:, :, elastic] @ model.values[elastic], 0.0)
     size = float((expected**2).sum())
-    along = float((expected * used.displacement).sum())
-    whole = float((used.displacement**2).sum())
+    along = float((expected * used.moved).sum())
+    whole = float((used.moved**2).sum())
     return along / size if along > 0.0 and along**2 > ALIKE * size * whole else None
 
 

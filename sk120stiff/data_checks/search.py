@@ -79,7 +79,7 @@ class Tried:
     @property
     def left(self) -> float:
         """Mean square left, as if no axis had been stretched [m²]."""
-        return self.found.left * float(np.exp(-2.0 / 3.0 * self.sheet.stretch))
+        return self.found.left * float(np.exp(-2.0 * self.sheet.stretch))
 
 
 def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
@@ -90,7 +90,7 @@ def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
         measurements: Readings; masked ones are left out.
     """
     sheet = sheet_of(robot, measurements)
-    if sheet is None or not sheet.exists() or not sheet.measured.any():
+    if sheet is None or not sheet.exists() or not sheet.moves:
         return None
     stated = measurements.noise.sigma
     start = as_it_stands(sheet)
@@ -152,7 +152,7 @@ def _tried(now: Tried, corrections: Iterable[Correction]) -> Iterator[Tried]:
 def _columns(sheet: Sheet) -> Array:
     """Unit displacements; of few readings only those of the drives, or they would explain all."""
     columns = sheet.columns()
-    enough = 3 * len(columns) >= columns.shape[2] + SPARE
+    enough = int(np.isfinite(sheet.measured).sum()) >= columns.shape[2] + SPARE
     return columns if enough else columns[:, :, : sheet.robot.n]
 
 

@@ -25,12 +25,12 @@ class Sheet:
         robot: The rigid robot.
         joints: (N, n) actuated coordinates [rad or m].
         wrench: (N, 6) in axes of `force_frame` [N, N·m].
-        displacement: (N, 3) in axes of `displacement_frame` [m].
+        displacement: (N, 3) in axes of `displacement_frame` [m]; NaN where not read.
         force_frame, displacement_frame: ``"base"`` or ``"tool"``.
         point, force_point: (3,) in the tool frame [m].
         kept: (N,) rows that are in use.
-        stretch: Logarithm of the factor by which a correction changed the volume of (dx, dy, dz):
-            noise that was equal on all axes was changed by it too.
+        stretch: Mean logarithm, over all numbers read, of the factors by which corrections changed
+            them: noise that was equal on all axes was changed by it too.
     """
 
     robot: Robot
@@ -48,6 +48,17 @@ class Sheet:
     def measured(self) -> Array:
         """(M, 3) displacements of the rows in use [m]."""
         return self.displacement[self.kept]
+
+    @property
+    def axes(self) -> Array:
+        """(3,) share that each axis has of the numbers read."""
+        count = np.isfinite(self.measured).sum(axis=0)
+        return np.asarray(count / max(int(count.sum()), 1))
+
+    @property
+    def moves(self) -> bool:
+        """Any reading differs from zero."""
+        return bool(np.nan_to_num(self.measured).any())
 
     def same_columns(self, other: Sheet) -> bool:
         """Would unit compliances displace the point just as on the other sheet?"""

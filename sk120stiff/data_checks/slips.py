@@ -97,11 +97,13 @@ def _units() -> Iterator[Correction]:
 
 
 def _displacement(by: np.ndarray, said: str, remedy: str) -> Correction:
-    stretch = float(np.log(np.abs(by)).sum())
+    factor = np.log(np.abs(by))
     return Correction(
         said,
         remedy,
-        lambda s: replace(s, displacement=s.displacement * by, stretch=s.stretch + stretch),
+        lambda s: replace(
+            s, displacement=s.displacement * by, stretch=s.stretch + float(factor @ s.axes)
+        ),
     )
 
 
@@ -115,7 +117,7 @@ def _wrench(signs: np.ndarray, said: str, remedy: str) -> Correction:
 
 def _base(sheet: Sheet, what: str) -> np.ndarray:
     """Forces or displacements of the rows in use, in base axes (M, 3)."""
-    values = sheet.wrench[sheet.kept, :3] if what == "force" else sheet.measured
+    values = sheet.wrench[sheet.kept, :3] if what == "force" else np.nan_to_num(sheet.measured)
     frame = sheet.force_frame if what == "force" else sheet.displacement_frame
     if frame == "base":
         return values

@@ -107,10 +107,12 @@ def refuse_unusable(model: Model, measurements: Measurements) -> None:
             where=f"{where}, line {line}" if line else where,
             remedy="Measure other loads, and other poses.",
         )
-    if 3 * count < len(model.free):
+    numbers = int(measurements.read[measurements.use].sum())
+    if numbers < len(model.free):
         line = int(measurements.line[measurements.use][-1])
         raise InputError(
-            f"{len(model.free)} parameters cannot be estimated from {count} readings of three axes",
+            f"{len(model.free)} parameters cannot be estimated from {count} readings of "
+            + ("three axes" if numbers == 3 * count else f"{numbers} numbers together"),
             where=f"{where}, line {line}" if line else where,
             remedy="Measure more poses, or fix parameters in the model (free: false).",
         )

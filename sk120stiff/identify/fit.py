@@ -40,7 +40,7 @@ class Fit:
         problem: What was fitted; its noise has the scale that was stated or assumed before the fit.
         model: The model with the estimates and their standard errors.
         x: (P_free,) estimates in units of `problem.scale`.
-        residual, jacobian: (3N,) whitened gap and (3N, P_free) its derivative by `x`.
+        residual, jacobian: (R,) whitened gap and (R, P_free) its derivative by `x`.
         at_bound: (P_free,) estimates that a physical bound holds.
         iterations: Evaluations of the model.
         reasons: What was decided about the noise beyond the data's description, in sentences.
@@ -116,7 +116,7 @@ class Fit:
 
     @cached_property
     def gap(self) -> Array:
-        """(N, 3) measured minus predicted [m]."""
+        """(N, 3) measured minus predicted [m]; NaN in an axis that was not read."""
         return self.problem.gap(self.x)
 
     @property
@@ -126,8 +126,8 @@ class Fit:
 
     @property
     def rms(self) -> float:
-        """Root mean square of the gap over all readings and axes [m]; NaN without a length."""
-        return float(np.sqrt(np.mean(self.gap**2))) if self.gap.size else float("nan")
+        """Root mean square of the gap over all numbers read [m]; NaN without a length."""
+        return float(np.sqrt(np.nanmean(self.gap**2))) if self.gap.size else float("nan")
 
     @cached_property
     def small(self) -> tuple[Array, Array]:
@@ -150,7 +150,7 @@ class Fit:
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Readings of single axes minus combinations of parameters that were estimated."""
+        """Numbers that were read minus combinations of parameters that were estimated."""
         return len(self.residual) - self.estimated
 
     @cached_property

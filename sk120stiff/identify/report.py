@@ -60,10 +60,9 @@ def _parameters(fit: Fit, profile: Sequence[tuple[float, float]] | None) -> list
 
 
 def _statistics(fit: Fit) -> list[str]:
-    readings = len(fit.gap)
     poses = len(fit.problem.measurements.poses)
     lines = [
-        f"{readings} readings of three axes at {poses} poses, {fit.estimated} values estimated, "
+        f"{_count(fit)} at {poses} poses, {fit.estimated} values estimated, "
         f"{fit.degrees_of_freedom} degrees of freedom, {fit.iterations} evaluations.",
         f"Gap {fit.rms * 1e6:.3g} µm rms per axis; condition {fit.condition:.3g}.",
     ]
@@ -82,6 +81,13 @@ def _statistics(fit: Fit) -> list[str]:
     if test is not None and (said := test.of_the_statement()):
         lines.append(said)
     return lines
+
+
+def _count(fit: Fit) -> str:
+    readings, numbers = fit.problem.measurements.n_readings, len(fit.residual)
+    if numbers == 3 * readings:
+        return f"{readings} readings of three axes"
+    return f"{readings} readings, {numbers} of their {3 * readings} axes read,"
 
 
 def _noise(fit: Fit) -> list[str]:

@@ -13,15 +13,16 @@ from dataclasses import replace
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit, with_values
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve, solve_near
 
-LIMIT = float(np.sqrt(stats.chi2.ppf(0.99, 3)))  # one clean reading in a hundred lies beyond
-MIDDLE = float(stats.chi2.ppf(0.5, 3))
+# By the number of axes that a reading has, from 0 on:
+LIMIT = np.sqrt([0.0, *stats.chi2.ppf(0.99, (1, 2, 3))])  # one clean one in a hundred lies beyond
+MIDDLE = np.array([1.0, *stats.chi2.ppf(0.5, (1, 2, 3))])  # and half of them
 ROUNDS = 60  # of reweighting, at most
 SETTLED = 1e-6  # largest change of a weight after which rounds end
 
@@ -35,13 +36,14 @@ def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
     Raises:
         Refusal: As `solve`, or the weights do not settle.
     """
-    weights = np.ones(problem.measurements.n_readings)
+    axes = problem.read.sum(axis=1)
+    weights = np.ones(len(axes))
     found = solve(problem.with_weights(weights), method=method)
     iterations = found.iterations
     for _ in range(ROUNDS):
         lengths = reading_lengths(found.problem, found.gap)
-        spread = 1.0 if problem.noise.known else _spread(lengths, found.estimated)
-        new = np.minimum(1.0, LIMIT * spread / np.maximum(lengths, 1e-300))
+        spread = 1.0 if problem.noise.known else _spread(lengths, axes, found.estimated)
+        new = np.minimum(1.0, LIMIT[axes] * spread / np.maximum(lengths, 1e-300))
         settled = float(np.abs(new - weights).max()) < SETTLED
         if settled:
             return with_values(
@@ -49,7 +51,7 @@ def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
                     found,
                     iterations=iterations,
                     spread=spread,
-                    inflation=_inflation(lengths / spread, new, found.estimated),
+                    inflation=_inflation(lengths / spread, new, axes, found.estimated),
                 )
             )
         weights = new
@@ -64,10 +66,11 @@ def solve_robustly(problem: Problem, *, method: Method = "trf") -> Fit:
 def reading_lengths(problem: Problem, gap: Array) -> Array:
     """(N,) whitened length of each reading's gap, given the other readings of its zero group.
 
-    The square of a clean one has a χ² distribution with three degrees of freedom. The reading
-    itself is taken at full trust, the others at their weights.
+    The square of a clean one has a χ² distribution, with a degree of freedom for each axis that was
+    read. The reading itself is taken at full trust, the others at their weights.
     """
     measurements = problem.measurements
+    gap = np.where(problem.read, gap, 0.0)
     own, zero = problem.noise.variances(measurements, problem.sizes)
     if problem.noise.zero == "separate":
         return np.asarray(np.sqrt((gap**2 / (own + zero)).sum(axis=1)))
@@ -83,21 +86,25 @@ def reading_lengths(problem: Problem, gap: Array) -> Array:
     return np.asarray(np.sqrt(((gap - guess) ** 2 / (own + guess_gain)).sum(axis=1)))
 
 
-def _spread(lengths: Array, estimated: int) -> float:
-    return float(np.sqrt(np.median(lengths**2) / MIDDLE / _freedom(lengths, estimated)))
+def _spread(lengths: Array, axes: Integers, estimated: int) -> float:
+    share = np.median(lengths**2 / MIDDLE[axes])
+    return float(np.sqrt(share / _freedom(axes, estimated)))
 
 
-def _freedom(lengths: Array, estimated: int) -> float:
-    """Share of the readings of single axes that the parameters leave free."""
-    return max(3 * len(lengths) - estimated, 1) / (3 * len(lengths))
+def _freedom(axes: Integers, estimated: int) -> float:
+    """Share of the numbers read that the parameters leave free; `axes` (N,) of each reading."""
+    numbers = int(axes.sum())
+    return max(numbers - estimated, 1) / numbers
 
 
-def _inflation(lengths: Array, weights: Array, estimated: int) -> float:
+def _inflation(lengths: Array, weights: Array, axes: Integers, estimated: int) -> float:
     """Variance of Huber's estimates over that of the weighted least squares that gives them.
 
-    Huber (1973): cov = E ψ² / (E ψ')² (JᵀJ)⁻¹, here with the three axes of a reading together,
-    against (JᵀJ)⁻¹ / E w.
+    Huber (1973): cov = E ψ² / (E ψ')² (JᵀJ)⁻¹, here with the axes of a reading together, against
+    (JᵀJ)⁻¹ / E w.
     """
-    squares = float(np.mean(np.minimum(lengths, LIMIT) ** 2)) / 3.0 / _freedom(lengths, estimated)
-    slope = float(np.mean((lengths <= LIMIT) + 2.0 * weights)) / 3.0
+    mean = float(axes.mean())
+    limit = LIMIT[axes]
+    squares = float(np.mean(np.minimum(lengths, limit) ** 2)) / mean / _freedom(axes, estimated)
+    slope = float(np.mean((lengths <= limit) + (axes - 1.0) * weights)) / mean
     return squares / slope**2 * float(np.mean(weights))

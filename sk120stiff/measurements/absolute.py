@@ -89,14 +89,17 @@ class Absolute:
         return tuple(f"{a}/{b}" for a, b in zip(self.series, apart, strict=True))
 
 
-def is_absolute(file: SettingsFile, roles: Roles, loaded: bool, blank: bool) -> bool:
-    """Are these positions to be predicted as such, not as differences to a zero reading?"""
+def is_absolute(file: SettingsFile, roles: Roles, loaded: bool, unlike: bool) -> bool:
+    """Are these positions to be predicted as such, not as differences to a zero reading?
+
+    So are those with a load that have blank cells, where poses lack a zero reading (`unlike`).
+    """
     settings = file.settings
     point = settings.point is not None and settings.point.fit
     told = settings.position is not None and settings.position.frame == "unknown"
     if roles.absolute or told or point or settings.points or settings.payload:
         return True
-    return roles.measured == POSITIONS and (not loaded or blank)
+    return roles.measured == POSITIONS and (not loaded or unlike)
 
 
 def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:

@@ -104,6 +104,14 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
             remedy="Convert them first: 'sk120stiff import' says what can be identified from them.",
         )
     measured = _measured(table, has)
+    single = [name for name in (*_SINGLE, "inc") if name in has]
+    if measured == DISPLACEMENTS and single:
+        raise InputError(
+            f"displacements (dx, dy, dz) and single readings ({single[0]}) stand in one file",
+            where=table.place(single[0]),
+            remedy="Write what a gauge read along x, y or z as dx, dy or dz and leave the other "
+            "cells blank; give single readings along other directions a file of their own.",
+        )
     if measured != POSITIONS and not absolute:
         _require(table, has, ("pose",))
     if has & {*FORCES, *MOMENTS} or (measured != POSITIONS and not absolute):
@@ -154,6 +162,8 @@ def _require(table: Table, has: set[str], group: tuple[str, ...]) -> None:
     for name in group:
         if name not in has:
             together = f" {', '.join(group)} come together." if len(group) > 1 else ""
+            if group in (DISPLACEMENTS, POSITIONS):
+                together += " A cell stays blank where the axis was not read."
             raise InputError(
                 f"the column {name!r} is missing",
                 where=f"{table.path}, line {table.header_line}",

@@ -16,14 +16,19 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute
+from sk120stiff.measurements.cells_read import refuse_unread
 from sk120stiff.measurements.frame import Tabular
-from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints, rows_by_label
+from sk120stiff.measurements.poses import (
+    SAME_JOINT,
+    refuse_differing_joints,
+    refuse_joint_column,
+    rows_by_label,
+)
 from sk120stiff.measurements.zero import since_zero
 
 Frame = Literal["base", "tool"]
 Zero = Literal["shared", "separate", "unknown"]
 
-_ARTICLE = {"angle": "an angle", "length": "a length"}
 # Row fields, cut together by `select`.
 PER_ROW = (
     "pose", "joints", "wrench", "displacement", "sigma", "order", "time", "branch", "repeat",
@@ -61,15 +66,15 @@ class Measurements(Tabular):
             ``"length"``.
         joints: (N, n) coordinates, rad or m.
         wrench: (N, 6) force and moment as reported, N and N·m, in axes of `force_frame`.
-        displacement: (N, 3) loaded minus unloaded, m, in axes of `displacement_frame`; None in a
-            plan.
+        displacement: (N, 3) loaded minus unloaded, m, in axes of `displacement_frame`; NaN in an
+            axis that was not read, None in a plan.
         point, force_point: (3,) measured point and point of attack in the tool frame, m; the force
             acts at the measured point unless said otherwise.
         noise: What the data say of the uncertainty of one reading.
         zero: ``"shared"``: rows of equal `zero_group` subtract the same zero reading;
             ``"separate"``: each row its own; ``"unknown"``: nobody said (then `zero_group` is what
             sharing within a pose would mean).
-        sigma: (N, 3) standard uncertainty of the loaded reading of each row, m, or None.
+        sigma: (N, 3) standard uncertainty of each loaded reading, m (NaN where not read), or None.
         order, time, branch, repeat: When and how each row was read, or None. `branch` holds load,
             unload or "".
         use: (N,) False masks a row. Nothing is deleted.
@@ -143,7 +148,7 @@ class Measurements(Tabular):
         self._array("force_point", (3,), default=self.point)
         self._array("gravity", (3,))
         for name in ("displacement", "sigma"):
-            self._array(name, (count, 3))
+            self._array(name, (count, 3), may_be_nan=True)
         for name in ("order", "time"):
             self._array(name, (count,))
         for name in ("zero_order", "zero_time"):
@@ -158,6 +163,7 @@ class Measurements(Tabular):
         self._check_words(count)
         self._check_joints()
         self._check_zero()
+        refuse_unread(self.read, self.sigma, self.use, self.line, self._file())
 
     def __repr__(self) -> str:
         masked = int((~self.use).sum())
@@ -172,6 +178,24 @@ class Measurements(Tabular):
     def n_readings(self) -> int:
         """Number of rows N, masked ones included."""
         return len(self.pose)
+
+    @cached_property
+    def read(self) -> Mask:
+        """(N, 3) axes of the displacements that were read; all of them in a plan."""
+        if self.displacement is None:
+            return np.ones((self.n_readings, 3), dtype=np.bool_)
+        return np.isfinite(self.displacement)
+
+    @cached_property
+    def row_of_number(self) -> Index:
+        """(R,) row of each number that was read, row by row and axis by axis."""
+        return np.nonzero(self.read)[0]
+
+    @cached_property
+    def moved(self) -> Array:
+        """(N, 3) displacements, zero in an axis that was not read [m]; nothing in a plan."""
+        found = np.zeros((0, 3)) if self.displacement is None else self.displacement
+        return np.where(np.isnan(found), 0.0, found)
 
     @cached_property
     def poses(self) -> tuple[str, ...]:
@@ -292,7 +316,8 @@ class Measurements(Tabular):
                 )
         for k, name in enumerate(names):
             kind = kinds[k] if kinds is not None else None
-            self._check_joint_column(name, kind, listed)
+            own = self.joint_names, self.joint_kinds, tuple(self.extra)
+            refuse_joint_column(name, kind, *own, listed, self._file())
         index = [self.joint_names.index(name) for name in names]
         return dataclasses.replace(
             self,
@@ -301,29 +326,6 @@ class Measurements(Tabular):
             joints=self.joints[:, index],
             zero_joints=None if self.zero_joints is None else self.zero_joints[:, index],
         )
-
-    def _check_joint_column(self, name: str, kind: str | None, listed: str) -> None:
-        units = {"angle": "deg", "length": "mm", None: "deg"}
-        header = f"{name}[{units[kind]}]"
-        if name not in self.joint_names:
-            as_written = next((key for key in self.extra if key.startswith(name)), None)
-            what = f"the joint {name!r} has no column"
-            if as_written is not None:
-                what = f"the column {as_written!r} is a joint without a unit that is known"
-            raise InputError(
-                what,
-                where=self._file(),
-                remedy=f"Add the column {header}; no joint value is assumed. {listed}"
-                if as_written is None
-                else f"Write its header as {header}.",
-            )
-        written = self.joint_kinds[self.joint_names.index(name)]
-        if kind is not None and written != kind:
-            raise InputError(
-                f"the joint {name!r} takes {_ARTICLE[kind]}, its column holds {_ARTICLE[written]}",
-                where=self._file(f"column {name}"),
-                remedy=f"Write its header as {header}.",
-            )
 
     def _put(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
@@ -344,7 +346,7 @@ class Measurements(Tabular):
             array = np.array(default, dtype=dtype)
         if array.shape != shape:
             raise InputError(f"{name} has shape {array.shape}, expected {shape}", where=name)
-        if dtype is np.float64 and not may_be_nan and not np.all(np.isfinite(array)):
+        if dtype is np.float64 and np.any(np.isinf(array) if may_be_nan else ~np.isfinite(array)):
             raise InputError(f"{name} holds a number that is not finite", where=name)
         array.setflags(write=False)
         self._put(name, array)

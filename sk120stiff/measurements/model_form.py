@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.whitening import Whitener
@@ -67,7 +67,9 @@ class ModelForm:
         proportional, constant = form_columns(measurements)
         square = (self.proportional * proportional) ** 2
         offsets = (self.constant * constant) ** 2
-        return float(np.sqrt((square.sum() + offsets.sum()) / max(3 * len(square), 1)))
+        read = measurements.read
+        whole = square[read].sum() + offsets[read].sum()
+        return float(np.sqrt(whole / max(int(read.sum()), 1)))
 
 
 EXACT = ModelForm()
@@ -87,10 +89,10 @@ def form_columns(measurements: Measurements) -> tuple[Array, Array]:
         raise InputError("model-form error needs displacements, and a plan has none")
     pose = measurements.pose_index
     kinds = [measurements.wrench[:, :3], measurements.wrench[:, 3:]]
-    size = _rms_of_pose(measurements.displacement, pose)
+    size = _rms_of_pose(measurements.moved, pose, measurements.read)
     features = []
     for load in kinds:
-        strength = _rms_of_pose(load, pose)
+        strength = _rms_of_pose(load, pose, np.ones_like(load, dtype=np.bool_))
         if strength.any():
             features.append(load * (size / np.where(strength > 0.0, strength, np.inf))[:, None])
     load = np.concatenate(features, axis=1) if features else np.zeros((len(pose), 0))
@@ -99,10 +101,14 @@ def form_columns(measurements: Measurements) -> tuple[Array, Array]:
     return proportional, constant
 
 
-def _rms_of_pose(vectors: Array, pose: Index) -> Array:
-    """(N,) root mean square length of the vectors (N, 3) at each row's pose."""
+def _rms_of_pose(vectors: Array, pose: Index, known: Mask) -> Array:
+    """(N,) root mean square length of the vectors (N, 3) at each row's pose.
+
+    An axis that is not known (N, 3), and zero, counts as the others do on average.
+    """
     square = (vectors**2).sum(axis=1)
-    return np.asarray(np.sqrt(np.bincount(pose, square) / np.bincount(pose))[pose])
+    count = np.bincount(pose, known.sum(axis=1) / 3.0)
+    return np.asarray(np.sqrt(np.bincount(pose, square) / np.maximum(count, 1e-300))[pose])
 
 
 class FormWhitener:
@@ -116,7 +122,7 @@ class FormWhitener:
 
     def __init__(self, noise: Whitener, form: ModelForm, measurements: Measurements) -> None:
         self._noise = noise
-        self.n_readings = noise.n_readings
+        self.n_readings, self.reading = noise.n_readings, noise.reading
         proportional, constant = form_columns(measurements)
         columns = [form.proportional * proportional, form.constant * constant]
         own = np.sqrt(form.factors(measurements))[:, None, None]
@@ -136,7 +142,7 @@ class FormWhitener:
             self._outweighing.append((rows, U[:, large]))
             noise_left.append(1.0 / (1.0 + singular[large] ** 2))
         self.logdet = logdet
-        """Natural logarithm of det V, over all 3N readings; V in m²."""
+        """Natural logarithm of det V, over all numbers that were read; V in m²."""
         shares = np.concatenate([*noise_left, np.zeros(0)])
         self.noise_share = float(shares.mean()) if len(shares) else 1.0
         """Mean share of the noise in the variance along the directions of `outweighing`."""
@@ -145,7 +151,7 @@ class FormWhitener:
         """What lies along the directions in which model-form error outweighs the noise.
 
         Args:
-            white: (3N, ...) whitened by `apply`.
+            white: (R, ...) whitened by `apply`.
 
         Returns:
             tuple: Components (M, ...) along these orthonormal directions, and (M,) the first
@@ -165,7 +171,7 @@ class FormWhitener:
 
 
 def rows_of_poses(measurements: Measurements) -> list[Index]:
-    """Of each pose its rows among the 3N whitened readings; a zero reading belongs to one pose."""
-    pose = np.repeat(measurements.pose_index, 3)
+    """Of each pose its rows among the R whitened numbers; a zero reading belongs to one pose."""
+    pose = measurements.pose_index[measurements.row_of_number]
     order = np.argsort(pose, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(pose[order])) + 1)

@@ -106,6 +106,8 @@ class NoiseModel:
     ) -> tuple[Array, Array]:
         """Variance of the loaded reading (N, 3) and of its zero reading (N, 3), m².
 
+        That of an axis that was not read is infinite.
+
         Args:
             measurements: The N readings.
             sizes: Size of each displacement, m, that the growth applies to: (N,), or (N, 3) per
@@ -128,6 +130,8 @@ class NoiseModel:
             own = measurements.sigma**2
         if self.growth > 0:
             own = own + (self.growth * _sizes(measurements, sizes)) ** 2
+        if not measurements.read.all():
+            own = np.where(measurements.read, own, np.inf)
         zero = np.repeat(self.sigma**2 / measurements.zero_count[:, None], 3, axis=1)
         return own, zero
 
@@ -174,7 +178,9 @@ class NoiseModel:
         if self.zero == "shared":
             same = measurements.zero_group[:, None] == measurements.zero_group[None, :]
         full: Array = np.where(same, zero.T[:, :, None], 0.0)
-        return full + np.eye(len(own)) * own.T[:, :, None]
+        each = np.arange(len(own))
+        full[:, each, each] += own.T
+        return full
 
     def of_growth_and_zero(self) -> str:
         """What the model holds beside the size of sigma, in plain words.
@@ -240,7 +246,7 @@ def _described(measurements: Measurements, zero: Literal["shared", "separate"]) 
     if stated is not None:
         return NoiseModel(stated, growth, zero)
     if measurements.sigma is not None:
-        return NoiseModel(float(np.median(measurements.sigma)), growth, zero)
+        return NoiseModel(float(np.nanmedian(measurements.sigma)), growth, zero)
     sigma, freedom = _from_repeats(found)
     return NoiseModel(sigma, growth, zero, freedom)
 
@@ -258,7 +264,7 @@ def _sizes(measurements: Measurements, sizes: ArrayLike | None) -> Array:
                 "noise that grows with the displacement needs displacements, and a plan has none",
                 remedy="Give their predicted sizes.",
             )
-        sizes = np.linalg.norm(measurements.displacement, axis=1)
+        sizes = np.linalg.norm(measurements.moved, axis=1)
     array = np.abs(np.asarray(sizes, dtype=np.float64))
     if array.shape not in ((measurements.n_readings,), (measurements.n_readings, 3)):
         raise InputError(

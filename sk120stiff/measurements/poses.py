@@ -11,6 +11,7 @@ from sk120stiff import units
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 
+_ARTICLE = {"angle": "an angle", "length": "a length"}
 # Joint values of one pose that differ by less are the same value written twice.
 SAME_JOINT = 1e-9  # rad or m
 
@@ -66,3 +67,41 @@ def refuse_differing_joints(
         remedy="Rows of one pose have the same joint values: "
         "correct the value, or give the row a pose label of its own.",
     )
+
+
+def refuse_joint_column(
+    name: str,
+    kind: str | None,
+    names: Sequence[str],
+    kinds: Sequence[str],
+    others: Sequence[str],
+    listed: str,
+    file: str | None,
+) -> None:
+    """Raise an `InputError` where an actuated joint has no column, or one of another kind.
+
+    Args:
+        name, kind: The joint, and whether it takes an angle or a length; None: as the file says.
+        names, kinds, others: The joint columns, their kinds, and the columns that are notes.
+        listed, file: The sentence that lists the joints, and the file, for the message.
+    """
+    header = f"{name}[{'mm' if kind == 'length' else 'deg'}]"
+    if name not in names:
+        as_written = next((key for key in others if key.startswith(name)), None)
+        what = f"the joint {name!r} has no column"
+        if as_written is not None:
+            what = f"the column {as_written!r} is a joint without a unit that is known"
+        raise InputError(
+            what,
+            where=file,
+            remedy=f"Add the column {header}; no joint value is assumed. {listed}"
+            if as_written is None
+            else f"Write its header as {header}.",
+        )
+    written = kinds[names.index(name)]
+    if kind is not None and written != kind:
+        raise InputError(
+            f"the joint {name!r} takes {_ARTICLE[kind]}, its column holds {_ARTICLE[written]}",
+            where=f"{file}, column {name}" if file else f"column {name}",
+            remedy=f"Write its header as {header}.",
+        )

@@ -103,8 +103,9 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
     settings = file.settings
     rows, kinds, spare = read_rows(table, roles, settings.joints, file.place("joints"))
     blank = rows.measured is not None and bool(np.isnan(rows.measured).any())
+    orphaned = rows.loaded & ~np.isin(rows.pose_index, rows.pose_index[~rows.loaded])
     absolute = None
-    if is_absolute(file, roles, bool(rows.loaded.any()), blank):
+    if is_absolute(file, roles, bool(rows.loaded.any()), blank and bool(orphaned.any())):
         absolute = read_absolute(table, roles, file)
     refuse_differing_joints(
         rows.pose,
@@ -242,7 +243,7 @@ def _doubt_units(measurements: Measurements) -> None:
         values = sizes[key]
         if values is None or values.size == 0:
             continue
-        size = np.max(np.abs(values), axis=-1)
+        size = np.nanmax(np.abs(values), axis=-1, initial=0.0)
         row = int(np.argmax(size))
         if size.flat[row] > limit:
             line = f", line {measurements.line[row]}" if values.ndim == 2 else ""

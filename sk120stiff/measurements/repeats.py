@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from sk120stiff.arrays import Integers
+from sk120stiff.arrays import Integers, Mask
 from sk120stiff.measurements.branches import branches_by_order
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.whitening import Whitener
@@ -64,8 +64,10 @@ def repeated(
         return None
     usable, cell = usable.select(rows), cell[rows]
     plain, freedom, level = _left(usable, cell, 0.0, separate)
+    if not freedom:
+        return None  # no axis was read twice
     flat = Repeated(float(np.sqrt(plain / freedom)), 0.0, freedom)
-    usual = float(np.median(np.linalg.norm(np.asarray(usable.displacement), axis=1)))
+    usual = float(np.median(np.linalg.norm(usable.moved, axis=1)))
     if not grows or freedom < ENOUGH or usual == 0.0 or plain == 0.0:
         return flat
 
@@ -109,27 +111,37 @@ def _left(
     V is in units of σ², its part that grows is (ratio·|d|)². The cost is ln det V + ln det XᵀV⁻¹X,
     of the restricted likelihood.
     """
-    displacement = np.asarray(m.displacement)
-    size = np.linalg.norm(displacement, axis=1)
-    own = np.repeat(1.0 + (ratio * size[:, None]) ** 2, 3, axis=1)
+    size = np.linalg.norm(m.moved, axis=1)
+    own = np.where(m.read, 1.0 + (ratio * size[:, None]) ** 2, np.inf)
     zero = np.repeat(1.0 / m.zero_count[:, None], 3, axis=1)
     whitener = (
         Whitener(own + zero, np.zeros_like(own), np.arange(len(own)))
         if separate
         else Whitener(own, zero, m.zero_group)
     )
-    y = whitener.apply(displacement).reshape(-1, 3)
     place, member = _places(m, cell)
     means = np.repeat((member[:, None] == np.arange(member.max() + 1))[:, None, :], 3, axis=1)
-    x = whitener.apply(means.astype(np.float64)).reshape(len(y), 3, -1)[:, 0]  # axes do not differ
+    y, x = np.zeros((len(own), 3)), np.zeros(means.shape)
+    y[m.read], x[m.read] = whitener.apply(m.moved), whitener.apply(means.astype(np.float64))
     squares, freedom, price = 0.0, 0, whitener.logdet
     order = np.argsort(place, kind="stable")
     for rows in np.split(order, np.flatnonzero(np.diff(place[order])) + 1):
-        q, r = np.linalg.qr(x[rows, : member[rows].max() + 1])
-        squares += float(np.sum((y[rows] - q @ (q.T @ y[rows])) ** 2))
-        freedom += 3 * (len(rows) - q.shape[1])
-        price += 6.0 * float(np.log(np.abs(np.diag(r))).sum())
+        for axes in _alike(m.read[rows]):
+            seen = rows[m.read[rows, axes[0]]]
+            q, r = np.linalg.qr(x[seen, axes[0]][:, np.unique(member[seen])])
+            left = y[np.ix_(seen, axes)]
+            squares += float(np.sum((left - q @ (q.T @ left)) ** 2))
+            freedom += len(axes) * (len(seen) - q.shape[1])
+            price += 2.0 * len(axes) * float(np.log(np.abs(np.diag(r))).sum())
     return squares, freedom, price
+
+
+def _alike(read: Mask) -> list[list[int]]:
+    """Axes of (n, 3) cells that were read in the same rows, together; none that was never read."""
+    found: dict[bytes, list[int]] = {}
+    for axis in np.flatnonzero(read.any(axis=0)):
+        found.setdefault(read[:, axis].tobytes(), []).append(int(axis))
+    return list(found.values())
 
 
 def _places(m: Measurements, cell: Integers) -> tuple[Integers, Integers]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.columns import FORCES, MOMENTS, POSITIONS, UNCERTAINTIES, Roles
+from sk120stiff.measurements.columns import FORCES, MOMENTS, UNCERTAINTIES, Roles
 from sk120stiff.measurements.joint_map import mapped_joints
 from sk120stiff.measurements.poses import SAME_JOINT
 from sk120stiff.measurements.table import Table
@@ -26,8 +26,8 @@ class Rows:
         pose: N labels; `pose_index` (N,) numbers them in the order of their first row.
         joints: (N, n) rad or m.
         wrench: (N, 6) N and N·m; `loaded` (N,) is True where any component is not zero.
-        measured: (N, 3) displacements or positions, m; None in a plan.
-        sigma: (N, 3) m, or None.
+        measured: (N, 3) displacements or positions, m, NaN where blank; None in a plan.
+        sigma: (N, 3) m, NaN where blank, or None.
         order, time, branch, repeat: (N,) or None.
         use: (N,) False where masked.
     """
@@ -67,9 +67,7 @@ def read_rows(
     loaded = np.any(wrench != 0.0, axis=1)
     measured = None
     if roles.measured:
-        # A blank cell of a position is a channel that was not read.
-        blank = roles.measured == POSITIONS
-        measured = quantities(table, roles.measured, "length", allow_blank=blank)
+        measured = quantities(table, roles.measured, "length", allow_blank=True)  # not read
     rows = Rows(
         pose=pose,
         pose_index=np.array([position[label] for label in pose], dtype=np.int64),
@@ -158,7 +156,7 @@ def _branches(table: Table, loaded: Mask) -> tuple[str, ...]:
 
 
 def _uncertainties(table: Table) -> Array:
-    values = quantities(table, UNCERTAINTIES, "length")
+    values = quantities(table, UNCERTAINTIES, "length", allow_blank=True)
     if np.any(values < SMALLEST_SIGMA):
         row, column = (int(k) for k in np.argwhere(values < SMALLEST_SIGMA)[0])
         name = UNCERTAINTIES[column]

@@ -67,7 +67,8 @@ def _as_written(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacem
     if rows.measured is not None:
         # Such a row is the zero reading minus itself: exact by construction, so it tells nothing,
         # and a fit would take it for a reading without noise.
-        empty = use & ~rows.loaded & np.all(rows.measured == 0.0, axis=1)
+        largest = np.nanmax(np.abs(rows.measured), axis=1, initial=-1.0)  # -1: nothing was read
+        empty = use & ~rows.loaded & (largest == 0.0)
         if empty.any() and not empty[use].all():
             use = use & ~empty
             notes.append(
@@ -133,7 +134,8 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
         group = group_by_run(rows.pose_index, rows.loaded, rows.use, sequence)
     else:
         group = rows.pose_index
-    found = find_zero_readings(group, rows.loaded, rows.use)
+    axes = np.isfinite(rows.measured).sum(axis=1)
+    found = find_zero_readings(group, rows.loaded, rows.use, axes)
     orphans = np.flatnonzero(rows.loaded & (found.count == 0))
     if orphans.size:
         first = int(orphans[0])
@@ -149,6 +151,12 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
         f"{int(found.counted.sum())} rows without load are the zero readings of the "
         f"{kept.size} loaded rows, each the mean of {_span(used)}."
     ]
+    lesser = find_zero_readings(group, rows.loaded, rows.use).counted & ~found.counted
+    if lesser.any():
+        notes.append(
+            f"{int(lesser.sum())} rows without load lack an axis that others of their pose have; "
+            "they are left out."
+        )
     idle = [p for p in dict.fromkeys(rows.pose) if p not in {rows.pose[i] for i in kept}]
     if idle:
         notes.append(f"Without a loaded row, and so without effect: pose {', '.join(idle)}.")

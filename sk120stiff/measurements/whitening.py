@@ -5,6 +5,8 @@ V = diag(d) + c·11ᵀ: d the own variances, c that of the shared zero. Its Chol
 be built. Row i of L⁻¹x is the innovation of x_i, given the rows before it: with the sums over those
 rows t = Σ 1/d_j and s = Σ x_j/d_j, the best guess of the shared error is g·s with g = c/(1 + c·t),
 and the variance left is d_i + g. Hence L⁻¹x = (x_i − g·s)/√(d_i + g).
+
+An axis that was not read has an infinite variance d: it adds nothing to t and s, and has no row.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Integers
+from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 
 
@@ -20,7 +22,7 @@ class Whitener:
     """L⁻¹ of the covariance V = L Lᵀ of N displacement readings.
 
     Args:
-        own: (N, 3) variance of each row's own error, m², positive.
+        own: (N, 3) variance of each row's own error, m², positive; infinite where not read.
         shared: (N, 3) variance of the error that rows of a group share, m², equal within a group.
         group: (N,) number of the group of each row.
     """
@@ -28,9 +30,13 @@ class Whitener:
     def __init__(self, own: Array, shared: Array, group: Integers) -> None:
         if own.ndim != 2 or own.shape[1] != 3 or shared.shape != own.shape:
             raise InputError(f"variances of shapes {own.shape} and {shared.shape} are no (N, 3)")
-        if not (np.all(own > 0) and np.all(np.isfinite(own)) and np.all(shared >= 0)):
+        if not (np.all(own > 0) and np.all(np.isfinite(shared)) and np.all(shared >= 0)):
             raise InputError("a variance is not positive")
         self.n_readings = len(own)
+        read = np.isfinite(own)
+        self._read = None if read.all() else read  # (N, 3); None: everything
+        self.reading: Index = np.nonzero(read)[0]
+        """(R,) reading of each number that `apply` whitens."""
         self._blocks: list[tuple[Integers, Array, Array, Array]] = []
         logdet = 0.0
         for rows in _blocks(np.asarray(group)):
@@ -38,15 +44,16 @@ class Whitener:
             c = shared[rows]
             gain = c / (1.0 + c * _sum_before(own_inverse))
             variance = own[rows] + gain
-            logdet += float(np.sum(np.log(variance)))
+            logdet += float(np.sum(np.log(variance[np.isfinite(variance)])))
             self._blocks.append((rows, own_inverse, gain, 1.0 / np.sqrt(variance)))
         self.logdet = logdet
-        """Natural logarithm of det V, over all 3N readings; V in m²."""
+        """Natural logarithm of det V, over all numbers that were read; V in m²."""
 
     def apply(self, x: ArrayLike) -> Array:
-        """L⁻¹x: (N, 3) becomes (3N,), and (N, 3, k) becomes (3N, k), row by row.
+        """L⁻¹x: (N, 3) becomes (R,), and (N, 3, k) becomes (R, k), row by row and axis by axis.
 
-        `x` is in the axes in which the displacements were reported.
+        R numbers were read, 3N at most. `x` is in the axes in which the displacements were
+        reported; what it has in an axis that was not read does not matter.
         """
         values = np.asarray(x, dtype=np.float64)
         if values.shape[:2] != (self.n_readings, 3) or values.ndim > 3:
@@ -55,13 +62,16 @@ class Whitener:
                 remedy=f"Give ({self.n_readings}, 3) or ({self.n_readings}, 3, k).",
             )
         columns = values.reshape(self.n_readings, 3, -1)
+        if self._read is not None:
+            columns = np.where(self._read[:, :, None], columns, 0.0)
         out = np.empty_like(columns)
         for rows, own_inverse, gain, scale in self._blocks:
             block = columns[rows]  # (g, L, 3, k)
             if rows.shape[1] > 1:
                 block = block - gain[..., None] * _sum_before(block * own_inverse[..., None])
             out[rows] = block * scale[..., None]
-        return out.reshape(3 * self.n_readings, *values.shape[2:])
+        numbers = out.reshape(3 * self.n_readings, -1) if self._read is None else out[self._read]
+        return numbers.reshape(len(numbers), *values.shape[2:])
 
 
 def _blocks(group: Integers) -> list[Integers]:

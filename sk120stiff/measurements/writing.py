@@ -158,7 +158,10 @@ def _same_grouping(a: Integers, b: Integers) -> bool:
 
 
 def _numbers(name: str, values: ArrayLike, unit: str, kind: str) -> _Column:
-    return f"{name}[{unit}]", map(_digits, units.from_si(values, unit, kind))
+    numbers = np.array(values, dtype=np.float64)
+    known = np.isfinite(numbers)  # else it was not read
+    numbers[known] = units.from_si(numbers[known], unit, kind)
+    return f"{name}[{unit}]", map(_digits, numbers)
 
 
 def _digits(value: float) -> str:

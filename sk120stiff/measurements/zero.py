@@ -33,15 +33,22 @@ class ZeroReadings:
         return mean
 
 
-def find_zero_readings(group: Integers, loaded: Mask, use: Mask) -> ZeroReadings:
+def find_zero_readings(
+    group: Integers, loaded: Mask, use: Mask, axes: Integers | None = None
+) -> ZeroReadings:
     """Count the rows without load in each group (N,).
 
     Masked rows do not count, except where every row of the group is masked: then its masked
-    zero rows give the masked rows a displacement to show.
+    zero rows give the masked rows a displacement to show. Of `axes` (N,) were read in each row;
+    rows that lack one which others of the group have do not count either.
     """
     size = int(group.max()) + 1
     alive = np.bincount(group[use], minlength=size) > 0
     counted = ~loaded & (use | ~alive[group])
+    if axes is not None:
+        most = np.zeros(size, dtype=np.int64)
+        np.maximum.at(most, group[counted], axes[counted])
+        counted &= axes == most[group]
     count = np.bincount(group[counted], minlength=size)
     return ZeroReadings(group, counted, count[group].astype(np.int64))
 

@@ -50,3 +50,17 @@ def test_geometry_that_no_difference_shows_is_told_in_one_line(run: Run, gauged:
     said = run("identify", gauged).stdout
     assert "36 small errors of geometry show in none of these readings" in said
     assert "joint_frame:" not in said
+
+
+def test_the_gap_is_told_along_the_gauge(run: Run, gauged: str, tmp_path: Path) -> None:
+    model = str(tmp_path / "model.yaml")
+    assert run("identify", gauged, "--out", model).code == 0
+    found = run("predict", model, gauged, "--json")
+    assert found.code == 0, found.stderr
+    rows = found.document["rows"]
+    assert len(rows) == 42
+    for row in rows:
+        gap = 1e3 * (row["d[mm]"] - row["predicted_d[mm]"])
+        assert row["gap_d[um]"] == pytest.approx(gap, abs=1e-9)
+    assert found.document["rms_um"] == pytest.approx(5.0, rel=0.4)
+    assert "Gap over 42 readings of gauges" in run("predict", model, gauged).stdout

@@ -80,7 +80,7 @@ def test_weights_are_hubers(springs) -> None:
     found = solve_robustly(Problem(springs, readings, NOISE))
     lengths = reading_lengths(found.problem, found.gap)
     np.testing.assert_allclose(
-        found.problem.weights, np.minimum(1.0, LIMIT / lengths), rtol=0, atol=1e-5
+        found.problem.weights, np.minimum(1.0, LIMIT[3] / lengths), rtol=0, atol=1e-5
     )
     assert found.inflation > 1.0
 
@@ -111,10 +111,10 @@ def test_intervals_hold_in_spite_of_outliers(springs) -> None:
 
 def test_inflation_by_hand() -> None:
     """Huber 1973 for whole readings: E ψ² over (E ψ')², times the mean weight."""
-    lengths = np.array([0.5, 1.0, 2.0, 2.0 * LIMIT])
+    lengths = np.array([0.5, 1.0, 2.0, 2.0 * LIMIT[3]])
     weights = np.array([1.0, 1.0, 1.0, 0.5])
-    psi = (0.25 + 1.0 + 4.0 + LIMIT**2) / 4 / 3
+    psi = (0.25 + 1.0 + 4.0 + LIMIT[3] ** 2) / 4 / 3
     slope = (3 * (1 + 2) + 0 + 2 * 0.5) / 4 / 3
     freedom = (12 - 3) / 12
     expected = psi / freedom / slope**2 * 3.5 / 4
-    assert _inflation(lengths, weights, 3) == pytest.approx(expected, rel=1e-12)
+    assert _inflation(lengths, weights, np.full(4, 3), 3) == pytest.approx(expected, rel=1e-12)

@@ -117,8 +117,12 @@ def save_positions(
 
 
 def gaps_table(model: Model, readings: Measurements, wild: Mask | None = None) -> Columns:
-    """Predicted position, measured one and gap of every row, in axes of the instrument."""
-    seen = read_poses(model, load_cases_of(model.robot, readings))
+    """Predicted position, measured one and gap of every row, in axes of the instrument.
+
+    Where gauges were read, the same of the displacement along their directions.
+    """
+    load_cases = load_cases_of(model.robot, readings)
+    seen = read_poses(model, load_cases)
     columns: dict[str, object] = {"pose": list(readings.pose)}
     for k, axis in enumerate("xyz"):
         columns[f"predicted_{axis}[mm]"] = seen.position[:, k] * 1e3
@@ -129,6 +133,14 @@ def gaps_table(model: Model, readings: Measurements, wild: Mask | None = None) -
             columns[f"{axis}[mm]"] = x[:, k] * 1e3
         for k, axis in enumerate("xyz"):
             columns[f"gap_{axis}[um]"] = (x - seen.position)[:, k] * 1e6
+    if said is not None and said.channels.shift is not None and said.channels.along is not None:
+        d, moved = said.channels.shift, model.predict(load_cases)
+        along = np.where(np.isfinite(d), np.einsum("ni,ni->n", said.channels.along, moved), np.nan)
+        columns |= {
+            "predicted_d[mm]": along * 1e3,
+            "d[mm]": d * 1e3,
+            "gap_d[um]": (d - along) * 1e6,
+        }
     used = readings.use if wild is None else readings.use & ~wild
     columns["use"] = used.astype(int)
     return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}

@@ -70,8 +70,8 @@ def absorbed(fit: Fit, effects: Sequence[Effect]) -> tuple[Absorbed, ...]:
         out.append(
             Absorbed(
                 effect=effect,
-                shows=float(np.sqrt(np.mean(signature**2))),
-                remains=float(np.sqrt(np.mean(left**2))),
+                shows=float(np.sqrt(np.mean(signature[problem.read] ** 2))),
+                remains=float(np.sqrt(np.mean(left[problem.read] ** 2))),
                 visible=float(np.linalg.norm(beyond)) / noise,
             )
         )

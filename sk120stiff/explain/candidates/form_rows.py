@@ -37,5 +37,5 @@ def form_rows(fit: Fit, X: Array, y: Array) -> FormRows | None:
     turned, rows = whitener.outweighing(np.column_stack([X, y]))
     if not len(rows):
         return None
-    group = np.repeat(fit.problem.load_cases.pose, 3)[rows]
+    group = fit.problem.pose[rows]
     return FormRows(turned[:, -1], turned[:, :-1], group, whitener.noise_share)

@@ -30,7 +30,7 @@ class Regression:
     """Linearised readings against the parameters of base model and candidates.
 
     Attributes:
-        y: (R,) whitened readings, R = 3N.
+        y: (R,) whitened readings, R numbers that were read.
         X: (R, P) whitened sensitivities, in typical sizes of the parameters.
         group: (R,) pose of each row; resampling and folds never cut a pose.
         base: Columns of the base model, part of every model.
@@ -226,7 +226,7 @@ def regression_at(
     return Regression(
         y=y,
         X=whole,
-        group=np.repeat(problem.load_cases.pose, 3),
+        group=problem.pose,
         base=np.concatenate([*base, np.zeros(0, dtype=np.intp)]),
         candidates=tuple(chosen),
         columns=columns,

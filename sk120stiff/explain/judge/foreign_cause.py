@@ -36,7 +36,7 @@ def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
     gap = gap - inside @ (inside.T @ gap)
     evidence, squares = [0.0], [np.zeros(J.shape[1])]  # first: that there is no such cause
     for part, columns in zip(lineup.parts, lineup.reading, strict=True):
-        length = np.sqrt((columns**2).mean(axis=(0, 1)))
+        length = np.sqrt((columns[fit.problem.read] ** 2).mean(axis=0))
         seen = length > 0.0
         if not seen.any():
             continue

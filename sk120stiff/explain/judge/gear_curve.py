@@ -132,8 +132,9 @@ def _measured(fit: Fit, gear: GearEffect, parts: Sequence[Elastic]) -> Array:
     """(M, 2) total torque and twist of the readings whose point the joint moves well."""
     load_cases = fit.problem.load_cases
     lever = load_cases.nominal.linear_jacobian[:, :, load_cases.robot.actuated.index(gear.where)]
-    axes = load_cases.reading_axes
-    gap = np.einsum("nij,nj->ni", axes, fit.problem.measured - fit.model.predict(load_cases))
+    read = fit.problem.read
+    lever = np.where(read, np.einsum("nij,ni->nj", load_cases.reading_axes, lever), 0.0)
+    gap = np.where(read, fit.problem.measured - fit.model.predict(load_cases), 0.0)
     square = (lever**2).sum(axis=1)
     told = square > SEEN**2 * square.max(initial=0.0)
     twist = (lever * gap).sum(axis=1) / np.where(told, square, 1.0)

@@ -20,14 +20,15 @@ def joint_that_turns(found: Selection, effect: Effect) -> str | None:
 
     A gear that rubs begins a pose with what the pose before left in it, and one whose stiffness
     goes with its angle yields more at some poses. Draws of the tracker know no joint: a third of
-    their square lies along its turn.
+    their square lies along its turn. Readings that lack an axis tell nothing of a direction.
     """
     if not effect.random_effects:
         return None
     fit = found.final
     load_cases = fit.problem.load_cases
     drawn = np.einsum("nij,nj->ni", load_cases.reading_axes, brought(fit, effect.id))
-    ways = load_cases.nominal.linear_jacobian
+    whole = fit.problem.read.all(axis=1)
+    drawn, ways = drawn[whole], load_cases.nominal.linear_jacobian[whole]
     length = np.maximum(np.linalg.norm(ways, axis=1), 1e-300)
     along = (np.einsum("ni,nij->nj", drawn, ways) / length) ** 2
     joint = int(np.argmax(along.sum(axis=0)))

@@ -21,9 +21,8 @@ def unlike_scatter(fit: Fit) -> dict[str, tuple[float, float]]:
     load_cases = fit.problem.load_cases
     basis = load_basis(load_cases, jump=True, cubic=True, branches=True)
     columns = fit.problem.whitener.apply(pose_columns(basis))
-    group = np.repeat(load_cases.pose, 3)
     squares, freedom = [], []
-    for rows in rows_by_label(group):
+    for rows in rows_by_label(fit.problem.pose):
         block = orthonormal(columns[rows])
         white = fit.residual[rows]
         left = white - block @ (block.T @ white)

@@ -119,7 +119,7 @@ def _on_file(found: Fit, holdout: Measurements) -> float:
     """Gap on a hold-out file, per axis [m]."""
     other = Problem(found.model, holdout.masked(), found.problem.noise)
     gap = other.measured - found.model.predict(other.load_cases)
-    return float(np.sqrt(np.mean(gap**2)))
+    return float(np.sqrt(np.nanmean(gap**2)))
 
 
 def _on_poses_left_out(found: Selection, counts: Sequence[int], seed: int) -> list[float]:

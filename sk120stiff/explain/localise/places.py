@@ -20,7 +20,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.explain.localise.localisation import (
     MOSTLY_NOISE,
     DirectionShare,
@@ -41,6 +41,7 @@ from sk120stiff.identify.checks.left_over import orthonormal
 SHOWN = 8  # suspects that are worked out for figures
 FEWEST_POSES = 8  # for a trend over poses
 INDISTINCT = 0.02  # share of a direction below which a picture takes it for the springs' own
+ROUNDING = 1e-9  # of a column, in units of the noise: what of it shows in the axes that were read
 SEEN_AT_ALL = 1e-6  # share of a column that must remain, else the model's own parameters do it
 
 
@@ -78,13 +79,13 @@ class Look:
     """What every question needs: the gap raw and white, the model's columns, the noise."""
 
     fit: Fit
-    gap: Array  # (N, 3) base axes [m]
+    gap: Array  # (N, 3) base axes [m]; what was not read has no part in it
     predicted: Array  # (N, 3) base axes [m]
-    derivative: Array  # (3N, p) of the model's moving parameters, reading axes [m]
-    whiten: Callable[[Array], Array]  # (N, 3, ...) reading axes [m] to (3N, ...)
-    inside: Array  # (3N, rank) orthonormal basis of what the model's parameters can do, whitened
-    white: Array  # (3N,) whitened gap, `inside` projected out
-    variance: Array  # (N,) noise variance of a displacement per axis [m²]
+    derivative: Array  # (N, 3, p) of the model's moving parameters, reading axes [m]
+    whiten: Callable[[Array], Array]  # (N, 3, ...) reading axes [m] to (R, ...)
+    inside: Array  # (R, rank) orthonormal basis of what the model's parameters can do, whitened
+    white: Array  # (R,) whitened gap, `inside` projected out
+    variance: Array  # (N, 3) noise variance of a displacement [m²], zero where it was not read
     noise: Yardstick
     within: WithinPoses
 
@@ -98,7 +99,7 @@ class Look:
         """Share of the gap's square that exceeds the noise, of the raw or of the white gap."""
         white = float(self.white @ self.white) / self.noise.scale
         expected = len(self.white) - self.inside.shape[1]
-        raw, noise = float((self.gap**2).sum()), 3.0 * float(self.variance.sum())
+        raw, noise = float((self.gap**2).sum()), float(self.variance.sum())
         shares = (1.0 - expected / max(white, 1e-300), 1.0 - noise / max(raw, 1e-300))
         return float(np.clip(min(shares), 0.0, 1.0)) if self.known else 0.0
 
@@ -109,13 +110,13 @@ class Look:
 
     @cached_property
     def floor(self) -> Array:
-        """(N,) variance per axis that is no part of the whole [m²]."""
+        """(N, 3) variance that is no part of the whole [m²]."""
         return self.variance if self.whole == "excess" else np.zeros_like(self.variance)
 
     @cached_property
     def raw_whole(self) -> float:
         """The whole as a sum of squares of the gap [m²]."""
-        return max(float((self.gap**2).sum() - 3.0 * self.floor.sum()), 1e-300)
+        return max(float((self.gap**2).sum() - self.floor.sum()), 1e-300)
 
 
 def look_at(fit: Fit, noise: Yardstick) -> Look:
@@ -128,46 +129,48 @@ def look_at(fit: Fit, noise: Yardstick) -> Look:
     derivative = full[:, :, problem.free[moving]] * problem.scale[moving]
     inside = orthonormal(drawn.whiten(derivative))
     predicted = predicted - drawn.covered()
-    raw = problem.measured - predicted
+    raw = np.where(problem.read, problem.measured - predicted, 0.0)
     white = drawn.whiten(raw)
     white = white - inside @ (inside.T @ white)
-    own, zero = problem.noise.variances(problem.measurements, problem.sizes)
+    variance = sum(problem.noise.variances(problem.measurements, problem.sizes))
+    each = np.mean(variance, axis=1, where=problem.read, keepdims=True)
     return Look(
         fit=fit,
         gap=np.einsum("nij,nj->ni", axes, raw),
         predicted=np.einsum("nij,nj->ni", axes, predicted),
-        derivative=derivative.reshape(len(white), -1),
+        derivative=derivative,
         whiten=drawn.whiten,
         inside=inside,
         white=white,
-        variance=(own + zero).mean(axis=1) * noise.scale,
+        variance=np.where(problem.read, each * noise.scale, 0.0),
         noise=noise,
         within=within_poses(fit, white, inside, drawn.whiten, noise),
     )
 
 
 def _poses(look: Look) -> tuple[PoseShare, ...]:
-    load_cases = look.fit.problem.load_cases
+    problem = look.fit.problem
+    load_cases = problem.load_cases
     square = (look.gap**2).sum(1)
     rows = [np.flatnonzero(load_cases.pose == k) for k in range(len(load_cases.poses))]
-    white = (look.white.reshape(-1, 3) ** 2).sum(1)
-    chance = [_chance_of_pose(look, white, r) for r in rows]
+    chance = [_chance_of_pose(look, problem.pose == k) for k in range(len(load_cases.poses))]
     found = []
     for label, r, p in zip(load_cases.poses, rows, holm(chance), strict=True):
         if not len(r):
             continue
-        share = float(square[r].sum() - 3.0 * look.floor[r].sum()) / look.raw_whole
-        rms = float(np.sqrt(square[r].mean() / 3.0))
+        share = float(square[r].sum() - look.floor[r].sum()) / look.raw_whole
+        rms = float(np.sqrt(square[r].sum() / problem.read[r].sum()))
         found.append(PoseShare(label, rms, _noise(look, r), share, p))
     return tuple(found)
 
 
-def _chance_of_pose(look: Look, white: Array, rows: Index) -> float:
+def _chance_of_pose(look: Look, there: Mask) -> float:
     """Probability of such a gap at one pose: beside the noise, or beside the gaps of the others."""
-    own, count = float(white[rows].sum()), 3 * len(rows)
+    square = look.white**2
+    own, count = float(square[there].sum()), int(there.sum())
     if look.known:
         return look.noise.tail(own, count)
-    rest = float(white.sum()) - own
+    rest = float(square.sum()) - own
     freedom = len(look.white) - look.inside.shape[1] - count
     if freedom < 1 or not count or rest <= 0.0:
         return 1.0
@@ -176,7 +179,9 @@ def _chance_of_pose(look: Look, white: Array, rows: Index) -> float:
 
 def _noise(look: Look, rows: Index | slice) -> float | None:
     """Rms per axis that noise alone leaves [m]; None where nothing tells."""
-    return float(np.sqrt(look.variance[rows].mean())) if look.known else None
+    if not look.known:
+        return None
+    return float(np.sqrt(look.variance[rows].sum() / look.fit.problem.read[rows].sum()))
 
 
 def _levels(look: Look) -> tuple[LoadLevel, ...]:
@@ -184,13 +189,13 @@ def _levels(look: Look) -> tuple[LoadLevel, ...]:
     size = np.linalg.norm(look.fit.problem.load_cases.wrench[:, :3], axis=1)
     edges = np.quantile(size, [1 / 3, 2 / 3])
     third = np.searchsorted(edges, size, side="left")
-    square = (look.gap**2).mean(1)
+    square, read = (look.gap**2).sum(1), look.fit.problem.read.sum(1)
     return tuple(
         LoadLevel(
             low=float(size[part].min()),
             high=float(size[part].max()),
             count=int(part.sum()),
-            rms=float(np.sqrt(square[part].mean())),
+            rms=float(np.sqrt(square[part].sum() / read[part].sum())),
             noise=_noise(look, np.flatnonzero(part)),
         )
         for part in (third == k for k in range(3))
@@ -200,9 +205,11 @@ def _levels(look: Look) -> tuple[LoadLevel, ...]:
 
 def _directions(look: Look) -> tuple[DirectionShare, ...]:
     out = []
-    for axes in axes_of(look.fit.problem.load_cases):
+    load_cases = look.fit.problem.load_cases
+    for axes in axes_of(load_cases):
         along = np.einsum("nij,ni->nj", axes.directions, look.gap)
-        parts = (along**2).sum(0) - look.floor.sum()
+        seen = np.einsum("nki,nkj->nij", load_cases.reading_axes, axes.directions)
+        parts = (along**2).sum(0) - (look.floor[:, :, None] * seen**2).sum((0, 1))
         for word, part in zip(axes.words, parts, strict=True):
             out.append(DirectionShare(axes.name, word, float(part) / look.raw_whole))
     return tuple(out)
@@ -240,7 +247,7 @@ class Lineup:
 
     suspects: tuple[Suspect, ...]
     reading: list[Array]  # (N, 3, k) each [m]
-    white: Array  # (3N, sum of k)
+    white: Array  # (R, sum of k)
     parts: tuple[slice, ...]
 
 
@@ -250,18 +257,28 @@ def line_up(look: Look) -> Lineup:
     suspects = suspects_of(look.fit.model, load_cases, look.predicted)
     reading = [np.swapaxes(load_cases.reading_axes, 1, 2) @ s.columns for s in suspects]
     ends = np.cumsum([0, *(s.columns.shape[2] for s in suspects)])
+    together = np.concatenate(reading, axis=2)
+    white = look.whiten(together)
+    white[:, ~_shown(look, together, white)] = 0.0
     return Lineup(
         suspects=suspects,
         reading=reading,
-        white=look.whiten(np.concatenate(reading, axis=2)),
+        white=white,
         parts=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
     )
+
+
+def _shown(look: Look, columns: Array, white: Array) -> Mask:
+    """(k,) which of the columns (N, 3, k) [m], whitened (R, k), the axes that were read show."""
+    whole = np.linalg.norm(columns.reshape(-1, columns.shape[2]), axis=0)
+    sigma = look.fit.problem.noise.sigma
+    return np.asarray(np.linalg.norm(white, axis=0) > ROUNDING * whole / sigma)
 
 
 def ranked(look: Look, lineup: Lineup, known: Array) -> list[tuple[Suspicion, int]]:
     """Suspects with their places in the line-up, the strongest first.
 
-    `known` (3N, k) is an orthonormal basis of what is in the model already. Shares are of the whole
+    `known` (R, k) is an orthonormal basis of what is in the model already. Shares are of the whole
     when nothing is known but the model's own parameters.
     """
     beyond = lineup.white - known @ (known.T @ lineup.white)
@@ -337,16 +354,17 @@ def _to_show(ranked: Sequence[Suspicion]) -> set[int]:
 def _with_picture(suspicion: Suspicion, suspect: Suspect, reading: Array, look: Look) -> Suspicion:
     """The gap along the suspect's direction, with the model's parameters refitted beside it."""
     problem = look.fit.problem
-    S = reading.reshape(len(look.white), -1)
-    both = np.hstack([look.derivative, S])
-    white = look.whiten(both.reshape(problem.load_cases.count, 3, -1))
-    norms = np.maximum(np.linalg.norm(white, axis=0), 1e-300)
-    values = np.linalg.lstsq(white / norms, look.white, rcond=INDISTINCT)[0] / norms
-    own = values[look.derivative.shape[1] :]
-    signature = (S @ own).reshape(-1, 3)
-    covered = (look.derivative @ values[: look.derivative.shape[1]]).reshape(-1, 3)
+    both = np.concatenate([look.derivative, reading], axis=2)
+    white = look.whiten(both)
+    shown = _shown(look, both, white)
+    norms = np.linalg.norm(white[:, shown], axis=0)
+    values = np.zeros(len(shown))
+    values[shown] = np.linalg.lstsq(white[:, shown] / norms, look.white, rcond=INDISTINCT)[0]
+    values[shown] /= norms
+    inside = look.derivative.shape[2]
+    signature, covered = reading @ values[inside:], look.derivative @ values[:inside]
     raw = np.einsum("nji,nj->ni", problem.load_cases.reading_axes, look.gap)
-    freed = raw - covered
+    freed = np.where(problem.read, raw - covered, 0.0)
     if suspect.direction is None:
         size = np.linalg.norm(signature, axis=1, keepdims=True)
         along = signature / np.where(size > 0.0, size, 1.0)

@@ -56,7 +56,7 @@ class RandomEffects:
         size = float(np.sqrt(np.mean(self.fit.model.values[self.columns] ** 2)))
         spread = self.fit.problem.whitener.apply(size * self.derivative[:, :, self.columns])
         blocks = []
-        for rows in rows_by_label(np.repeat(self.fit.problem.load_cases.pose, 3)):
+        for rows in rows_by_label(self.fit.problem.pose):
             part = spread[rows]
             part = part[:, np.abs(part).max(axis=0) > 0.0]
             U, singular, _ = np.linalg.svd(part, full_matrices=False)

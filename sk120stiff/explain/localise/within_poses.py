@@ -47,13 +47,13 @@ def within_poses(
 
     Args:
         fit: The fitted model.
-        white: (3N,) its whitened gap, the model's columns projected out.
-        inside: (3N, k) orthonormal basis of those columns.
+        white: (R,) its whitened gap, the model's columns projected out.
+        inside: (R, k) orthonormal basis of those columns.
         whiten: Whitens (N, 3, ...) in reading axes, noise and draws together.
         noise: What to hold it against.
     """
     load_cases, scale = fit.problem.load_cases, noise.scale
-    group = np.repeat(load_cases.pose, 3)
+    group = fit.problem.pose
     left = [float(white @ white)]
     rank = [inside.shape[1]]
     for options in ({}, {"jump": True}, {"jump": True, "cubic": True}):

@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.measurements import FormWhitener, Whitener
+from sk120stiff.measurements.poses import rows_by_label
 
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
 NEXT = 3.7  # the same once one outlier is certain
@@ -40,12 +41,13 @@ def outlying_rows(
     """
     X, prior = _whole_catalogue(regression)
     y = regression.y
-    shifts = _shift_columns(whitener, len(y) // 3, regression.group[::3])
+    axes = np.bincount(whitener.reading)  # (N,) how many were read
+    shifts = _shift_columns(whitener, regression.group)
     found = _searched(X, prior, y, shifts, regression.sigma_known)
     if not len(found.rows):
         return found.rows
     each = np.log(len(y))  # the price of a parameter
-    ways = [(found.left + 3.0 * each * len(found.rows), found.rows)]
+    ways = [(found.left + float(axes[found.rows].sum()) * each, found.rows)]
     for course in courses:
         beside = whitener.apply(course)
         size = np.sqrt((beside**2).sum(0))
@@ -54,7 +56,8 @@ def outlying_rows(
                 np.hstack([X, beside / size]), np.concatenate([prior, np.zeros(3)]), y, shifts,
                 regression.sigma_known, noise=found.noise,
             )  # fmt: skip
-            ways.append((other.left + (3.0 * len(other.rows) + 4.0) * each, other.rows))
+            spent = float(axes[other.rows].sum()) + 4.0
+            ways.append((other.left + spent * each, other.rows))
     return min(ways, key=lambda way: way[0])[1]
 
 
@@ -102,12 +105,11 @@ def _searched(
     """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,)."""
     out: list[int] = []
     while len(out) <= LARGEST_SHARE * len(shifts):
-        extra = np.zeros((len(y), 3 * len(out)))
-        for k, row in enumerate(out):
-            rows, block = shifts[row]
-            extra[rows, 3 * k : 3 * k + 3] = block
-        full = np.hstack([X, extra])
-        weight = np.concatenate([prior, np.zeros(extra.shape[1])])
+        extra = [np.zeros((len(y), shifts[row][1].shape[1])) for row in out]
+        for own, row in zip(extra, out, strict=True):
+            own[shifts[row][0]] = shifts[row][1]
+        full = np.hstack([X, *extra])
+        weight = np.concatenate([prior, np.zeros(full.shape[1] - len(prior))])
         half = _half(full, weight)
         residual = y - half.T @ (half @ y)
         size = noise
@@ -130,26 +132,26 @@ def _searched(
     return _Searched(np.zeros(0, dtype=np.intp), np.inf, np.nan)
 
 
-def _shift_columns(
-    whitener: Whitener | FormWhitener, count: int, pose: Index
-) -> list[tuple[Index, Array]]:
-    """For each reading the rows of its pose and their whitened shifts (rows, 3).
+def _shift_columns(whitener: Whitener | FormWhitener, pose: Index) -> list[tuple[Index, Array]]:
+    """For each reading the rows of its pose and their whitened shifts (rows, axes read).
 
-    Whitening mixes rows of one pose only.
+    Whitening mixes rows of one pose (R,) only.
     """
-    position = np.zeros(count, dtype=np.intp)
-    members = [np.flatnonzero(pose == p) for p in range(int(pose.max(initial=-1)) + 1)]
-    for rows in members:
-        position[rows] = np.arange(len(rows))
+    count, reading = whitener.n_readings, whitener.reading
+    numbers = rows_by_label(pose)  # of each pose
+    place, position = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
+    for k, rows in enumerate(numbers):
+        members = np.unique(reading[rows])
+        place[members], position[members] = k, np.arange(len(members))
     width = int(position.max(initial=0)) + 1
     unit = np.zeros((count, 3, width, 3))
     unit[np.arange(count), :, position, :] = np.eye(3)
-    white = whitener.apply(unit.reshape(count, 3, -1)).reshape(count, 3, width, 3)
+    white = whitener.apply(unit.reshape(count, 3, -1)).reshape(len(reading), width, 3)
     out = []
     for k in range(count):
-        rows = members[pose[k]]
-        flat = (3 * rows[:, None] + np.arange(3)).reshape(-1)
-        out.append((flat, white[rows, :, position[k], :].reshape(-1, 3)))
+        rows = numbers[place[k]]
+        shift = white[rows, position[k]]
+        out.append((rows, shift[:, (shift != 0.0).any(axis=0)]))
     return out
 
 

@@ -95,7 +95,7 @@ def select(
     whole = base.problem.whitener.logdet + price_of_factors(base.problem.noise.form)
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
-    axes = np.log(3.0 * measurements.n_readings)
+    numbers = np.log(float(measurements.read.sum()))
     return Selection(
         base=base,
         final=final,
@@ -103,7 +103,7 @@ def select(
         chosen=chosen,
         outliers=outliers,
         candidates=tuple(candidates),
-        total=score + whole + 3.0 * axes * len(outliers),
+        total=score + whole + numbers * float(measurements.read[outliers].sum()),
     )
 
 

@@ -34,7 +34,7 @@ class HeldOut:
     Attributes:
         poses: Labels of the g poses.
         squares: (g,) mean square of the gap per axis at each pose [m²].
-        counts: (g,) number of readings at each pose.
+        counts: (g,) how many numbers were read at each pose.
         folds: In how many parts the poses were left out.
     """
 
@@ -49,7 +49,7 @@ class HeldOut:
 
     @property
     def rms(self) -> float:
-        """Root mean square of the held-out gap over all readings and axes [m]."""
+        """Root mean square of the held-out gap over all numbers read [m]."""
         return float(np.sqrt(np.average(self.squares, weights=self.counts)))
 
     @property
@@ -115,10 +115,10 @@ def held_out(
             if place == len(squares):
                 squares.append(np.full(len(part), np.nan))
             gap = measured[rows] - found.model.predict(load_cases_of(found.model.robot, test))
-            squares[place][rows] = (gap**2).mean(axis=1)
+            squares[place][rows] = np.nansum(gap**2, axis=1)
         if progress is not None:
             progress(k + 1, count)
-    counts = np.bincount(used.pose_index, minlength=len(used.poses))
+    counts = np.bincount(used.pose_index[used.row_of_number], minlength=len(used.poses))
     return tuple(
         HeldOut(
             poses=used.poses,

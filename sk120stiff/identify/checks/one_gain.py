@@ -49,4 +49,4 @@ def one_gain(model: Model, fit: Fit) -> OneGain:
         return float(np.sum(problem.whitener.apply(gap(gain)) ** 2))
 
     gain = float(minimize_scalar(misfit, bounds=REACH, method="bounded").x)
-    return OneGain(gain, float(np.sqrt(np.mean(gap(gain) ** 2))))
+    return OneGain(gain, float(np.sqrt(np.nanmean(gap(gain) ** 2))))

@@ -135,13 +135,13 @@ def left_within_poses(fit: Fit, white: Array, inside: Array) -> tuple[float, int
 
     Args:
         fit: Gives readings and noise.
-        white: (3N,) whitened gap.
-        inside: (3N, k) orthonormal basis of what the model's parameters can do.
+        white: (R,) whitened gap.
+        inside: (R, k) orthonormal basis of what the model's parameters can do.
     """
     load_cases = fit.problem.load_cases
     basis = load_basis(load_cases, jump=True, cubic=True, branches=True)
     columns = fit.problem.whitener.apply(pose_columns(basis))
-    square, rank = left_over(white, inside, columns, np.repeat(load_cases.pose, 3))
+    square, rank = left_over(white, inside, columns, fit.problem.pose)
     return square, rank, columns
 
 
@@ -153,5 +153,5 @@ def _yardstick(fit: Fit, source: Source, scale: float, freedom: float) -> Yardst
         scale=scale,
         freedom=freedom,
         sigma=problem.noise.sigma * float(np.sqrt(scale)),
-        floor=float(np.sqrt(np.mean(own + zero) * scale)),
+        floor=float(np.sqrt(np.mean((own + zero)[problem.read]) * scale)),
     )

@@ -59,14 +59,24 @@ class Problem:
 
     @cached_property
     def measured(self) -> Array:
-        """(N, 3) displacements [m]."""
+        """(N, 3) displacements [m]; NaN in an axis that was not read."""
         found = self.measurements.displacement
         return np.zeros((0, 3)) if found is None else found
+
+    @property
+    def read(self) -> Mask:
+        """(N, 3) axes that were read, R of them; every whitened array has R rows."""
+        return self.measurements.read
+
+    @cached_property
+    def pose(self) -> Index:
+        """(R,) pose of each number that was read."""
+        return self.load_cases.pose[self.measurements.row_of_number]
 
     @cached_property
     def sizes(self) -> Array:
         """(N,) lengths of the displacements, to which growing noise applies [m]."""
-        return np.asarray(np.linalg.norm(self.measured, axis=1))
+        return np.asarray(np.linalg.norm(self.measurements.moved, axis=1))
 
     @cached_property
     def whitener(self) -> Whitener | FormWhitener:
@@ -116,11 +126,11 @@ class Problem:
         return full
 
     def gap(self, x: Array) -> Array:
-        """(N, 3) measured minus predicted [m]."""
+        """(N, 3) measured minus predicted [m]; NaN in an axis that was not read."""
         return self.measured - self.model.predict(self.load_cases, self.values(x))
 
     def evaluate(self, x: Array) -> tuple[Array, Array]:
-        """Whitened gap (3N,) and its derivative (3N, P_free) by `x`, at exact equilibrium."""
+        """Whitened gap (R,) and its derivative (R, P_free) by `x`, at exact equilibrium."""
         predicted, derivative = self.model.predict_with_sensitivities(
             self.load_cases, self.values(x)
         )

@@ -101,7 +101,8 @@ def left_by_all(laid: LaidOut, columns: Array, noise_factor: float) -> tuple[flo
     square = float(along @ along)
     if not len(along):
         return 0.0, 0.0, 0.0
-    moved = columns.reshape(rows, -1) - laid.derivative[:, :, :-1].reshape(rows, -1) @ T @ imitated
+    read = laid.problem.read
+    moved = columns[read] - laid.derivative[:, :, :-1][read] @ T @ imitated
     moved = moved @ right[seen].T / size[seen]
     variance = noise_factor**2
     kept = max(1.0 - variance * len(along) / square, 0.0) if square else 0.0

@@ -106,5 +106,6 @@ def _freedom(fit: Fit) -> Array:
     """(3,) readings of an axis less the parameters that it determined."""
     moving = ~fit.at_bound
     U = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[0]
-    taken = (U**2).sum(axis=1).reshape(-1, 3).sum(axis=0)
-    return np.asarray(np.maximum(len(U) / 3.0 - taken, 0.0))
+    axis = np.nonzero(fit.problem.read)[1]
+    taken = np.bincount(axis, (U**2).sum(axis=1), minlength=3)
+    return np.asarray(np.maximum(np.bincount(axis, minlength=3) - taken, 0.0))

@@ -32,12 +32,12 @@ class LaidOut:
 
     @property
     def rows(self) -> int:
-        """How many numbers were read."""
-        return int(self.drawn[:, :, 0].size)
+        """How many numbers R were read."""
+        return int(self.problem.read.sum())
 
     @property
     def poses(self) -> list[Index]:
-        """Rows of each pose among the 3N."""
+        """Rows of each pose among the R."""
         return rows_of_poses(self.problem.measurements)
 
     @classmethod
@@ -66,8 +66,8 @@ class LaidOut:
 
     def raw(self) -> Products:
         """Products in metres."""
-        drawn = self.drawn.reshape(self.rows, -1)
-        return Products.of(drawn, self.derivative.reshape(self.rows, -1), self.poses)
+        read = self.problem.read
+        return Products.of(self.drawn[read], self.derivative[read], self.poses)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class Products:
 
     @classmethod
     def of(cls, drawn: Array, derivative: Array, poses: list[Index]) -> Products:
-        """Of (3N, q) and (3N, p + 1), and the rows of each pose."""
+        """Of (R, q) and (R, p + 1), and the rows of each pose."""
         return cls(
             np.stack([drawn[rows].T @ drawn[rows] for rows in poses]),
             np.stack([drawn[rows].T @ derivative[rows] for rows in poses]),

@@ -156,5 +156,5 @@ def _in_single_readings(laid: LaidOut, deviance: Deviance, found: Components) ->
     both, most = square / freedom, square / float(stats.chi2.isf(0.975, freedom))
     least = float(np.exp(-2.0 * NORMAL * deviance.slack))
     problem = laid.problem
-    size = sum(part.mean() for part in problem.noise.variances(problem.measurements))
+    size = sum(part[problem.read].mean() for part in problem.noise.variances(problem.measurements))
     return float(size) * max(both - 1.0 + float(np.hypot(most - both, 1.0 - least)), 0.0)

@@ -104,6 +104,8 @@ def poses_of(
 ) -> tuple[ScenePose, ...]:
     """The poses of measurements with their readings in base axes, and what models predict.
 
+    A reading that lacks an axis has no measured arrow.
+
     Raises:
         InputError: The data belong to another robot.
     """
@@ -121,7 +123,7 @@ def poses_of(
         readings = tuple(
             Reading(
                 wrench=wrench[row],
-                measured=None if measured is None else measured[row],
+                measured=measured[row] if measured is not None and used.read[row].all() else None,
                 predicted={name: values[row] for name, values in predicted.items()},
                 label=f"reading {number + 1}",
             )

@@ -71,7 +71,7 @@ class Demo:
         """Gap of a model on the readings, rms per axis [m]."""
         problem = self.found.problem
         gap = problem.measured - model.predict(problem.load_cases)
-        return float(np.sqrt(np.mean(gap**2)))
+        return float(np.sqrt(np.nanmean(gap**2)))
 
     @property
     def noise(self) -> float | None:

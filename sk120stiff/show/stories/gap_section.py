@@ -127,7 +127,7 @@ def on_the_arm(fit: Fit, models: dict[str, Model]) -> Picture:
 def pose_rms(fit: Fit, model: Model) -> Array:
     """(poses,) rms gap per axis of a model on the readings of a fit [m]."""
     load_cases = fit.problem.load_cases
-    square = ((fit.problem.measured - model.predict(load_cases)) ** 2).mean(axis=1)
-    total = np.bincount(load_cases.pose, square, minlength=len(load_cases.poses))
-    count = np.bincount(load_cases.pose, minlength=len(load_cases.poses))
+    gap = (fit.problem.measured - model.predict(load_cases))[fit.problem.read]
+    total = np.bincount(fit.problem.pose, gap**2, minlength=len(load_cases.poses))
+    count = np.bincount(fit.problem.pose, minlength=len(load_cases.poses))
     return np.sqrt(total / np.maximum(count, 1))

@@ -49,12 +49,17 @@ def identify_scene(
 
 
 def arm_views(fit: Fit, models: Mapping[str, Model]) -> list[ArmView]:
-    """Every pose as a line through the arm, with the gaps of its largest load."""
+    """Every pose as a line through the arm, with the gaps of its largest load.
+
+    A gap has only the axes that were read.
+    """
     load_cases = fit.problem.load_cases
-    measured = fit.problem.measured
+    measured, read = fit.problem.measured, fit.problem.read
     axes = load_cases.reading_axes
     gaps = {
-        name: np.einsum("nij,nj->ni", axes, measured - model.predict(load_cases))
+        name: np.einsum(
+            "nij,nj->ni", axes, np.where(read, measured - model.predict(load_cases), 0.0)
+        )
         for name, model in models.items()
     }
     size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
