@@ -31,6 +31,7 @@ from sk120stiff.workspace.path import (
     read_path,
     write_joints,
 )
+from sk120stiff.workspace.places import places_of
 from sk120stiff.workspace.posture import BestPosture, best_posture
 from sk120stiff.workspace.returned import Returned, read_returned
 from sk120stiff.workspace.standing_uncertainty import (
@@ -74,6 +75,7 @@ __all__ = [
     "lowest_floor",
     "open_map",
     "parse_axes",
+    "places_of",
     "posture_landscape",
     "read_path",
     "read_returned",
