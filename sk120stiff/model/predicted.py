@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
 from sk120stiff.errors import InputError, Refusal, warn
+from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
@@ -46,6 +47,16 @@ class Predicted:
         largest = 1e6 * float(np.linalg.norm(self.displacement, axis=1).max(initial=0.0))
         known = "without ±" if self.std_parameters is None else "with ±"
         return f"<Predicted: {len(self.displacement)} readings, up to {largest:.4g} µm, {known}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the first readings, with their uncertainty where it is known."""
+        said, unit, factor = self.displacement, "µm", 1e6
+        if self.position is not None:
+            said, unit, factor = self.position, "mm", 1e3
+        columns = {f"{axis} [{unit}]": factor * said[:, k] for k, axis in enumerate(AXES)}
+        if self.std is not None:
+            columns |= {f"± {axis}": factor * self.std[:, k] for k, axis in enumerate(AXES)}
+        return html_table(repr(self), columns)
 
     def __post_init__(self) -> None:
         shape = self.displacement.shape
