@@ -22,7 +22,9 @@ from sk120stiff.workspace.finished import (
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
 from sk120stiff.workspace.judge import PathTask, Placement
+from sk120stiff.workspace.judged import Judged
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
+from sk120stiff.workspace.map_postures import MapPostures, map_postures
 from sk120stiff.workspace.mapping import MapReport, write_map
 from sk120stiff.workspace.path import (
     LoadedPath,
@@ -49,11 +51,13 @@ __all__ = [
     "ElasticArm",
     "Grid",
     "JointGrid",
+    "Judged",
     "Landscape",
     "LoadSummary",
     "LoadedPath",
     "MapCheck",
     "MapJob",
+    "MapPostures",
     "MapReport",
     "PathTask",
     "Placement",
@@ -73,6 +77,7 @@ __all__ = [
     "joint_heights",
     "joints_along",
     "lowest_floor",
+    "map_postures",
     "open_map",
     "parse_axes",
     "places_of",
