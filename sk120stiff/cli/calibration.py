@@ -11,13 +11,12 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
-from sk120stiff.identify import Calibration
+from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.absolute.remainder import remainder_entry, remainder_sentences
 from sk120stiff.identify.absolute.words import (
     angle_gap,
     findings,
     gap_sentence,
-    known_calibration,
     unseen,
 )
 from sk120stiff.measurements import Measurements
@@ -29,7 +28,7 @@ def calibration_answer(
 ) -> Answer:
     """Geometry, springs and what cannot be told, as JSON and for people."""
     if out is not None:
-        write_model(replace(known_calibration(found), provenance=provenance(data, readings)), out)
+        write_model(replace(known_model(found), provenance=provenance(data, readings)), out)
     reasons, angles = unseen(found), angle_gap(found)
     stated = found.problem.stated_sigma if len(found.problem.lengths) else None
     document = {

@@ -17,10 +17,9 @@ from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yards
 from sk120stiff.identify.estimate import likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.report import fit_report
-from sk120stiff.identify.run import fit, refuse_for_positions
+from sk120stiff.identify.run import fit, known_model, refuse_for_positions
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solving import solve, solve_near
-from sk120stiff.identify.uncertainty.known_model import known_model
 from sk120stiff.identify.uncertainty.profile import profile_intervals
 
 __all__ = [

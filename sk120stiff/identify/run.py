@@ -1,4 +1,4 @@
-"""The verb `fit`: displacements or positions become a `Fit`."""
+"""The verb `fit`: displacements or positions become a `Fit`, and that a model to be kept."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sk120stiff.errors import InputError, listed
-from sk120stiff.identify.absolute.calibrate import calibrate, with_model_form
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.absolute.weighing import pounds
+from sk120stiff.identify.absolute.words import known_calibration
 from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.solvers import Method
+from sk120stiff.identify.uncertainty.known_model import known_of_displacements
+from sk120stiff.identify.uncertainty.left_over import LeftOver
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
@@ -75,6 +78,18 @@ def fit(
     parameters = (replace(p, free=p.free and p.name not in kept) for p in model.parameters)
     start = replace(model, parameters=tuple(parameters)) if kept else model
     return fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
+
+
+def known_model(fit: Fit, left: LeftOver | None = None) -> Model:
+    """The fitted model with its uncertainty, as it is written to a file.
+
+    Args:
+        fit: The fitted model.
+        left: The remainder of displacements, where that is known already.
+    """
+    if isinstance(fit, Calibration):
+        return known_calibration(fit)
+    return known_of_displacements(fit, left)
 
 
 def refuse_for_positions(measurements: Measurements, **given: object) -> None:

@@ -11,7 +11,7 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.explain import Explained
-from sk120stiff.identify import Calibration
+from sk120stiff.identify import Calibration, known_model
 from sk120stiff.model import Model
 from tests.absolute.arm import Arm, Array, poses, tracked, write
 
@@ -43,6 +43,8 @@ def test_fit_and_predict_say_where_the_marker_stands(tmp_path: Path) -> None:
     assert said.rotation.shape == (40, 3, 3)
     gap = said.gap(readings)
     np.testing.assert_allclose(gap.ravel(), found.gap, atol=1e-9)
+    told = known_model(found).uncertainty
+    assert told is not None and told.noise == pytest.approx(SIGMA)
     kept = "joint_springs:j2.stiffness"
     held = sk.fit(model, readings, fix=[kept])
     assert kept not in {p.name for p in held.parameters}

@@ -17,9 +17,9 @@ from sk120stiff.explain.answer.document import BEST_GUESS, micrometres, paramete
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
-from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.absolute.remainder import remainder_entry
-from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
+from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
 from sk120stiff.model import Parameter, write_model
 from sk120stiff.model.predicted import predict_positions, prediction_table
 
@@ -95,14 +95,14 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
 def save_positions(answer: Explained, out: Path, provenance: Mapping[str, str]) -> dict[str, Any]:
     """Write verdict, model and gaps, all in one moment; the content of verdict.json."""
     document = verdict_of_positions(answer)
-    fitted = replace(known_calibration(answer.final), provenance=dict(provenance))
+    fitted = replace(known_model(answer.final), provenance=dict(provenance))
     readings = replace(answer.readings, use=answer.readings.use & ~answer.final.wild)
     predicted = predict_positions(fitted, load_cases_of(fitted.robot, readings))
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
         write_atomically(out / "gaps.csv", csv_text(prediction_table(readings, predicted).items()))
         if answer.guess is not None:
-            guess = replace(known_calibration(answer.guess), provenance=dict(provenance))
+            guess = replace(known_model(answer.guess), provenance=dict(provenance))
             write_model(guess, out / BEST_GUESS)
         if answer.following is not None:
             write_atomically(out / NEXT_POSES, _next_csv(answer.following))
