@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from sk120stiff.explain.options import Options
     from sk120stiff.explain.run import explain
     from sk120stiff.exports import export
-    from sk120stiff.identify.estimate import fit
     from sk120stiff.identify.fit import Fit
+    from sk120stiff.identify.run import fit
     from sk120stiff.measurements import (
         Measurements,
         NoiseModel,
@@ -65,8 +65,8 @@ _HOME = {
         "sk120stiff.explain.options": "Options",
         "sk120stiff.explain.run": "explain",
         "sk120stiff.exports": "export",
-        "sk120stiff.identify.estimate": "fit",
         "sk120stiff.identify.fit": "Fit",
+        "sk120stiff.identify.run": "fit",
         "sk120stiff.measurements": "Measurements NoiseModel read read_measurements "
         "write_measurements",
         "sk120stiff.model": "Model base_model joint_spring_model loaded_stiffness predict "

@@ -104,3 +104,22 @@ def test_notebooks_show_tables_that_are_escaped(readings, found) -> None:
         assert "<table" in page and "<b>" not in page
     assert "… 5 more rows" in named._repr_html_()
     assert "joint_6_t" in found.model.robot._repr_html_()
+
+
+def test_what_a_model_says_and_makes_are_tables_too(readings, found) -> None:
+    load = [0.0, 0.0, -490.0, 0.0, 0.0, 0.0]
+    parameter = found.parameters[0]
+    assert repr(parameter) == (
+        f"<Parameter joint_springs:joint_1_s.stiffness = {parameter.value:.4g} ± "
+        f"{parameter.std:.2g} N*m/rad>"
+    )
+    said = sk.predict(found.model, readings)
+    for item, told in (
+        (sk.CATALOGUE, "base_rocking"),
+        (said, "x [µm]"),
+        (replace(said, position=said.displacement), "x [mm]"),
+        (sk.stiffness(found.model, [0, 0.2, -0.3, 0, -1, 0], load), "principal stiffness"),
+        (sk.simulate(found.model, readings, seed=1), "exact dx"),
+    ):
+        page = item._repr_html_()
+        assert "<table" in page and told in page and "nan" not in page

@@ -12,8 +12,7 @@ import typer
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.measurements import Measurements
-from sk120stiff.plan import Cell, assumed_around, cell_from_data, read_cell
+from sk120stiff.plan import Cell, assumed_around, read_cell
 from sk120stiff.plan.rig import Rig
 from sk120stiff.robot import Robot
 
@@ -79,19 +78,6 @@ def assumed_at_work(robot: Robot, cell: Cell) -> tuple[str, ...]:
     if cell.tool is None:
         said.append("The tool has no shape: it may touch.")
     return (*said, *assumed_around(robot, cell))
-
-
-def as_measured(robot: Robot, cell: Cell, known: Measurements | None) -> Cell:
-    """The cell with floor and directions as readings had them, where it says nothing of them."""
-    if known is None:
-        return cell
-    wrench = known.wrench
-    if known.force_frame == "tool":
-        turn = robot.screws(known.joints).rotation
-        wrench = np.concatenate(
-            [np.einsum("nij,nj->ni", turn, part) for part in (wrench[:, :3], wrench[:, 3:])], axis=1
-        )
-    return cell_from_data(robot, cell, known.joints, wrench, known.point)
 
 
 def height_words(

@@ -12,13 +12,14 @@ import typer
 from sk120stiff.arrays import largest, rms
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
 from sk120stiff.cli.compensate_files import (
-    Judged,
     check_sheet,
+    measured_keys,
     measured_words,
     origin,
     placement_columns,
     settings_of,
     write_program,
+    write_sheet,
 )
 from sk120stiff.cli.compensate_path import (
     CHORD,
@@ -26,7 +27,6 @@ from sk120stiff.cli.compensate_path import (
     PathOptions,
     open_path,
     with_joints,
-    with_load_in_base,
 )
 from sk120stiff.cli.compensate_words import (
     branch_keys,
@@ -56,6 +56,7 @@ from sk120stiff.programs.placing import TOOL_DOWN
 from sk120stiff.units import parse_size
 from sk120stiff.workspace import (
     Compensation,
+    Judged,
     branch_of,
     compensate,
     elastic_arm,
@@ -194,7 +195,8 @@ def command(
             ),
         )
     given, part, facts, _ = opened
-    given = with_load_in_base(given, robot, nominal, load_axes, at)
+    if load_axes == LoadAxes.tool:
+        given = given.turned_to_base(robot, nominal, at)
     if given.joints is not None and given.position is not None:
         facts = (*facts, "Its joints are driven; the positions beside them agree.")
     facts = (*facts, *(point_words(believed) if at in (None, robot.tool_frame) else ()))
@@ -223,7 +225,7 @@ def command(
     uncertainty = standing_uncertainty(judge, found.a, given.wrench, frame=at)
     said = branch_words(branch, robot)
     judged = Judged(given, judge, nominal, at, part, found.before, after, uncertainty, measured)
-    came_back = judged.measured_keys()
+    came_back = measured_keys(judged)
     about = standing_words(judge, uncertainty)
     used = None
     if language is None:
@@ -236,7 +238,7 @@ def command(
         )  # fmt: skip
     if sheet is not None:
         told = [*origin(str(against or model), judge, path)[1:], *facts, said]
-        judged.write(sheet, str(against or model), path, told, about)
+        write_sheet(judged, sheet, str(against or model), path, told, about)
     document = {
         "robot": robot.name,
         "rows": given.count,

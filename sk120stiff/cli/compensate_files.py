@@ -9,9 +9,7 @@ import hashlib
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +17,6 @@ import numpy as np
 
 from sk120stiff import __version__
 from sk120stiff.arrays import Array
-from sk120stiff.cli.compensate_words import root_mean_square
 from sk120stiff.cli.opening import model_file
 from sk120stiff.errors import InputError, warn
 from sk120stiff.files import read_bytes, write_atomically
@@ -29,15 +26,7 @@ from sk120stiff.programs.bad_targets import refuse_bad_targets
 from sk120stiff.programs.building import build
 from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.robot import Robot, find_robot
-from sk120stiff.workspace import (
-    Compensation,
-    LoadedPath,
-    Returned,
-    Standing,
-    StandingUncertainty,
-    read_returned,
-    standing_budget,
-)
+from sk120stiff.workspace import Compensation, Judged, LoadedPath
 
 PLACE = 6  # numbers of a place: more joints than these are not determined by it
 
@@ -154,96 +143,50 @@ def check_sheet(sheet: Path | None) -> None:
     will_draw(sheet)
 
 
-@dataclass(frozen=True, eq=False)
-class Judged:
-    """What is known of a corrected path.
-
-    Attributes:
-        path: The points, and the model that judges them.
-        nominal: (N, n) joints without correction [rad or m].
-        frame: The frame that is led along the path; None: the tool frame.
-        part: (4, 4) the path's axes in the base.
-        before, after, uncertainty: Where the tool stands, and ±.
-        measured: The file of points that came back, if any.
-    """
-
-    path: LoadedPath
-    model: Model
-    nominal: Array
-    frame: str | None
-    part: Array
-    before: Standing
-    after: Standing
-    uncertainty: StandingUncertainty | None
-    measured: Path | None
-
-    @property
-    def meant(self) -> Array:
-        """(N, 3) where the tool is meant to stand, axes of the path [m]."""
-        place = self.model.robot.placement(self.nominal, self.frame)
-        return np.asarray((place[:, :3, 3] - self.part[:3, 3]) @ self.part[:3, :3])
-
-    def in_path(self, away: Array) -> Array:
-        """Displacements (N, 3) of the base's axes in those of the path."""
-        return np.asarray(away @ self.part[:3, :3])
-
-    @cached_property
-    def returned(self) -> tuple[Returned, ...]:
-        """What was measured."""
-        return () if self.measured is None else read_returned(self.measured, self.path, self.meant)
-
-    def measured_keys(self) -> dict[str, dict[str, Any]]:
-        """The key `measured`."""
-        return {
-            each.run: {
-                "points": int(each.seen.sum()),
-                "rms_um": 1e6 * each.rms,
-                "max_um": 1e6 * float(np.nanmax(np.linalg.norm(each.away, axis=1))),
-                "constant_um": 1e6 * each.constant,
-                "about_constant_um": 1e6 * each.about_constant,
-                "off_prediction_um": 1e6 * each.apart(self.in_path(getattr(self, each.run).away)),
-            }
-            for each in self.returned
+def measured_keys(judged: Judged) -> dict[str, dict[str, Any]]:
+    """The key `measured`."""
+    return {
+        each.run: {
+            "points": int(each.seen.sum()),
+            "rms_um": 1e6 * each.rms,
+            "max_um": 1e6 * float(np.nanmax(np.linalg.norm(each.away, axis=1))),
+            "constant_um": 1e6 * each.constant,
+            "about_constant_um": 1e6 * each.about_constant,
+            "off_prediction_um": 1e6 * judged.off_prediction(each),
         }
+        for each in judged.returned
+    }
 
-    def std(self) -> Array | None:
-        """(N,) standard distance of a prediction [m]; None where it is not known."""
-        if self.uncertainty is None or not np.isfinite(
-            root_mean_square(self.uncertainty.std_parameters)
-        ):
-            return None
-        left = self.uncertainty.std_remainder
-        return np.asarray(np.hypot(self.uncertainty.std_parameters, 0.0 if left is None else left))
 
-    def write(
-        self,
-        sheet: Path,
-        named: str,
-        source: Path,
-        facts: Sequence[str],
-        uncertainty: Sequence[str],
-    ) -> None:
-        """Write the page."""
-        from sk120stiff.show import reproducibility
-        from sk120stiff.show.stories import PathSheet
+def write_sheet(
+    judged: Judged,
+    sheet: Path,
+    named: str,
+    source: Path,
+    facts: Sequence[str],
+    uncertainty: Sequence[str],
+) -> None:
+    """Write the page."""
+    from sk120stiff.show import reproducibility
+    from sk120stiff.show.stories import PathSheet
 
-        file = model_file(named)
-        command = " ".join(["sk120stiff", *(shlex.quote(word) for word in sys.argv[1:])])
-        inputs = [each for each in (file, source, self.measured) if each is not None]
-        PathSheet(
-            path=source.name,
-            robot=self.model.robot.name,
-            lines=self.path.table.lines,
-            position=self.meant,
-            before=self.in_path(self.before.away),
-            after=self.in_path(self.after.away),
-            std=self.std(),
-            uncertainty=uncertainty,
-            shares=standing_budget(self.model, self.nominal, self.path.wrench, frame=self.frame),
-            measured=self.returned,
-            facts=facts,
-            reproducibility=reproducibility(command, inputs),
-        ).report().write(sheet)
+    file = model_file(named)
+    command = " ".join(["sk120stiff", *(shlex.quote(word) for word in sys.argv[1:])])
+    inputs = [each for each in (file, source, judged.measured) if each is not None]
+    PathSheet(
+        path=source.name,
+        robot=judged.model.robot.name,
+        lines=judged.path.table.lines,
+        position=judged.meant,
+        before=judged.in_path(judged.before.away),
+        after=judged.in_path(judged.after.away),
+        std=None if judged.uncertainty is None else judged.uncertainty.std,
+        uncertainty=uncertainty,
+        shares=judged.shares(),
+        measured=judged.returned,
+        facts=facts,
+        reproducibility=reproducibility(command, inputs),
+    ).report().write(sheet)
 
 
 def measured_words(found: Mapping[str, Mapping[str, Any]]) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import NamedTuple
@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, Refusal, warn
+from sk120stiff.errors import InputError, warn
 from sk120stiff.programs import READERS
-from sk120stiff.programs.bad_targets import turned_over
+from sk120stiff.programs.bad_targets import least_turn
 from sk120stiff.programs.placing import TOOL_DOWN, part_frame, placed, tool_rotation
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy
@@ -135,8 +135,7 @@ def with_joints(
 ) -> tuple[OpenedPath, Array]:
     """The path with its joints (N, n), the tool turned about its axis where that is needed.
 
-    A machining program leaves that turn open. Zero is tried first, then half and quarter turns:
-    the first at which the whole path is reached and no joint has to pass a limit.
+    A machining program leaves that turn open.
 
     Args:
         find: Joints of a path; refuses where a point cannot be reached.
@@ -144,32 +143,9 @@ def with_joints(
     Raises:
         Refusal: A point cannot be reached, however the tool is turned.
     """
-    found: tuple[OpenedPath, Array] | None = None
-    refused: Refusal | None = None
-    for degrees in (0, 180, 90, -90) if opened.turned else (0,):
-        path = opened.turned(np.radians(degrees)) if opened.turned and degrees else opened.path
-        try:
-            a = find(path)
-        except Refusal as error:
-            refused = refused or error
-            continue
-        said = f"The tool is turned by {degrees} deg about its axis, which keeps joints from "
-        facts = (*opened.facts, f"{said}their limits.") if degrees else opened.facts
-        here = opened._replace(path=path, facts=facts), a
-        if not turned_over(robot, a).any():
-            return here
-        found = found or here
-    if found is None:
-        raise refused or Refusal("the arm cannot reach this path")
-    return found
-
-
-def with_load_in_base(
-    path: LoadedPath, robot: Robot, a: Array, axes: LoadAxes, frame: str | None
-) -> LoadedPath:
-    """The path with its loads in base axes; the tool stands at joints (N, n)."""
-    if axes == LoadAxes.base:
-        return path
-    R = robot.placement(a, frame)[:, :3, :3]
-    turned = [np.einsum("nij,nj->ni", R, path.wrench[:, k : k + 3]) for k in (0, 3)]
-    return replace(path, wrench=np.concatenate(turned, axis=1))
+    if opened.turned is None:
+        return opened, find(opened.path)
+    degrees, path, a = least_turn(robot, opened.turned, find)
+    said = f"The tool is turned by {degrees} deg about its axis, which keeps joints from "
+    facts = (*opened.facts, f"{said}their limits.") if degrees else opened.facts
+    return opened._replace(path=path, facts=facts), a

@@ -73,10 +73,10 @@ def standing_keys(uncertainty: StandingUncertainty | None) -> dict[str, object]:
     """The key `uncertainty`, what it adds to that of other commands."""
     if uncertainty is None:
         return {}
-    left = uncertainty.std_remainder
+    own, left = uncertainty.rms
     return {
-        "after_std_parameters_um": root_mean_square(uncertainty.std_parameters) * 1e6,
-        "after_std_remainder_um": None if left is None else root_mean_square(left) * 1e6,
+        "after_std_parameters_um": own * 1e6,
+        "after_std_remainder_um": None if left is None else left * 1e6,
         "unknown_because": blame_reason(uncertainty.blame) or None,
     }
 
@@ -87,20 +87,13 @@ def standing_words(model: Model, uncertainty: StandingUncertainty | None) -> lis
         return sentences(model, None, None)
     if uncertainty.blame:
         return [f"How far off it stands in truth is unknown: it {blame_reason(uncertainty.blame)}."]
-    own, left = root_mean_square(uncertainty.std_parameters), 0.0
+    own, left = uncertainty.rms
     words = f"{own * 1e6:.2g} µm from the parameters"
-    if uncertainty.std_remainder is None:
+    if left is None:
         words += f"; {NO_REMAINDER}"
     else:
-        left = root_mean_square(uncertainty.std_remainder)
         words += f", {left * 1e6:.2g} µm from what the model leaves unexplained"
-    return [f"After ± {np.hypot(own, left) * 1e6:.2g} µm: one standard distance, {words}."]
-
-
-def root_mean_square(std: Array) -> float:
-    """Over the points that have an equilibrium; infinite if one of them is unknown."""
-    there = std[~np.isnan(std)]
-    return float(np.sqrt(np.mean(there**2))) if len(there) else float("nan")
+    return [f"After ± {np.hypot(own, left or 0.0) * 1e6:.2g} µm: one standard distance, {words}."]
 
 
 def point_words(model: Model) -> tuple[str, ...]:

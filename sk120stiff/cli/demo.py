@@ -14,9 +14,10 @@ from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.outputs import write_pages
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.effects import all_effects, load_cases_of
-from sk120stiff.explain import explain, verdict_document
+from sk120stiff.explain import verdict_document
 from sk120stiff.explain.answer.saving import plan_of, replacing_results
 from sk120stiff.explain.candidates.absorbed import absorbed
+from sk120stiff.explain.run import explain_displacements
 from sk120stiff.files import write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import fit
@@ -67,7 +68,7 @@ def _hidden_cause(data: Path, out: Path, tell: Told) -> tuple[HiddenCause, dict[
     holdout = data.with_name(f"{data.stem}_holdout.csv")
     readings, robot = open_data(data)
     others, _ = open_data(holdout)
-    answer = explain(
+    answer = explain_displacements(
         base_model(robot),
         readings,
         holdout=others,
@@ -116,7 +117,9 @@ def demo_of(readings: Measurements, robot: Robot, tell: Told) -> Demo:
     found = fit(paper, readings, method="trf")
     other = fit(paper, readings, method="lm")
     tell(10, 100)
-    answer = explain(paper, readings, progress=lambda _, share: tell(10 + round(25 * share), 100))
+    answer = explain_displacements(
+        paper, readings, progress=lambda _, share: tell(10 + round(25 * share), 100)
+    )
     load_cases = load_cases_of(robot, readings.masked())
     present = {effect.id for effect in found.model.effects}
     absent = [

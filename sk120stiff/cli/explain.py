@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from sk120stiff.cli.calibration import refuse_unused
 from sk120stiff.cli.cell import CellOption, opened_cell
 from sk120stiff.cli.explain_output import (
     Task,
@@ -21,9 +20,10 @@ from sk120stiff.cli.opening import open_data, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, SeedOption
 from sk120stiff.cli.positions import positions_answer
 from sk120stiff.cli.tables import progress_bar
-from sk120stiff.explain import Options, explain
+from sk120stiff.explain import Explained, Options, explain
 from sk120stiff.explain.options import MOST_EFFECTS
 from sk120stiff.explain.priors import priors_from
+from sk120stiff.identify import refuse_for_positions
 from sk120stiff.model import Model
 
 
@@ -78,17 +78,17 @@ def command(
         seed=seed,
         cell=opened_cell(robot, cell, data, model),
     )
-    if readings.absolute is not None:
-        refuse_unused(data, {
+    positions = readings.absolute is not None
+    if positions:
+        refuse_for_positions(readings, **{
             "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,
             "--alpha": alpha != Options.alpha, "--prior": prior,
         })  # fmt: skip
-        base = Model(robot) if model is None else start_model(robot, model)
-        return positions_answer(base, readings, others, options, data, out, report=not no_report)
+    start = Model(robot) if positions and model is None else start_model(robot, model)
     inputs = [data, data.with_suffix(".yaml"), *(file for file in (holdout, model) if file)]
     with progress_bar("explain") as report:
         answer = explain(
-            start_model(robot, model),
+            start,
             readings,
             holdout=others,
             options=options,
@@ -96,4 +96,6 @@ def command(
         )
         task = Task(readings, data, inputs, holdout, seed)
         document = write_answer(answer, task, out, report=not no_report, progress=report)
+    if isinstance(answer, Explained):
+        return positions_answer(answer, document, out)
     return Answer(document, parts(answer, readings, out, report=document.get("report")))

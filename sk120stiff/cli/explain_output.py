@@ -11,8 +11,9 @@ import numpy as np
 from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.outputs import refuse_foreign, will_write_into, write_pages
+from sk120stiff.cli.positions import yielding
 from sk120stiff.cli.tables import table
-from sk120stiff.explain import Explanation
+from sk120stiff.explain import Explained, Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
@@ -54,7 +55,7 @@ def check_folder(out: Path) -> None:
 
 
 def write_answer(
-    answer: Explanation,
+    answer: Explanation | Explained,
     task: Task,
     out: Path,
     *,
@@ -76,12 +77,20 @@ def write_answer(
     return {**document, "out": out, "model": out / "model.yaml", **pages}
 
 
-def _write_pages(answer: Explanation, task: Task, out: Path) -> dict[str, Path]:
+def _write_pages(answer: Explanation | Explained, task: Task, out: Path) -> dict[str, Path]:
     """Scene and report, each where it can be made."""
-    from sk120stiff.show import reproducibility
+    from sk120stiff.show import reproducibility, scene_of_model
     from sk120stiff.show.stories import explain_scene
 
     command = provenance(task.data, task.readings)["command"]
+    facts = reproducibility(command, task.inputs, seed=task.seed)
+    if isinstance(answer, Explained):
+        model, told = yielding(answer.final.model), answer.report
+        return write_pages(
+            out,
+            lambda: scene_of_model(model, title=model.robot.name),
+            lambda _: told(data=task.data.name, reproducibility=facts),
+        )
     return write_pages(
         out,
         lambda: explain_scene(answer, subtitle=task.data.name, model_file="model.yaml"),
@@ -90,7 +99,7 @@ def _write_pages(answer: Explanation, task: Task, out: Path) -> dict[str, Path]:
             scene=scene,
             scene_link="scene.html" if scene else "",
             next_poses="" if answer.next_poses is None else NEXT_POSES,
-            reproducibility=reproducibility(command, task.inputs, seed=task.seed),
+            reproducibility=facts,
             **({} if task.holdout is None else {"heldout": _heldout(task.holdout)}),
         ),
     )

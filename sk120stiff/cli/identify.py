@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from sk120stiff.cli.calibration import calibration_answer, refuse_unused
+from sk120stiff.cli.calibration import calibration_answer
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import Interval, parameter_rows
 from sk120stiff.cli.opening import model_for, open_data, provenance, start_model
@@ -21,6 +21,7 @@ from sk120stiff.effects import effect
 from sk120stiff.errors import InputError, warn
 from sk120stiff.files import will_write
 from sk120stiff.identify import (
+    Calibration,
     Compared,
     Fit,
     HeldOut,
@@ -33,6 +34,7 @@ from sk120stiff.identify import (
     lack_of_fit,
     profile_intervals,
     refitted,
+    refuse_for_positions,
     weak_directions,
     yardstick,
 )
@@ -90,27 +92,23 @@ def command(
     for name in effects or ():
         start = with_effect(start, name, readings)
     if readings.absolute is not None:
-        refuse_unused(data, {
+        refuse_for_positions(readings, **{
             "--method": method is not Method.trf, "--free": free, "--robust": robust,
             "--profile": profile, "--held-out": leave_out, "--compare": others,
         })  # fmt: skip
-        return calibration_answer(start, readings, data, fix or (), out, waves=waves)
-    if not waves:
-        raise InputError(
-            "only positions show waves of a gear, and these readings are displacements",
-            where="--no-waves",
-            remedy="Leave it out.",
-        )
-    start = with_freedom(start, fix or (), free)
-    doubts = look(plain, readings)
-    refuse_unbelievable(doubts, plain, readings)
-    for said in doubts.sentences:
-        warn(said)
-    readings, told = without_copies(readings)
-    if told:
-        warn(told)
+    else:
+        start = with_freedom(start, fix or (), free)
+        doubts = look(plain, readings)
+        refuse_unbelievable(doubts, plain, readings)
+        for said in doubts.sentences:
+            warn(said)
+        readings, told = without_copies(readings)
+        if told:
+            warn(told)
     with progress_bar("identify"):
-        found = fit(start, readings, method=method.value, robust=robust)
+        found = fit(start, readings, method=method.value, robust=robust, fix=fix or (), waves=waves)
+    if isinstance(found, Calibration):
+        return calibration_answer(found, readings, data, out)
     wrong = contradiction(found)
     if wrong is not None:
         warn(wrong)

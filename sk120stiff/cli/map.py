@@ -11,7 +11,6 @@ import typer
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.map_postures import postures
 from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
     AtOption,
@@ -35,10 +34,12 @@ from sk120stiff.workspace import (
     JointGrid,
     LoadSummary,
     MapJob,
+    MapPostures,
     MapReport,
     PositionGrid,
     damaged_map,
     elastic_arm,
+    map_postures,
     open_map,
     parse_axes,
     summarise_map,
@@ -171,7 +172,7 @@ def command(
     if job.bends:
         parts += _bent(arm, believed, loads, loads_found)
     if points.cartesian:
-        document["postures"], text = postures(arm_robot, out, led=start is not None)
+        document["postures"], text = _postures(map_postures(arm_robot, out), led=start is not None)
         parts.append(text)
     if drawn:
         parts.append(f"Figures: {len(drawn)} files in {figures}")
@@ -333,3 +334,27 @@ def _place(arm: ElasticArm, coordinates: dict[str, float]) -> str:
         f"{name} {np.degrees(value):.1f}°" if name in turns else f"{name} {value * 1e3:.0f} mm"
         for name, value in coordinates.items()
     )
+
+
+def _postures(found: MapPostures | None, *, led: bool) -> tuple[dict[str, object], str]:
+    """The key `postures`, and a sentence; was the arm led from a start pose?"""
+    if found is None:
+        return {"elbow_up": 0, "elbow_down": 0}, "No point was reached."
+    lowest = f"{found.lowest_joint}, {1e3 * found.lowest:.0f} mm"
+    if found.sunk:
+        warn(
+            f"at {found.sunk} points a joint lies below the base plane and below the point itself "
+            f"({lowest.replace(',', ' down to', 1)}): choose the branch with --start"
+        )
+    how = "the branch of the start pose" if led else "at each point the stiffest branch found"
+    text = (
+        f"Postures, {how}: elbow up at {found.elbow_up} points, down at {found.elbow_down}; "
+        f"lowest joint {lowest}."
+    )
+    return {
+        "elbow_up": found.elbow_up,
+        "elbow_down": found.elbow_down,
+        "lowest_joint": found.lowest_joint,
+        "lowest_m": found.lowest,
+        "below_base_and_point": found.sunk,
+    }, text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -10,7 +11,6 @@ from sk120stiff.arrays import rms
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
-from sk120stiff.cli.positions import predicted_positions
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.data_checks import look
@@ -18,10 +18,7 @@ from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import warn
 from sk120stiff.files import csv_text, will_write, write_atomically
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import (
-    Predicted,
-    warn_of_far_bend,
-)
+from sk120stiff.model import Model, Predicted, predict, warn_of_far_bend
 from sk120stiff.model.predicted import (
     predict_what_holds,
     prediction_table,
@@ -44,7 +41,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     readings, robot = open_data(data)
     believed = model_for(robot, model)
     if readings.absolute is not None:
-        return predicted_positions(believed, readings, out)
+        return _positions(believed, readings, out)
     for said in look(believed, readings).sentences:
         warn(said)
     with progress_bar("predict"):
@@ -52,12 +49,12 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     columns = prediction_table(readings, predicted)
     if out is not None:
         write_atomically(out, csv_text(columns.items()))
-    measured = readings.displacement
+    gap = predicted.gap(readings)
     per_pose: list[dict[str, object]] = []
     left: float | None = None
-    used = readings.use & np.isfinite(predicted.displacement).all(axis=1)
-    if measured is not None and used.any():
-        gap, told = measured - predicted.displacement, readings.read & used[:, None]
+    told = np.isfinite(gap) & readings.use[:, None]
+    used = told.any(axis=1)
+    if used.any():
         left = 1e6 * rms(gap[told])
         for label in readings.poses:
             rows = readings.rows_of(label)
@@ -77,6 +74,33 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     if lost:
         count = f"{len(lost)} of {readings.n_readings} rows"
         parts.append(f"{count} have no known uncertainty: {lost[0]}.")
+    return Answer(document, parts)
+
+
+def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer:
+    """Where a model has the marker at every reading, and how far the readings are off."""
+    predicted = predict(model, readings)
+    columns = prediction_table(readings, predicted)
+    if out is not None:
+        write_atomically(out, csv_text(columns.items()))
+    document: dict[str, object] = {"rows": rows_of(columns), "out": out}
+    parts: list[object] = []
+    gauge = np.array(columns.get("gap_d[um]", []), dtype=float)
+    if gauge.size and np.isfinite(gauge[readings.use]).any():
+        gauge = gauge[readings.use & np.isfinite(gauge)]
+        document["rms_um"] = rms(gauge)
+        parts.append(f"Gap over {len(gauge)} readings of gauges: {rms(gauge):.4g} µm rms.")
+    gap = 1e6 * predicted.gap(readings)[readings.use]
+    gap = gap[np.isfinite(gap).all(axis=1)]
+    if len(gap):
+        left, far = rms(gap), float(np.linalg.norm(gap, axis=1).mean())
+        document |= {"rms_um": left, "mean_distance_um": far}
+        parts.append(
+            f"Gap over {len(gap)} positions: {left:.4g} µm rms per axis, "
+            f"{far:.4g} µm mean distance."
+        )
+    if out is not None:
+        parts.append(f"Written to {out}.")
     return Answer(document, parts)
 
 

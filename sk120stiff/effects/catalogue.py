@@ -48,6 +48,7 @@ from sk120stiff.effects.tracker import ReadingRotation, ReadingScale, ZeroOffset
 from sk120stiff.effects.tracker_frame import TrackerFrame
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError, warn
+from sk120stiff.files import html_table
 from sk120stiff.robot import Robot
 
 GROUP = "sk120stiff.effects"  # of the entry points by which packages bring effects
@@ -150,6 +151,15 @@ class Catalogue:
         shown = self.names[:PRINTED]
         more = len(self.names) - len(shown)
         return f"Catalogue({', '.join([*shown, *([f'and {more} more'] if more else [])])})"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: every effect, where it acts and its law."""
+        columns = {
+            "effect": self.names,
+            "acts at": [kind.place for kind in self],
+            "law": [kind.equation for kind in self],
+        }
+        return html_table(f"Catalogue of {len(self)} effects", columns)
 
     def effect(
         self, robot: Robot, name: str, where: str | None = None, options: Options | None = None

@@ -1,5 +1,6 @@
 """Find where model and readings disagree, name what is missing, add it, show the gap shrink."""
 
+from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.answer.document import verdict_document
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
 from sk120stiff.explain.findings import Detectable, Evidence, Finding, Step
@@ -14,6 +15,7 @@ __all__ = [
     "DOUBTFUL",
     "Detectable",
     "Evidence",
+    "Explained",
     "Explanation",
     "Finding",
     "Localisation",

@@ -11,6 +11,8 @@ import numpy as np
 from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.explain.advise.best_guess import contenders
 from sk120stiff.explain.advise.consequences import completed
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
@@ -57,8 +59,11 @@ def explain(
     options: Options | None = None,
     catalogue: Catalogue = CATALOGUE,
     progress: Progress | None = None,
-) -> Explanation:
+) -> Explanation | Explained:
     """Find where model and readings disagree, name what is missing, add it, judge the rest.
+
+    Of absolute readings the answer is an `Explained`, with the same verdicts and methods. Effects
+    of the model are taken for granted there: give ``Model(robot)`` to have springs looked for too.
 
     Args:
         model: The base model; its effects are part of every model considered.
@@ -69,8 +74,8 @@ def explain(
         progress: Called with a phrase and a share of the work done.
 
     Raises:
-        InputError: No displacements, too few readings, one pose alone, or an effect that does not
-            exist.
+        InputError: No readings, too few of them, one pose alone, an effect that does not exist, or
+            an option that does nothing for such readings.
         Refusal: The data look written down wrongly, they contradict their stated uncertainty, or
             the base model itself cannot be fitted.
 
@@ -82,6 +87,27 @@ def explain(
         >>> answer.verdict
         'none'
     """
+    if measurements.absolute is not None:
+        return explain_positions(
+            model, measurements, holdout=holdout, options=options, catalogue=catalogue,
+            progress=progress,
+        )  # fmt: skip
+    return explain_displacements(
+        model, measurements, holdout=holdout, options=options, catalogue=catalogue,
+        progress=progress,
+    )  # fmt: skip
+
+
+def explain_displacements(
+    model: Model,
+    measurements: Measurements,
+    *,
+    holdout: Measurements | None = None,
+    options: Options | None = None,
+    catalogue: Catalogue = CATALOGUE,
+    progress: Progress | None = None,
+) -> Explanation:
+    """See `explain`."""
     options = options or Options()
     tell = progress or _silent
     _refuse_unexplainable(model, measurements)
@@ -240,10 +266,10 @@ def _sound(model: Model, measurements: Measurements) -> Measurements:
     refuse_unbelievable(doubts, model, measurements)
     doubts.refuse_to_explain(str(measurements.path or "the measurements"))
     for said in doubts.sentences:
-        warnings.warn(said, ToolkitWarning, stacklevel=3)
+        warnings.warn(said, ToolkitWarning, stacklevel=4)
     single, told = without_copies(measurements)
     if told:
-        warnings.warn(told, ToolkitWarning, stacklevel=3)
+        warnings.warn(told, ToolkitWarning, stacklevel=4)
     return single
 
 

@@ -6,6 +6,7 @@ Every reader of the package notes what it reads, and every writer looks there fi
 
 from sk120stiff.files.cells import csv_text, guarded_cell, plain_cell
 from sk120stiff.files.file_set import together
+from sk120stiff.files.html_table import html_table
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
 from sk120stiff.files.reading import read_bytes, read_text
 from sk120stiff.files.schema_error import schema_error
@@ -15,6 +16,7 @@ from sk120stiff.files.yaml_text import parse_yaml, read_yaml
 __all__ = [
     "csv_text",
     "guarded_cell",
+    "html_table",
     "note_read",
     "parse_yaml",
     "plain_cell",

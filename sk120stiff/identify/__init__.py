@@ -1,5 +1,6 @@
 """Measurements + model become a `Fit`: least squares, uncertainty, what cannot be known."""
 
+from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.checks.comparison import Compared, compare
 from sk120stiff.identify.checks.held_out import (
     HeldOut,
@@ -13,16 +14,17 @@ from sk120stiff.identify.checks.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_
 from sk120stiff.identify.checks.null_space import weak_directions
 from sk120stiff.identify.checks.unseen import unseen_reasons, why_unseen
 from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
-from sk120stiff.identify.estimate import fit, likelier, refuse_unusable
+from sk120stiff.identify.estimate import likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.report import fit_report
+from sk120stiff.identify.run import fit, known_model, refuse_for_positions
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solving import solve, solve_near
-from sk120stiff.identify.uncertainty.known_model import known_model
 from sk120stiff.identify.uncertainty.profile import profile_intervals
 
 __all__ = [
     "DOUBTFUL",
+    "Calibration",
     "Compared",
     "Fit",
     "HeldOut",
@@ -42,6 +44,7 @@ __all__ = [
     "pose_parts",
     "profile_intervals",
     "refitted",
+    "refuse_for_positions",
     "refuse_unusable",
     "solve",
     "solve_near",

@@ -18,7 +18,7 @@ IN_DOUBT = 4.6  # twice the log-likelihood, a tenfold one, that separate zero re
 FEWEST = 2  # readings; one alone leaves nothing to judge a fit by
 
 
-def fit(
+def fit_displacements(
     model: Model,
     measurements: Measurements,
     *,
@@ -26,32 +26,7 @@ def fit(
     method: Method = "trf",
     robust: bool = False,
 ) -> Fit:
-    """Estimate a model's free parameters from readings, at exact equilibrium.
-
-    Args:
-        model: Starting values, and which parameters are free (`Parameter.free`).
-        measurements: Readings with displacements; masked rows are left out.
-        noise: Covariance of the readings. Default: what the data say of themselves (`candidates`).
-            A zero that nobody described is decided by the likelihood of the fits, and in doubt
-            shared; a σ that neither the data nor repeats tell is estimated with the fit.
-        method: ``"trf"`` (trust region, bounds) or ``"lm"`` (Levenberg–Marquardt); both reach the
-            same.
-        robust: Trust readings less that lie far from all others (Huber's loss on whole readings).
-
-    Raises:
-        InputError: No displacements, no loads, nothing free, or too few readings for the
-            parameters.
-        Refusal: The fit did not converge, no equilibrium exists, or the readings show none of the
-            parameters.
-
-    Examples:
-        >>> import sk120stiff as sk
-        >>> folder = sk.bundled_robots()["motoman_sk120"] / "data"
-        >>> readings = sk.read(folder / "table2_measured.csv")
-        >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
-        >>> print(f"{1e6 * found.rms:.1f} µm rms")
-        17.2 µm rms
-    """
+    """See `sk120stiff.identify.run.fit`."""
     refuse_unusable(model, measurements)
     model, used = model.under(measurements.gravity), measurements.masked()
     open_ = [noise] if noise is not None else candidates(used)

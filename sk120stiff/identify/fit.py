@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from scipy import stats
@@ -79,13 +79,13 @@ class Fit:
             for p, seen in zip(self.parameters[:SHOWN], self.identifiable, strict=False)
         )
         more = ", …" if len(self.parameters) > SHOWN else ""
-        return f"<Fit: {1e6 * self.rms:.3g} µm rms; {values}{more}>"
+        return f"<{type(self).__name__}: {self.size}; {values}{more}>"
 
     def _repr_html_(self) -> str | None:
         """What a notebook shows; without pandas it is the line of `repr`."""
         with suppress(MissingPart):
             table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
-            return f"<div><p>Gap {1e6 * self.rms:.3g} µm rms per axis</p>{table}</div>"
+            return f"<div><p>Gap {self.size} per axis</p>{table}</div>"
         return None
 
     def to_frame(self) -> pd.DataFrame:
@@ -128,6 +128,11 @@ class Fit:
     def rms(self) -> float:
         """Root mean square of the gap over all numbers read [m]; NaN without a length."""
         return float(np.sqrt(np.nanmean(self.gap**2))) if self.gap.size else float("nan")
+
+    @property
+    def size(self) -> str:
+        """The gap's root mean square with its unit."""
+        return f"{1e6 * self.rms:.3g} µm rms"
 
     @cached_property
     def small(self) -> tuple[Array, Array]:
@@ -364,7 +369,10 @@ class Fit:
         return np.flatnonzero(weights < 1.0) if weights is not None else np.zeros(0, dtype=np.intp)
 
 
-def with_values(found: Fit) -> Fit:
+AnyFit = TypeVar("AnyFit", bound=Fit)
+
+
+def with_values(found: AnyFit) -> AnyFit:
     """The fit with the estimates and standard errors written into its model."""
     problem = found.problem
     std: list[float | None] = [p.internal_std for p in problem.model.parameters]

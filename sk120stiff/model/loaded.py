@@ -7,7 +7,7 @@ drawn: where two are nearly equal, they push each other apart, and no derivative
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from scipy import stats
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import load_case
 from sk120stiff.errors import Refusal, warn
+from sk120stiff.files import html_table
 from sk120stiff.model.compliance import ModelCompliance, model_compliance, seen_from
 from sk120stiff.model.holding import warn_of_far_bend
 from sk120stiff.model.model import Model
@@ -107,6 +108,22 @@ class LoadedStiffness:
             f"<LoadedStiffness: principal {values} N/µm; deflection {bent:.4g} µm; "
             f"K_theta - K_C is {self.definiteness_of_K_theta_minus_K_C}>"
         )
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: principal stiffness and deflections, with their directions."""
+        bent = {
+            "conventional": self.deflection_conventional,
+            "enhanced": self.deflection_enhanced,
+            "equilibrium": self.deflection_equilibrium,
+        }
+        ways = np.array([*self.principal.directions, *(1e6 * d for d in bent.values())])
+        columns: dict[str, Iterable[object]] = {
+            "": [*["principal stiffness"] * 3, *(f"deflection, {name}" for name in bent)],
+            "size": [*1e-6 * self.principal.values, *np.linalg.norm(ways[3:], axis=1)],
+            "unit": [*["N/µm"] * 3, *["µm"] * 3],
+            **{axis: ways[:, k] for k, axis in enumerate("xyz")},
+        }
+        return html_table(repr(self), columns)
 
 
 def loaded_stiffness(

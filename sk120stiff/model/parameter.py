@@ -20,7 +20,7 @@ TOGETHER = f"identified: known only together with others, {UNTRUSTED} alone"
 ON_BOUND = "identified: on its bound"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Parameter:
     """One parameter of a model.
 
@@ -39,6 +39,10 @@ class Parameter:
     internal_std: float | None = None
     free: bool = True
     origin: str = ""
+
+    def __repr__(self) -> str:
+        error = "" if self.std is None else f" ± {self.std:.2g}"
+        return f"<Parameter {self.name} = {self.value:.4g}{error} {self.spec.unit}>"
 
     @property
     def name(self) -> str:

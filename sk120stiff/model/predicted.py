@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import LoadCases, load_cases_of
-from sk120stiff.errors import Refusal, warn
+from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
+from sk120stiff.errors import InputError, Refusal, warn
+from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
+from sk120stiff.model.pose_reading import read_poses
 from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
 
 
@@ -21,24 +23,40 @@ class Predicted:
     """Predicted readings of N poses and loads.
 
     Attributes:
-        displacement: (N, 3) in the axes of the measurements [m].
+        displacement: (N, 3) by which loads move the point, in the axes of the measurements [m].
         std_parameters: (N, 3) standard uncertainty from that of the parameters [m]; infinite where
             a value counts that the readings of the fit do not show. None: the model stores no
             uncertainty.
         std_remainder: (N, 3) standard size of what the model leaves unexplained [m]; None where
             that is not known.
         blame: For every reading the names of the parameters that make its uncertainty infinite.
+        position, rotation: (N, 3) where the marker stands [m] and (N, 3, 3) axes of the tool, both
+            in the axes of the instrument; None where displacements were read.
     """
 
     displacement: Array
     std_parameters: Array | None = None
     std_remainder: Array | None = None
     blame: tuple[tuple[str, ...], ...] = ()
+    position: Array | None = None
+    rotation: Array | None = None
 
     def __repr__(self) -> str:
+        if self.position is not None:
+            return f"<Predicted: {len(self.position)} positions>"
         largest = 1e6 * float(np.linalg.norm(self.displacement, axis=1).max(initial=0.0))
         known = "without ±" if self.std_parameters is None else "with ±"
         return f"<Predicted: {len(self.displacement)} readings, up to {largest:.4g} µm, {known}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the first readings, with their uncertainty where it is known."""
+        said, unit, factor = self.displacement, "µm", 1e6
+        if self.position is not None:
+            said, unit, factor = self.position, "mm", 1e3
+        columns = {f"{axis} [{unit}]": factor * said[:, k] for k, axis in enumerate(AXES)}
+        if self.std is not None:
+            columns |= {f"± {axis}": factor * self.std[:, k] for k, axis in enumerate(AXES)}
+        return html_table(repr(self), columns)
 
     def __post_init__(self) -> None:
         shape = self.displacement.shape
@@ -53,6 +71,22 @@ class Predicted:
             return None
         left = 0.0 if self.std_remainder is None else self.std_remainder
         return np.asarray(np.hypot(self.std_parameters, left))
+
+    def gap(self, measurements: Measurements) -> Array:
+        """(N, 3) measured minus predicted, of positions where these were read [m]; NaN: not read.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+            >>> readings = sk.read(data)
+            >>> said = sk.predict(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> said.gap(readings).shape
+            (15, 3)
+        """
+        absolute = measurements.absolute
+        read = measurements.displacement if absolute is None else absolute.channels.position
+        said = self.displacement if self.position is None else self.position
+        return np.full_like(said, np.nan) if read is None else np.asarray(read - said)
 
     def among(self, held: Mask) -> Predicted:
         """The same readings among others (M,) that have no prediction: NaN there."""
@@ -76,13 +110,16 @@ class Predicted:
 def predict(model: Model, measurements: Measurements) -> Predicted:
     """What a model says of every row of measurements, or of a plan; ± where that is known.
 
+    Of absolute readings it is where the marker stands; the ± is that of displacements alone.
+
     Args:
         model: Robot, effects, and their uncertainty if it is known.
         measurements: Rows with poses and loads; masked ones are predicted too, displacements are
             not looked at.
 
     Raises:
-        InputError: The joints are not the robot's.
+        InputError: The joints are not the robot's, or the model does not know where the instrument
+            of these positions stands.
         Refusal: The springs cannot hold a load.
 
     Examples:
@@ -90,11 +127,34 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
         >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
         >>> readings = sk.read(data)
         >>> said = sk.predict(sk.base_model(sk.load_robot("motoman_sk120")), readings)
-        >>> gap = readings.displacement - said.displacement  # (N, 3) [m]
+        >>> gap = said.gap(readings)  # (N, 3) [m]
         >>> print(f"{1e6 * (gap**2).mean() ** 0.5:.1f} µm rms")
         26.4 µm rms
     """
-    return predict_with_uncertainty(model, load_cases_of(model.robot, measurements))
+    model = model.under(measurements.gravity)
+    load_cases = load_cases_of(model.robot, measurements)
+    if measurements.absolute is None:
+        return predict_with_uncertainty(model, load_cases)
+    if measurements.absolute.frame == "unknown" and not any(
+        isinstance(effect, Viewpoint) for effect in model.effects
+    ):
+        raise InputError(
+            "the model does not know where the tracker stands",
+            where=str(measurements.path or "measurements"),
+            remedy="Give a model that was fitted to readings of this tracker, as 'identify' and "
+            "'explain' write it.",
+        )
+    return predict_positions(model, load_cases)
+
+
+def predict_positions(model: Model, load_cases: LoadCases) -> Predicted:
+    """Where the marker stands at every reading, as the instrument sees it.
+
+    Raises:
+        Refusal: The springs cannot hold the arm's weight or a load.
+    """
+    seen = read_poses(model, load_cases)
+    return Predicted(model.predict(load_cases), position=seen.position, rotation=seen.rotation)
 
 
 def predict_with_uncertainty(model: Model, load_cases: LoadCases) -> Predicted:
@@ -185,8 +245,10 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
     if any is.
     """
     columns: dict[str, object] = {"pose": list(readings.pose)}
+    of = "d" if predicted.position is None else ""
+    said = predicted.displacement if predicted.position is None else predicted.position
     for k, axis in enumerate(AXES):
-        columns[f"predicted_d{axis}[mm]"] = predicted.displacement[:, k] * 1e3
+        columns[f"predicted_{of}{axis}[mm]"] = said[:, k] * 1e3
     for name, std in (
         ("parameters", predicted.std_parameters),
         ("remainder", predicted.std_remainder),
@@ -194,12 +256,13 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
         if std is not None:
             told = np.where(np.isfinite(std), std, np.nan) * 1e6
             columns |= {f"std_{name}_{axis}[um]": told[:, k] for k, axis in enumerate(AXES)}
-    if readings.displacement is not None:
-        gap = readings.displacement - predicted.displacement
+    read = readings.absolute.channels.position if readings.absolute else readings.displacement
+    if read is not None:
         for k, axis in enumerate(AXES):
-            columns[f"d{axis}[mm]"] = readings.displacement[:, k] * 1e3
+            columns[f"{of}{axis}[mm]"] = read[:, k] * 1e3
         for k, axis in enumerate(AXES):
-            columns[f"gap_{axis}[um]"] = gap[:, k] * 1e6
+            columns[f"gap_{axis}[um]"] = (read - said)[:, k] * 1e6
+    columns |= _of_gauges(readings, predicted.displacement)
     columns["use"] = readings.use.astype(int)
     missing = ~np.isfinite(predicted.displacement).all(axis=1)
     if missing.any():
@@ -208,6 +271,19 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
     if any(reasons):
         columns["std_reason"] = reasons
     return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
+
+
+def _of_gauges(readings: Measurements, moved: Array) -> dict[str, Array]:
+    """Displacement (N, 3) and reading along the directions of gauges; nothing where none was read.
+
+    Cells of rows that no gauge read are empty.
+    """
+    channels = None if readings.absolute is None else readings.absolute.channels
+    if channels is None or channels.shift is None or channels.along is None:
+        return {}
+    d, along = channels.shift, np.einsum("ni,ni->n", channels.along, moved)
+    said = np.where(np.isfinite(d), along, np.nan)
+    return {"predicted_d[mm]": said * 1e3, "d[mm]": d * 1e3, "gap_d[um]": (d - along) * 1e6}
 
 
 def unknown_reasons(predicted: Predicted) -> list[str]:

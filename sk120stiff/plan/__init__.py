@@ -10,13 +10,15 @@ from sk120stiff.plan.discriminate import (
     signature_columns,
 )
 from sk120stiff.plan.feasible import Verdict, feasible
-from sk120stiff.plan.planned import numbered, plan, promised, to_be_taken
+from sk120stiff.plan.places import Places
+from sk120stiff.plan.planned import Plan, numbered, plan, promised, to_be_taken
 from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.rig import Rig
-from sk120stiff.plan.route import Jump, NoWay, Route, jumps, route
+from sk120stiff.plan.route import Jump, NoWay, Route, jumps, route, straight_on
 from sk120stiff.plan.schedule import Schedule, scheduled
 from sk120stiff.plan.simulation import Simulated, as_positions, simulate
 from sk120stiff.plan.surroundings import (
+    as_measured,
     assumed_around,
     assumptions,
     cell_from_data,
@@ -29,6 +31,8 @@ __all__ = [
     "Design",
     "Jump",
     "NoWay",
+    "Places",
+    "Plan",
     "Pool",
     "Rig",
     "Rivalry",
@@ -37,6 +41,7 @@ __all__ = [
     "Simulated",
     "Tracker",
     "Verdict",
+    "as_measured",
     "as_positions",
     "assumed_around",
     "assumptions",
@@ -59,6 +64,7 @@ __all__ = [
     "scheduled",
     "signature_columns",
     "simulate",
+    "straight_on",
     "to_be_taken",
     "well_spread",
 ]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Literal
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,51 +13,144 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.errors import InputError
+from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.model import Model
+from sk120stiff.model import Model, Parameter
 from sk120stiff.plan.cell import Cell
-from sk120stiff.plan.design import d_optimal
-from sk120stiff.plan.discriminate import rivalry
+from sk120stiff.plan.choosing import Chosen, precise, telling
+from sk120stiff.plan.places import Places
 from sk120stiff.plan.pool import Pool, feasible_pool
+from sk120stiff.plan.route import NoWay, Route, in_order
+from sk120stiff.plan.surroundings import as_measured
 from sk120stiff.robot import Robot
 
 POSES = 400  # to choose from
 DIRECTIONS = 12  # of the load at each of them
+USUAL = 1e-5  # m; standard uncertainty of a reading of which nobody said it
 LITTLE = 0.5  # of a variance: readings that leave more of it tell less than was plausible before
+MOST_LEFT_OUT = 5  # poses to which no way is found, before that is the answer
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a plan will tell of a parameter.
+
+    Attributes:
+        std: Standard error of the internal value; infinite where it tells less than is plausible.
+        reason: Why it cannot be seen; None: it can.
+    """
+
+    parameter: Parameter
+    std: float
+    reason: str | None
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Plan(Measurements):
+    """Poses and loads to measure next: `Measurements` that are still to be taken.
+
+    Attributes:
+        model: For which they were chosen.
+        chosen: Of which candidates, and how much better than others.
+        standard: Standard uncertainty of one reading per axis that was taken for granted [m].
+        cell: What they keep to.
+        known: Readings that were taken already, or None.
+        seed: Of the poses that were chosen from.
+        remarks: What was done so that they can be driven, and what nobody checked, in sentences.
+        way: Order and way of least driving, where it was asked for.
+        left_out: Poses to which no free way was found; others stand in their places.
+    """
+
+    model: Model
+    chosen: Chosen
+    standard: float
+    cell: Cell
+    known: Measurements | None
+    seed: int
+    remarks: tuple[str, ...]
+    way: Route | None
+    left_out: int
+
+    @classmethod
+    def of(cls, readings: Measurements, **told: Any) -> Plan:
+        """Readings to be taken, with what is told beside them."""
+        own = {each.name: getattr(readings, each.name) for each in fields(Measurements)}
+        return cls(**own, **told)
+
+    @cached_property
+    def gain(self) -> tuple[float, float]:
+        """Precision, or evidence, over that of random and of well-spread readings (medians)."""
+        return self.chosen.gains(self.seed)
+
+    @cached_property
+    def expected(self) -> tuple[Expected, ...]:
+        """What will be known of the parameters that count."""
+        model = self.model
+        std = dict(
+            zip(
+                (model.names[k] for k in model.free),
+                promised(model, self, self.standard, self.known).tolist(),
+                strict=True,
+            )
+        )
+        load_cases, out = load_cases_of(model.robot, self), []
+        for name in self.chosen.names if self.chosen.evidence is None else ():
+            parameter = model.parameter(name)
+            why = why_unseen(load_cases, parameter)
+            if why is None and not np.isfinite(std[name]):
+                why = self.chosen.untold.get(name, TOO_LITTLE)
+            out.append(Expected(parameter, std[name], why))
+        return tuple(out)
+
+
+TOO_LITTLE = "these readings tell less of it than is plausible of any arm"
 
 
 def plan(
     model: Model,
-    count: int,
+    count: int | None = None,
     *,
     loads: int = 1,
     between: tuple[Effect, Effect] | None = None,
-    parameters: Sequence[str] | None = None,
+    parameters: Sequence[str] = (),
     force: float = 400.0,
     point: ArrayLike | None = None,
-    sigma: float = 1e-5,
+    sigma: float | None = None,
     cell: Cell | None = None,
+    known: Measurements | None = None,
+    places: Places | None = None,
+    candidates: int = POSES,
+    directions: int = DIRECTIONS,
+    drive: bool = False,
     seed: int = 0,
-) -> Measurements:
+) -> Plan:
     """The poses and loads to measure next, such as can be driven.
 
     D-optimal for the parameters that count, or T-optimal between two effects.
 
     Args:
         model: Model with its values; its free parameters are to be known.
-        count: Number of poses.
+        count: Number of poses; with `places` one at each by default.
         loads: Number of loads at each of them.
         between: Two effects that are to be told apart instead.
         parameters: Full names of the parameters that count, all free ones by default.
         force: Size of the loads [N], less where the motors cannot hold it.
-        point: (3,) measured and loaded point in the tool frame [m]; its origin by default.
-        sigma: Standard uncertainty of one reading per axis [m].
-        cell: What poses and loads must keep to; what is guessed without one is in `Pool.remarks`.
+        point: (3,) measured and loaded point in the tool frame [m]; that of `known`, or the
+            frame's origin, by default.
+        sigma: Standard uncertainty of one reading per axis [m]; what `known` states, or 10 µm, by
+            default.
+        cell: What poses and loads must keep to; what is guessed without one is in `Plan.remarks`.
+        known: Readings there are already.
+        places: Poses to choose from, see `sk120stiff.workspace.places_of`; poses all over the
+            joints' ranges by default.
+        candidates, directions: Number of poses to choose from, and of load directions at each.
+        drive: Order the poses for least driving, by a way that is free of collisions.
         seed: Of the poses that are chosen from.
 
     Raises:
         InputError: Nothing is free, a name is unknown, no pose is left to choose from, or force or
             noise is not positive.
+        Refusal: Next to no pose can be had, or no free way leads to several of them.
 
     Examples:
         >>> import sk120stiff as sk
@@ -63,29 +158,83 @@ def plan(
         >>> next_readings = sk.plan(model, 6, point=[-0.06, 0.04, 0.15])
         >>> next_readings.n_readings, next_readings.displacement is None
         (6, True)
+        >>> print(f"{next_readings.gain[0]:.1f} times as precise as random poses")
+        1.7 times as precise as random poses
     """
-    for name, value in (("force", force), ("sigma", sigma)):
+    stated = USUAL if known is None else known.noise.sigma or USUAL
+    standard = stated if sigma is None else sigma
+    for name, value in (("force", force), ("sigma", standard)):
         if not 0.0 < value < np.inf:
             raise InputError(f"a plan with {name} = {value:g}", remedy="Give a positive number.")
-    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    if count is None and places is None:
+        raise InputError("nothing says how many poses to plan", remedy="Give count, or places.")
+    robot, before = model.robot, None
+    at = force_at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
+    within = cell or Cell()
+    if known is not None:
+        before = Pool(load_cases_of(robot, known.masked()))
+        at, force_at = (known.point, known.force_point) if point is None else (at, force_at)
+        within = as_measured(robot, within, known)
     pool = feasible_pool(
-        model.robot,
-        poses=POSES,
-        directions=DIRECTIONS,
+        robot,
+        poses=candidates if places is None else places.a,
+        directions=directions,
         force=force,
         point=at,
-        force_point=at,
+        force_point=force_at,
         seed=seed,
-        cell=cell,
+        cell=within,
     )
-    rows: Sequence[int]
-    if between is None:
-        rows = d_optimal(
-            model, pool, count=count, sigma=sigma, parameters=parameters, loads=loads
-        ).rows
-    else:
-        rows = rivalry(model, *between, pool, sigma=sigma).best(count, pool.pose, loads).rows
-    return to_be_taken(model.robot, pool, rows)
+    unheld = () if places is None else places.lost(pool)
+    way, left_out = None, 0
+    while True:
+        choice, poses = pool, count
+        if places is not None and count is None:
+            choice = places.one_each(model, pool)
+            poses = len(np.unique(choice.pose))
+        size = poses or 0, loads
+        if between is None:
+            chosen = precise(model, choice, size, sigma=standard, asked=parameters, known=before)
+        else:
+            chosen = telling(model, choice, size, sigma=standard, between=between, known=before)
+        found = to_be_taken(
+            robot, choice, chosen.rows, zero="unknown" if known is None else known.zero
+        )
+        if places is not None:
+            found = places.named(found)
+        if not drive:
+            break
+        labels = found.poses
+        try:
+            found, way = in_order(found, robot, within, seed)
+        except NoWay as error:
+            if left_out == MOST_LEFT_OUT:
+                raise
+            left_out += 1
+            pool = pool.without(found.joints[found.pose.index(labels[error.pose])])
+        else:
+            if places is None:
+                found = replace(found, pose=numbered(found.pose))
+            break
+    return Plan.of(
+        found, model=model, chosen=chosen, standard=standard, cell=within, known=known, seed=seed,
+        remarks=pool.remarks if places is None else _remarks(places, pool, unheld),
+        way=way, left_out=left_out,
+    )  # fmt: skip
+
+
+def _remarks(places: Places, pool: Pool, unheld: Sequence[str]) -> tuple[str, ...]:
+    """What became of places, and what else is to be said."""
+    return (
+        *places.remarks,
+        *(f"{name}: the motors hold no load there." for name in unheld),
+        *(
+            f"{name}: no free way to it was found."
+            for name in places.lost(pool)
+            if name not in unheld
+        ),
+        *pool.remarks,
+    )
 
 
 def promised(

@@ -18,6 +18,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import Refusal
+from sk120stiff.measurements import Measurements
 from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.pool import poses_in
 from sk120stiff.plan.surroundings import scene_of
@@ -27,6 +28,7 @@ from sk120stiff.robot.collision import Pair, Scene
 SPEED_SHARE = 0.2  # of the joints' speeds in the URDF, for a campaign
 USUAL_SPEED, USUAL_SLIDE = 0.3, 0.1  # rad/s and m/s where it states none
 STEP, SLIDE_STEP = np.deg2rad(2.0), 0.01  # of a way between two questions
+COARSER = 2.0  # than these steps: enough for a picture of the way
 ROADMAPS = (120, 500, 1500)  # random poses, more where fewer do not do
 NEIGHBOURS = 15  # edges of each
 ATTEMPTS = 400  # ways through the roadmap that are asked before it is given up
@@ -126,6 +128,31 @@ def route(
             float(_times(p[None], q[None], speed)[0, 0]) for p, q in itertools.pairwise(way)
         )
     return Route(order, np.array(stops), np.array(which, dtype=np.intp), seconds)
+
+
+def in_order(plan: Measurements, robot: Robot, cell: Cell, seed: int) -> tuple[Measurements, Route]:
+    """The plan with its poses in the order of least driving, and the way.
+
+    Raises:
+        NoWay: No free way to a pose was found.
+    """
+    first = [plan.pose.index(label) for label in plan.poses]
+    found = route(robot, cell, plan.joints[first], point=plan.point, seed=seed)
+    rows = [
+        k for pose in found.order for k, label in enumerate(plan.pose) if label == plan.poses[pose]
+    ]
+    return plan.select(np.array(rows, dtype=np.intp)), found
+
+
+def straight_on(robot: Robot, stops: Array) -> tuple[Array, Index]:
+    """(M, n) poses along joints that go straight from stop to stop, and which of them are stops."""
+    rows, reached = [stops[:1]], [0]
+    for start, end in itertools.pairwise(stops):
+        steps = np.abs(end - start) / np.where(robot.prismatic, SLIDE_STEP, STEP)
+        count = max(int(np.ceil(steps.max() / COARSER)), 1)
+        rows.append(start + np.linspace(0.0, 1.0, count + 1)[1:, None] * (end - start))
+        reached.append(reached[-1] + count)
+    return np.concatenate(rows), np.array(reached, dtype=np.intp)
 
 
 def joint_speeds(robot: Robot) -> Array:

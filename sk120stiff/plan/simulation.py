@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
+from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.data import NoiseStatement
 from sk120stiff.model import Model
@@ -36,6 +38,14 @@ class Simulated:
 
     def __repr__(self) -> str:
         return f"<Simulated: {self.measurements!r}, {int(self.outliers.sum())} outliers>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: every reading with noise and without."""
+        made, exact = (1e6 * np.asarray(x) for x in (self.measurements.displacement, self.exact))
+        columns: dict[str, Iterable[object]] = {"pose": self.measurements.pose}
+        columns |= {f"d{axis} [µm]": made[:, k] for k, axis in enumerate("xyz")}
+        columns |= {f"exact d{axis}": exact[:, k] for k, axis in enumerate("xyz")}
+        return html_table(repr(self), columns)
 
 
 def simulate(

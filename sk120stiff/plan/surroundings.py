@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
+from sk120stiff.effects import load_cases_of
+from sk120stiff.measurements import Measurements
 from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.efforts import unknown_efforts
 from sk120stiff.plan.rig import like
@@ -80,6 +82,12 @@ def cell_from_data(robot: Robot, cell: Cell, a: Array, wrench: Array, point: Arr
         cell = replace(cell, rig=rig)
         said.append(f"Loads are taken to come from {rig.words}.")
     return replace(cell, told=(*cell.told, *said))
+
+
+def as_measured(robot: Robot, cell: Cell, known: Measurements) -> Cell:
+    """The cell with floor and directions as readings had them, where it says nothing of them."""
+    load_cases = load_cases_of(robot, known)
+    return cell_from_data(robot, cell, load_cases.a, load_cases.wrench, known.point)
 
 
 def lowest_points(robot: Robot, a: Array, point: ArrayLike, cell: Cell | None = None) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
@@ -12,6 +14,7 @@ from sk120stiff.workspace import Compensation, LoadedPath
 SINGULAR = 0.005  # ratio of singular values: about a degree from a stretched wrist
 SLACK = 1e-9  # rad or m
 UNCORRECTED = 1e-6  # m
+TURNS = (0, 180, 90, -90)  # deg; none first, then half and quarter turns
 
 
 def dexterity(robot: Robot, a: Array, frame: str | None = None) -> Array:
@@ -38,6 +41,41 @@ def turned_over(robot: Robot, a: Array) -> Mask:
     """
     moves = np.abs(np.diff(a, axis=0, prepend=a[:1]))
     return np.asarray((moves > np.pi) & ~np.asarray(robot.prismatic))
+
+
+def least_turn(
+    robot: Robot,
+    turned: Callable[[float], LoadedPath],
+    find: Callable[[LoadedPath], Array],
+    degrees: Sequence[int] = TURNS,
+) -> tuple[int, LoadedPath, Array]:
+    """The turn of the tool about its own axis that a path needs [deg], the path and its joints.
+
+    The first at which the whole path is reached and no joint has to pass a limit, else the first at
+    which it is reached.
+
+    Args:
+        turned: The path with the tool turned by so much [rad].
+        find: Joints (N, n) of a path; refuses where a point cannot be reached.
+
+    Raises:
+        Refusal: A point cannot be reached, however the tool is turned.
+    """
+    found: tuple[int, LoadedPath, Array] | None = None
+    refused: Refusal | None = None
+    for each in degrees:
+        path = turned(np.radians(each))
+        try:
+            a = find(path)
+        except Refusal as error:
+            refused = refused or error
+            continue
+        if not turned_over(robot, a).any():
+            return each, path, a
+        found = found or (each, path, a)
+    if found is None:
+        raise refused or Refusal("the arm cannot reach this path")
+    return found
 
 
 def refuse_bad_targets(

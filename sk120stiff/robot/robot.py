@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, warn
+from sk120stiff.files import html_table
 from sk120stiff.robot.description import ControllerRule
 from sk120stiff.robot.kinematics.coupling import Coupling, Follower
 from sk120stiff.robot.kinematics.screws import Mechanism, Screws
@@ -90,15 +90,14 @@ class Robot:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the actuated joints with their limits."""
-        lines = "".join(
-            f"<tr><td>{escape(name)}</td><td>{'slides' if slides else 'turns'}</td>"
-            f"<td>{low:.4g}</td><td>{high:.4g}</td><td>{'m' if slides else 'rad'}</td></tr>"
-            for name, slides, low, high in zip(
-                self.actuated, self.prismatic, self.lower, self.upper, strict=True
-            )
-        )
-        head = "<tr><th>joint</th><th></th><th>lower</th><th>upper</th><th>unit</th></tr>"
-        return f"<div><p>{escape(repr(self))}</p><table>{head}{lines}</table></div>"
+        columns = {
+            "joint": self.actuated,
+            "": ["slides" if slides else "turns" for slides in self.prismatic],
+            "lower": self.lower,
+            "upper": self.upper,
+            "unit": ["m" if slides else "rad" for slides in self.prismatic],
+        }
+        return html_table(repr(self), columns)
 
     @property
     def n(self) -> int:

@@ -22,7 +22,9 @@ from sk120stiff.workspace.finished import (
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
 from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
 from sk120stiff.workspace.judge import PathTask, Placement
+from sk120stiff.workspace.judged import Judged
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
+from sk120stiff.workspace.map_postures import MapPostures, map_postures
 from sk120stiff.workspace.mapping import MapReport, write_map
 from sk120stiff.workspace.path import (
     LoadedPath,
@@ -31,6 +33,7 @@ from sk120stiff.workspace.path import (
     read_path,
     write_joints,
 )
+from sk120stiff.workspace.places import places_of
 from sk120stiff.workspace.posture import BestPosture, best_posture
 from sk120stiff.workspace.returned import Returned, read_returned
 from sk120stiff.workspace.standing_uncertainty import (
@@ -48,11 +51,13 @@ __all__ = [
     "ElasticArm",
     "Grid",
     "JointGrid",
+    "Judged",
     "Landscape",
     "LoadSummary",
     "LoadedPath",
     "MapCheck",
     "MapJob",
+    "MapPostures",
     "MapReport",
     "PathTask",
     "Placement",
@@ -72,8 +77,10 @@ __all__ = [
     "joint_heights",
     "joints_along",
     "lowest_floor",
+    "map_postures",
     "open_map",
     "parse_axes",
+    "places_of",
     "posture_landscape",
     "read_path",
     "read_returned",

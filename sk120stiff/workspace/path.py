@@ -17,7 +17,7 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +69,12 @@ class LoadedPath:
     def count(self) -> int:
         """Number of points N."""
         return len(self.wrench)
+
+    def turned_to_base(self, robot: Robot, a: Array, frame: str | None) -> LoadedPath:
+        """The path in base axes, of loads that are stated in those of the tool at joints (N, n)."""
+        R = robot.placement(a, frame)[:, :3, :3]
+        turned = [np.einsum("nij,nj->ni", R, self.wrench[:, k : k + 3]) for k in (0, 3)]
+        return replace(self, wrench=np.concatenate(turned, axis=1))
 
 
 def read_path(

@@ -38,6 +38,26 @@ class StandingUncertainty:
     std_remainder: Array | None
     blame: tuple[str, ...]
 
+    @property
+    def rms(self) -> tuple[float, float | None]:
+        """Of `std_parameters` and of `std_remainder`, over the points that have an equilibrium."""
+        left = self.std_remainder
+        return _rms(self.std_parameters), None if left is None else _rms(left)
+
+    @property
+    def std(self) -> Array | None:
+        """(N,) both together [m]; None where it is not known."""
+        if not np.isfinite(self.rms[0]):
+            return None
+        left = 0.0 if self.std_remainder is None else self.std_remainder
+        return np.asarray(np.hypot(self.std_parameters, left))
+
+
+def _rms(std: Array) -> float:
+    """Infinite if one of them is unknown."""
+    there = std[~np.isnan(std)]
+    return float(np.sqrt(np.mean(there**2))) if len(there) else float("nan")
+
 
 def standing_uncertainty(
     model: Model,

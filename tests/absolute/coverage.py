@@ -43,7 +43,7 @@ def campaigns(count: int, arms: int, seed: int) -> list[Outcome]:
             path = write(folder, a, exact + SIGMA * rng.normal(size=exact.shape), SETTINGS)
             data = sk.read(path)
             robot = sk.load_robot(data.robot, base="base", tool="tool")
-            fit = calibrate(sk.base_model(robot), data.with_joints(robot.actuated)).fit
+            fit = calibrate(sk.base_model(robot), data.with_joints(robot.actuated))
             names, intervals = [p.name for p in fit.parameters], fit.intervals()
             for k in told:
                 own = names.index(f"joint_springs:{NAMES[k]}.stiffness")

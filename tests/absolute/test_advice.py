@@ -11,7 +11,8 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.explain.absolute.advice import next_poses, open_pair
 from sk120stiff.explain.absolute.choose import choose
-from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.model import Model
 from sk120stiff.plan import Cell, feasible
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
@@ -68,20 +69,20 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     assert first.verdict == "ambiguous" and first.following is not None
     following = first.following
     assert following.before < 3.3 < 6.0 < following.after, following
-    both = [item for item in first.named if item.alternatives]
+    both = [item for item in first.findings if item.alternatives]
     names = {both[0].effect.id, *both[0].alternatives}
     assert set(following.between) <= names and "joint_springs:j2" in names
     shares = [first.probabilities[name] for name in names if name in first.probabilities]
     assert sum(shares) <= 1.0 + 1e-6
-    pair = open_pair([(item.effect, item.alternatives) for item in first.named], first.linear)
+    pair = open_pair([(item.effect, item.alternatives) for item in first.findings], first.linear)
     assert pair is not None
-    robot, cell = first.final.fit.model.robot, Cell(low=np.array([0.5, -1.0, 0.5]))
+    robot, cell = first.final.model.robot, Cell(low=np.array([0.5, -1.0, 0.5]))
     apart = next_poses(first.final, *pair, seed=0, cell=cell)
     assert apart is not None and not feasible(robot, cell, following.readings.joints).ok.all()
     assert feasible(robot, cell, apart.readings.joints).ok.all()
     a = np.concatenate([a, following.readings.joints])
     second = explained(tmp_path, a, arm.stands(a)[0])
-    told = [(item.effect.id, item.alternatives) for item in second.named]
+    told = [(item.effect.id, item.alternatives) for item in second.findings]
     assert told == [("joint_springs:j2", ())]
     assert not second.final.wild.any(), "rows far off a rigid arm are not wild beside the spring"
 
@@ -91,7 +92,7 @@ def test_a_payload_that_nobody_stated_is_named_from_a_rigid_start(tmp_path: Path
     a = poses(70, 5)
     arm = _with(payload=(30.0, np.array([0.0, 0.0, 0.12])))
     found = explained(tmp_path, a, arm.stands(a)[0])
-    ids = {item.effect.id for item in found.named}
+    ids = {item.effect.id for item in found.findings}
     assert "payload:tool" in ids, ids
 
 
@@ -100,9 +101,9 @@ def test_play_under_weight_is_named(tmp_path: Path) -> None:
     arm.compliance, arm.play = np.zeros(6), np.array([0, 0, 2e-4, 0, 0, 0])
     a = poses(90, 8)
     found = explained(tmp_path, a, arm.stands(a)[0])
-    names = [item.effect.id for item in found.named if item.effect.name != "joint_frame"]
+    names = [item.effect.id for item in found.findings if item.effect.name != "joint_frame"]
     assert names == ["lost_motion:j3"]
-    half = found.final.fit.model.parameter("lost_motion:j3.half_width")
+    half = found.final.model.parameter("lost_motion:j3.half_width")
     assert half.value == pytest.approx(2e-4, abs=4.0 * half.std)
 
 
@@ -114,9 +115,9 @@ def test_play_whose_teeth_take_hold_gradually_is_named_with_its_law(tmp_path: Pa
     arm.flank = 20.0
     a = poses(90, 8)
     found = explained(tmp_path, a, arm.stands(a)[0])
-    (law,) = [item.effect for item in found.named if item.effect.name == "lost_motion"]
+    (law,) = [item.effect for item in found.findings if item.effect.name == "lost_motion"]
     assert all("_flank_" in spec.name for spec in law.parameters)
-    spring = found.final.fit.model.parameter("joint_springs:j3.stiffness")
+    spring = found.final.model.parameter("joint_springs:j3.stiffness")
     assert spring.value == pytest.approx(5e5, abs=2.0 * spring.std) and spring.std < 4e4
 
 
@@ -131,10 +132,10 @@ def test_a_gear_that_hardens_under_weight_and_payload_is_no_wave(tmp_path: Path)
     data = sk.read(path)
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     found = explain_positions(Model(robot), data.with_joints(robot.actuated))
-    ids = {item.effect.id for item in found.named}
+    ids = {item.effect.id for item in found.findings}
     assert {"gear_hardening:j2", "joint_springs:j2"} <= ids, ids
     assert not any(name.startswith("transmission_error") for name in ids), ids
-    model = found.final.fit.model
+    model = found.final.model
     bends = model.parameter("gear_hardening:j2.quadratic")
     assert bends.value == pytest.approx(6e-10, abs=3.0 * bends.std) and bends.std < 6e-11
     spring = model.parameter("joint_springs:j2.stiffness")

@@ -47,15 +47,15 @@ def test_errors_of_geometry_that_are_frozen_leave_nothing_if_they_are_there(
     again = calibrated(tmp_path, replace(arm, shift=shift, turn=turn), a)
     moved = arm.stands(a)[0] - replace(arm, shift=shift, turn=turn).stands(a)[0]
     assert np.abs(moved).max() > 30.0 * SIGMA
-    assert again.fit.misfit[2] > 1e-3
-    assert abs(again.fit.chi_square - first.fit.chi_square) < 0.1 * first.fit.chi_square
+    assert again.misfit[2] > 1e-3
+    assert abs(again.chi_square - first.chi_square) < 0.1 * first.chi_square
 
 
 def test_errors_of_geometry_that_are_not_frozen_are_missed_if_left_out(tmp_path: Path) -> None:
     """So the test before could have failed."""
     arm, a = errors(5), poses(60, 1)
-    assert calibrated(tmp_path, arm, a).fit.misfit[2] > 1e-3
-    assert calibrated(tmp_path, arm, a, geometry=False).fit.misfit[2] < 1e-9
+    assert calibrated(tmp_path, arm, a).misfit[2] > 1e-3
+    assert calibrated(tmp_path, arm, a, geometry=False).misfit[2] < 1e-9
 
 
 def test_springs_that_cannot_be_seen_may_be_anything(tmp_path: Path) -> None:
@@ -67,10 +67,10 @@ def test_springs_that_cannot_be_seen_may_be_anything(tmp_path: Path) -> None:
     for name in reasons:
         compliance[NAMES.index(name.split(":")[1].split(".")[0])] *= 5.0
     again = calibrated(tmp_path, replace(arm, compliance=compliance), a)
-    assert again.fit.misfit[2] > 1e-3
+    assert again.misfit[2] > 1e-3
     for k in (1, 2):
         name = f"joint_springs:j{k + 1}.stiffness"
-        p = again.fit.model.parameter(name)
+        p = again.model.parameter(name)
         assert abs(p.internal - arm.compliance[k]) < 4.0 * p.internal_std
 
 
@@ -83,7 +83,7 @@ def test_candidates_that_do_not_show_leave_nothing_if_they_are_there(tmp_path: P
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     found = explain_positions(Model(robot), data.with_joints(robot.actuated))
     assert found.verdict == "none" and "payload:tool" in found.hidden
-    model = found.final.fit.model
+    model = found.final.model
     effect = sk.CATALOGUE.effect(robot, "payload", "tool")
     loaded = model + effect
     heavy = loaded.values.copy()

@@ -39,7 +39,7 @@ def test_distances_in_unknown_axes_give_the_springs(count: int, tmp_path: Path) 
     found = calibrated(measured(tmp_path, POINTS[:count], wild=1))
     agrees(found)
     assert np.flatnonzero(found.wild).tolist() == [0]
-    marker = [found.fit.model.parameter(f"tool_offset:tool.offset_{axis}").value for axis in "xyz"]
+    marker = [found.model.parameter(f"tool_offset:tool.offset_{axis}").value for axis in "xyz"]
     assert marker == pytest.approx([0.05, -0.08, 0.12], abs=0.01)
     frame = [why for name, why in unseen(found).items() if name.startswith("tracker_frame")]
     assert frame == ([] if count == 3 else [ABOUT] * 6)
@@ -71,7 +71,7 @@ def test_what_cannot_be_is_refused_with_its_reason(
 def test_a_turn_about_one_point_or_two_changes_no_distance(count: int, tmp_path: Path) -> None:
     """As was said, and not with three."""
     found = calibrated(measured(tmp_path, POINTS[:count]))
-    names, values = found.fit.model.names, found.fit.model.values.copy()
+    names, values = found.model.names, found.model.values.copy()
     frame = [names.index(f"tracker_frame:tracker.{k}") for k in ("x", "y", "z", "rx", "ry", "rz")]
     fixed = tracked(POINTS[:count])
     axis = np.array([0.6, 0.0, 0.8]) if count == 1 else fixed[1] - fixed[0]

@@ -13,8 +13,9 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.explain import Options
 from sk120stiff.explain.absolute.candidates import linear_at
+from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.laws import by_best_laws, laws_at
-from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.model import Model
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
@@ -37,7 +38,7 @@ def test_geometry_alone_gets_no_elastic_name(tmp_path: Path) -> None:
         arm.compliance = np.zeros(6)
         found = explained(tmp_path, arm, poses(90, 30 + seed), seed)
         families = set(found.families)
-        assert families == {"geometry"}, [item.effect.id for item in found.named]
+        assert families == {"geometry"}, [item.effect.id for item in found.findings]
         assert found.chance > 1e-3
         assert found.steps[-1].heldout_rms < 0.1 * found.steps[0].heldout_rms
         assert found.steps[-1].heldout_rms < 2.6e-5
@@ -45,18 +46,20 @@ def test_geometry_alone_gets_no_elastic_name(tmp_path: Path) -> None:
 
 def test_soft_joints_are_named_beside_geometry(tmp_path: Path) -> None:
     found = explained(tmp_path, errors(4), poses(90, 41), 4)
-    named = {item.effect.id for item in found.named}
-    alternatives = {name for item in found.named for name in (item.effect.id, *item.alternatives)}
+    named = {item.effect.id for item in found.findings}
+    alternatives = {
+        name for item in found.findings for name in (item.effect.id, *item.alternatives)
+    }
     assert {"joint_springs:j2", "joint_springs:j3"} <= alternatives
     assert any(name.startswith("joint_frame") for name in named)
     assert found.chance > 1e-3 and found.remainder[0] < 1e-5
-    spring = found.final.fit.model.parameter("joint_springs:j2.stiffness")
+    spring = found.final.model.parameter("joint_springs:j2.stiffness")
     assert abs(spring.internal - 1 / 8e5) < 4.0 * spring.internal_std
 
 
 def test_nothing_missing_is_nothing_named(tmp_path: Path) -> None:
     found = explained(tmp_path, Arm(), poses(60, 50), 5)
-    assert found.verdict == "none" and not found.named
+    assert found.verdict == "none" and not found.findings
 
 
 def test_what_hides_what_at_poses_left_out_is_confirmed_together(tmp_path: Path) -> None:
@@ -70,7 +73,7 @@ def test_what_hides_what_at_poses_left_out_is_confirmed_together(tmp_path: Path)
     data = sk.read(write(tmp_path, a, x, FIT.replace("unknown", "base") + NOISE))
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     found = explain_positions(Model(robot), data.with_joints(robot.actuated))
-    assert {"joint_springs:j2", "joint_springs:j3"} <= {item.effect.id for item in found.named}
+    assert {"joint_springs:j2", "joint_springs:j3"} <= {item.effect.id for item in found.findings}
     assert found.chance > 1e-3
 
 
@@ -97,8 +100,8 @@ def test_waves_are_named_with_their_joint(tmp_path: Path) -> None:
     waves = np.zeros((6, 2))
     waves[1] = 2e-4, -1.5e-4
     found = explained(tmp_path, Arm(waves=waves), poses(90, 60), 6)
-    assert [item.effect.id for item in found.named] == ["transmission_error:j2"]
-    wave = found.final.fit.model.parameter("transmission_error:j2.sin_1")
+    assert [item.effect.id for item in found.findings] == ["transmission_error:j2"]
+    wave = found.final.model.parameter("transmission_error:j2.sin_1")
     assert abs(wave.internal - 2e-4) < 4.0 * wave.internal_std < 2e-4
 
 
@@ -122,5 +125,5 @@ def test_a_fit_that_went_another_way_begins_anew(
     found = explain_positions(Model(robot), data.with_joints(robot.actuated))
     assert len(fits) > 1 and len(fits) % 2 == 0
     assert found.chance > 1e-3
-    spring = found.final.fit.model.parameter("joint_springs:j2.stiffness")
+    spring = found.final.model.parameter("joint_springs:j2.stiffness")
     assert abs(spring.internal - 1 / 8e5) < 4.0 * spring.internal_std

@@ -41,7 +41,7 @@ def test_encoder_values_of_one_pose_that_differ_go_through_the_kinematics(tmp_pa
     labels = [f"P{k // 2}" for k in range(80)]
     x = noisy(Arm(compliance=SPRINGS).stands(a)[0])
     found = fitted(write(tmp_path, a, x, FIT + NOISE, more=",pose", cells=labels))
-    assert found.fit.misfit[2] > 1e-3
+    assert found.misfit[2] > 1e-3
     assert len(found.problem.measurements.poses) == 40
     a[1::2, 1] += 2e-3
     with pytest.raises(InputError, match="the pose 'P0' has"):
@@ -60,10 +60,10 @@ def test_a_link_that_grows_while_it_warms(clock: str, tmp_path: Path) -> None:
     cells = [f"{20.0 + t:.6f}" for t in warm]
     path = write(tmp_path, A, noisy(x), FIT + NOISE, more=f",{clock}", cells=cells)
     found = fitted(path, "thermal_growth:l2")
-    (growth,) = [p for p in found.fit.parameters if p.effect.name == "thermal_growth"]
+    (growth,) = [p for p in found.parameters if p.effect.name == "thermal_growth"]
     per = 1.0 if "temp" in clock else 1.0 / 60.0  # a minute of this clock is a kelvin
     assert abs(growth.internal - rate * per) < 4.0 * growth.internal_std < 0.7 * rate * per
-    assert found.fit.misfit[2] > 1e-3
+    assert found.misfit[2] > 1e-3
 
 
 def test_sides_of_approach_follow_from_the_order_of_the_rows(tmp_path: Path) -> None:
@@ -75,10 +75,10 @@ def test_sides_of_approach_follow_from_the_order_of_the_rows(tmp_path: Path) -> 
     found = fitted(
         write(tmp_path, A, x, FIT + NOISE, more=",order", cells=order), "approach_side:j2"
     )
-    p = found.fit.model.parameter("approach_side:j2.half_width")
+    p = found.model.parameter("approach_side:j2.half_width")
     assert abs(p.internal - half) < 4.0 * p.internal_std < 0.2 * half
     data = sk.read(write(tmp_path, A, x, FIT + NOISE))  # no order: the cause cannot be seen
-    robot = found.fit.model.robot
+    robot = found.model.robot
     readings = data.with_joints(robot.actuated)
     load_cases = sk.effects.load_cases_of(robot, readings)
     shown = candidates_at(robot, load_cases, readings, (), Options(), sk.CATALOGUE)
@@ -92,10 +92,10 @@ def test_gravity_stands_in_base_axes(tmp_path: Path) -> None:
         q = A + SPRINGS * -_torque_of_a_push(q)
     x = noisy(Arm().pose(q)[0])
     good = fitted(write(tmp_path, A, x, FIT + NOISE + "gravity: [9.80665, 0, 0]\n"))
-    assert good.fit.misfit[2] > 1e-3
-    spring = good.fit.model.parameter("joint_springs:j2.stiffness")
+    assert good.misfit[2] > 1e-3
+    spring = good.model.parameter("joint_springs:j2.stiffness")
     assert abs(spring.internal - SPRINGS[1]) < 4.0 * spring.internal_std
-    assert fitted(write(tmp_path, A, x, FIT + NOISE)).fit.misfit[2] < 1e-6
+    assert fitted(write(tmp_path, A, x, FIT + NOISE)).misfit[2] < 1e-6
 
 
 def _torque_of_a_push(q: Array) -> Array:

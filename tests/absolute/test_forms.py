@@ -36,8 +36,8 @@ def calibrated(path: Path) -> Calibration:
 
 def agrees(found: Calibration, share: float = 0.05) -> None:
     """The second joint's spring is right within its error, known to `share`, and the noise is."""
-    assert found.fit.misfit[2] > 1e-3, found.fit.noise_factor
-    spring = found.fit.model.parameter("joint_springs:j2.stiffness")
+    assert found.misfit[2] > 1e-3, found.noise_factor
+    spring = found.model.parameter("joint_springs:j2.stiffness")
     assert abs(spring.internal - 1 / 8e5) < 3.5 * spring.internal_std
     assert spring.internal_std < share * spring.internal
     assert abs(spring.internal * 8e5 - 1.0) < 0.05  # full readings give it to a third of a percent
@@ -56,7 +56,7 @@ def test_blank_cells_are_channels_that_were_not_read(tmp_path: Path) -> None:
     x[RNG.random(x.shape) < 0.15] = np.nan
     found = calibrated(write(tmp_path, A, x, FIT + NOISE))
     agrees(found)
-    assert len(found.fit.residual) == np.isfinite(x).sum()
+    assert len(found.residual) == np.isfinite(x).sum()
 
 
 @pytest.mark.parametrize("quaternion", [False, True])
@@ -113,7 +113,7 @@ def test_a_marker_mounted_anew(tmp_path: Path) -> None:
         write(tmp_path, A, noisy(tracked(x)), FIT + NOISE, more=",series", cells=list(series))
     )
     agrees(found)
-    shift = [found.fit.model.parameter(f"marker_shift:tool.two.{axis}").value for axis in "xyz"]
+    shift = [found.model.parameter(f"marker_shift:tool.two.{axis}").value for axis in "xyz"]
     assert shift == pytest.approx([8e-4, -5e-4, 3e-4], abs=5e-5)
 
 
@@ -168,7 +168,7 @@ def test_a_dial_gauge_reads_one_direction(tmp_path: Path) -> None:
     agrees(calibrated(path), 0.005)
     # One number a row: gaps of a rigid arm have long tails, and no row of them is wild.
     explained = explain_positions(Model(robot), sk.read(path).with_joints(robot.actuated))
-    named = {item.effect.id for item in explained.named}
+    named = {item.effect.id for item in explained.findings}
     assert {f"joint_springs:j{k}" for k in range(1, 6)} <= named
     assert not explained.final.wild.any()
     said = path.with_suffix(".yaml")
@@ -233,9 +233,9 @@ def test_an_inclinometer_alone_gives_the_springs_that_full_readings_give(tmp_pat
     found = calibrate(
         sk.base_model(robot), data.with_joints(robot.actuated), geometry=False, waves=False
     )
-    assert found.fit.misfit[2] > 1e-3
+    assert found.misfit[2] > 1e-3
     for k in (2, 3):
-        spring = found.fit.model.parameter(f"joint_springs:j{k}.stiffness")
+        spring = found.model.parameter(f"joint_springs:j{k}.stiffness")
         assert spring.value == pytest.approx(1.0 / arm.compliance[k - 1], rel=0.05)
         assert abs(spring.internal - arm.compliance[k - 1]) < 3.5 * spring.internal_std
 
@@ -249,7 +249,7 @@ def test_angles_against_gravity_sharpen_springs_beside_geometry(tmp_path: Path) 
     settings = "noise: {sigma: 20, unit: um, rotation: 5, rotation_unit: urad}\n"
     both = calibrated(write(tmp_path, A, x, FIT + settings, more=HEADER, cells=cells))
     agrees(both)
-    std = [f.fit.model.parameter("joint_springs:j3.stiffness").internal_std for f in (alone, both)]
+    std = [f.model.parameter("joint_springs:j3.stiffness").internal_std for f in (alone, both)]
     assert std[1] < 0.7 * std[0]
 
 
@@ -294,7 +294,7 @@ def test_angles_alone_have_their_own_unit(tmp_path: Path) -> None:
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     readings = data.with_joints(robot.actuated)
     answer = explain_positions(Model(robot), readings)
-    told = verdict_of_positions(answer, readings)
+    told = verdict_of_positions(answer)
     assert told["gap"]["unit"] == "urad" and told["remainder"]["rms_um"] is None
     assert told["gap"]["steps"][0]["heldout_rms"] > 50.0
     assert "µm" not in " ".join(answer.left_over())
@@ -315,7 +315,7 @@ def test_markers_of_which_no_place_is_known(tmp_path: Path) -> None:
     for name in list(first)[1:]:
         shift = np.subtract(places[name], places[next(iter(first))])
         for axis, true in zip("xyz", shift, strict=True):
-            p = found.fit.model.parameter(f"marker_shift:tool.{name}.{axis}")
+            p = found.model.parameter(f"marker_shift:tool.{name}.{axis}")
             assert abs(p.value - true) < 5e-4  # the last frame's own turn is counted in it
     radians = write(tmp_path, np.radians(A), x, FIT + NOISE, more=",marker", cells=list(names))
     with pytest.raises(InputError, match="radians, not degrees"):

@@ -34,18 +34,18 @@ def test_springs_and_marker_come_out_within_their_intervals(tmp_path: Path) -> N
         arm, a = errors(seed), poses(60, 10 + seed)
         x = noisy(tracked(arm.stands(a)[0]), 20 + seed)
         found = calibrated(write(tmp_path, a, x, FIT + NOISE))
-        assert not found.waves and found.fit.misfit[2] > 1e-4
+        assert not found.waves and found.misfit[2] > 1e-4
         truth = {f"joint_springs:j{k + 1}.stiffness": 1 / c for k, c in enumerate(arm.compliance)}
         for p, (low, high), seen in zip(
-            found.fit.parameters, found.fit.intervals(), found.fit.identifiable, strict=True
+            found.parameters, found.intervals(), found.identifiable, strict=True
         ):
             if p.name in truth and seen:
                 inside += low <= truth[p.name] <= high
                 count += 1
-        second = found.fit.model.parameter("joint_springs:j2.stiffness")
+        second = found.model.parameter("joint_springs:j2.stiffness")
         assert second.internal_std < 0.04 * second.internal
         ratio.append((second.internal - arm.compliance[1]) / second.internal_std)
-        assert not found.fit.identifiable[0], "nothing but the vertical loads the first joint"
+        assert not found.identifiable[0], "nothing but the vertical loads the first joint"
     assert inside >= count - 2 and count >= 10
     assert np.abs(ratio).max() < 3.5
 
@@ -67,9 +67,9 @@ def test_an_arm_without_masses_has_geometry_and_no_springs(tmp_path: Path) -> No
     arm.weighs = False
     path = write(tmp_path, a, noisy(tracked(arm.stands(a)[0]), 5), FIT + NOISE + "massless")
     found = calibrated(path)
-    assert not any("springs" in p.name for p in found.fit.parameters)
+    assert not any("springs" in p.name for p in found.parameters)
     assert "states no masses" in " ".join(found.notes)
-    assert found.fit.misfit[2] > 1e-4
+    assert found.misfit[2] > 1e-4
 
 
 def test_geometry_that_no_arm_has_is_told(tmp_path: Path) -> None:
@@ -89,7 +89,7 @@ def test_wild_rows_are_told_row_by_row(tmp_path: Path) -> None:
     x[[10, 50, 90]] += [[0.5, 0, 0], [0, 0.004, 0], [2.0, 1.0, 0]]
     found = calibrated(write(tmp_path, a, x, FIT + NOISE))
     assert np.flatnonzero(found.wild).tolist() == [10, 50, 90]
-    assert found.fit.misfit[2] > 1e-4
+    assert found.misfit[2] > 1e-4
 
 
 def test_waves_are_not_taken_for_springs(tmp_path: Path) -> None:
@@ -100,7 +100,7 @@ def test_waves_are_not_taken_for_springs(tmp_path: Path) -> None:
     found = calibrated(write(tmp_path, a, noisy(tracked(arm.stands(a)[0]), 9), FIT + NOISE))
     assert {"transmission_error:j2", "transmission_error:j3"} <= set(found.waves)
     for k in (2, 3):
-        p = found.fit.model.parameter(f"joint_springs:j{k}.stiffness")
+        p = found.model.parameter(f"joint_springs:j{k}.stiffness")
         assert p.internal_std is None or p.internal < 3.0 * p.internal_std
 
 
@@ -130,6 +130,6 @@ def test_base_axes_are_checked(tmp_path: Path) -> None:
     a = poses(40, 12)
     x = errors(12).stands(a)[0]
     settings = "point: {xyz: [50, -80, 120], unit: mm}\n"
-    assert calibrated(write(tmp_path, a, x, settings)).fit.rms < 1e-3
+    assert calibrated(write(tmp_path, a, x, settings)).rms < 1e-3
     with pytest.raises(InputError, match="frame: unknown"):
         calibrated(write(tmp_path, a, tracked(x), settings))

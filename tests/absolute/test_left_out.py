@@ -38,14 +38,12 @@ def test_a_marker_mounted_anew_on_a_turned_last_frame(tmp_path: Path) -> None:
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     readings = data.with_joints(robot.actuated)
     found = calibrate(sk.base_model(robot), readings, waves=False)
-    shift = [found.fit.model.parameter(f"marker_shift:tool.two.{axis}") for axis in "xyz"]
+    shift = [found.model.parameter(f"marker_shift:tool.two.{axis}") for axis in "xyz"]
     off = np.array([p.value for p in shift]) - [0.0, 0.02, 0.0]
     std = np.array([p.std for p in shift], dtype=float)
     assert np.abs(off).max() > 10.0 * SIGMA
     assert (np.abs(off) < 3.0 * std).all() and std.max() < 2e-4, (off, std)
-    intervals = dict(
-        zip((p.name for p in found.fit.parameters), found.fit.intervals(), strict=True)
-    )
+    intervals = dict(zip((p.name for p in found.parameters), found.intervals(), strict=True))
     half = [0.5 * float(np.ptp(intervals[p.name])) for p in shift]
     np.testing.assert_allclose(half, 1.96 * std, rtol=0.01)
 
@@ -59,7 +57,7 @@ def test_a_spring_that_is_left_out_is_in_the_errors_of_the_others(tmp_path: Path
     readings, whole = data.with_joints(robot.actuated), sk.base_model(robot)
     short = whole.without("joint_springs:j3")
     for model, low, high in ((whole, 0.0, 0.003), (short, 0.05, 0.1)):
-        found = calibrate(model, readings, waves=False).fit.model
+        found = calibrate(model, readings, waves=False).model
         spring = found.parameter("joint_springs:j2.stiffness")
         assert abs(spring.internal - 1 / 8e5) < 2.0 * spring.internal_std
         assert low < spring.internal_std * 8e5 < high
@@ -137,4 +135,4 @@ def spring(
         if not told:
             at.setattr(sys.modules[calibrate.__module__], "beside_waves", lambda fit, _: fit)
         found = calibrate(sk.base_model(robot), data.with_joints(robot.actuated))
-    return found.fit.model.parameter("joint_springs:j2.stiffness")
+    return found.model.parameter("joint_springs:j2.stiffness")

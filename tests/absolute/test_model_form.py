@@ -10,8 +10,9 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.explain.absolute.document import save_positions
+from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import headline
-from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.absolute.remainder import remainder_entry, remainder_sentences
 from sk120stiff.measurements import Measurements
@@ -50,15 +51,15 @@ def test_waves_that_stand_for_sag_are_not_sure_beside_what_they_leave(tmp_path: 
     arm, a = errors(1), poses(40, 1)
     arm.compliance = 4.0 * arm.compliance
     found = explained(readings(tmp_path, a, noisy(arm.stands(a)[0], 2), FIT + "massless"))
-    assert found.named and found.steps[-1].heldout_rms < 0.5 * found.steps[0].heldout_rms
+    assert found.findings and found.steps[-1].heldout_rms < 0.5 * found.steps[0].heldout_rms
     assert found.verdict == "ambiguous"
-    assert all(item.probability < 0.95 for item in found.named), found.probabilities
+    assert all(item.probability < 0.95 for item in found.findings), found.probabilities
     assert max(p for name, p in found.probabilities.items() if "frame" not in name) < 0.95
     entry = remainder_entry(found.final)
     low, high = entry["interval_95"]
     assert entry["significant"] and 150.0 < low < entry["rms_um"] < high < 900.0
     assert "smooth over the joints" in found.left_over()[0]
-    noise = found.final.fit.rms * (1.0 - found.final.form.share) ** 0.5
+    noise = found.final.rms * (1.0 - found.final.form.share) ** 0.5
     assert noise < 3.0 * SIGMA  # of a gap of 250 µm
 
 
@@ -67,12 +68,12 @@ def test_an_unknown_cause_gets_no_name(settings: str, tmp_path: Path) -> None:
     a = poses(30, 2)
     m = readings(tmp_path, a, noisy(Arm().stands(odd(a))[0], 3), settings)
     found = explained(m)
-    assert found.verdict == "outside" and not found.named and found.guess is not None
+    assert found.verdict == "outside" and not found.findings and found.guess is not None
     assert found.suspects and all(item.heldout_gain > 0.0 for item in found.suspects)
     assert headline(found).startswith("Something is missing that no effect")
     out = tmp_path / "out"
     out.mkdir()
-    save_positions(found, m, out, {})
+    save_positions(found, out, {})
     written = json.loads((out / "verdict.json").read_text())
     assert written["remainder"]["significant"] and written["best_guess"] == "best_guess.yaml"
     names = {effect.id for effect in sk.read_model(out / "best_guess.yaml").effects}
@@ -108,13 +109,13 @@ def test_repeats_tell_noise_from_what_poses_have_of_their_own(tmp_path: Path) ->
     plain = placed(tmp_path, a, x)
     found = with_model_form(plain)
     assert found.form is not None
-    size = found.form.share**0.5 * found.fit.rms
+    size = found.form.share**0.5 * found.rms
     assert size == pytest.approx(float(np.sqrt(np.mean(own**2))), rel=0.15)
-    assert found.fit.rms * (1.0 - found.form.share) ** 0.5 == pytest.approx(SIGMA, rel=0.25)
+    assert found.rms * (1.0 - found.form.share) ** 0.5 == pytest.approx(SIGMA, rel=0.25)
     assert 45 < found.form.independent < 100  # 72 numbers, not 288
     once = placed(tmp_path, a[::4], x.reshape(24, 4, 3).mean(axis=1))
     std = [
-        np.array([f.fit.model.parameter(f"tool_offset:tool.offset_{k}").std for k in "xyz"])
+        np.array([f.model.parameter(f"tool_offset:tool.offset_{k}").std for k in "xyz"])
         for f in (once, plain, found)
     ]
     assert (std[1] < 0.6 * std[0]).all()  # as if poses were read anew each time
@@ -146,7 +147,7 @@ def test_few_numbers_of_one_axis_do_not_stop_the_search(tmp_path: Path) -> None:
     settings = "noise: {rotation: 20, rotation_unit: urad}\n"
     m = readings(tmp_path, a[flat], nothing, settings, more=",inc[deg],vx,vy,vz", cells=cells)
     found = explained(m)
-    names = {item.effect.id for item in found.named}
+    names = {item.effect.id for item in found.findings}
     assert {"joint_springs:j2", "joint_springs:j5", "joint_frame:j3", "joint_frame:j6"} <= names
     assert found.chance > 1e-3 and found.steps[-1].heldout_rms < 5e-5
 
@@ -157,7 +158,7 @@ def test_few_poses_make_no_wrong_name_sure(tmp_path: Path) -> None:
     for count, seed in ((14, 8), (20, 9)):
         arm, a = errors(seed), poses(count, 500 + seed)
         found = explained(readings(tmp_path, a, noisy(arm.stands(a)[0], 900 + seed), FIT))
-        for item in found.named:
+        for item in found.findings:
             names = (item.effect.id, *item.alternatives)
             right = any(name.startswith(("joint_frame", "joint_springs")) for name in names)
             (sure if right else wrong).append(item.probability)

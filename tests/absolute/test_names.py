@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.model import Model
 from tests.absolute.arm import ORIGINS, Arm, Array, poses, tracked, write
 
@@ -59,11 +60,11 @@ CASES = {  # cause → positions, a column and its cells, a parameter and its tr
 def test_a_cause_is_named_with_its_size(cause: str, tmp_path: Path) -> None:
     seen, column, cells, name, true = CASES[cause]
     found = explained(tmp_path, seen(), more=column, cells=cells)
-    named = [item for item in found.named if item.effect.name != "joint_frame"]
+    named = [item for item in found.findings if item.effect.name != "joint_frame"]
     # a link that is warm on the whole is longer on the whole: that is its frame
-    assert len(named) == 1 and (len(found.named) == 1 or "growth" in cause)
+    assert len(named) == 1 and (len(found.findings) == 1 or "growth" in cause)
     assert cause in (named[0].effect.id, *named[0].alternatives) and found.chance > 1e-3
-    own = [p for p in found.final.fit.parameters if p.effect.id == cause]
+    own = [p for p in found.final.parameters if p.effect.id == cause]
     if named[0].effect.id == cause:
         p = own[0] if name is None else next(p for p in own if p.spec.name == name)
         assert abs(abs(p.internal) - true) < 4.0 * p.internal_std < 0.8 * true
@@ -76,7 +77,7 @@ def test_a_marker_mounted_anew_is_in_the_registered_arm(tmp_path: Path) -> None:
     x = np.where(late[:, None], moved.stands(A)[0], Arm().stands(A)[0])
     found = explained(tmp_path, x, more=",series", cells=["two" if k else "one" for k in late])
     assert found.verdict == "none"
-    shift = [found.final.fit.model.parameter(f"marker_shift:tool.two.{k}").value for k in "xyz"]
+    shift = [found.final.model.parameter(f"marker_shift:tool.two.{k}").value for k in "xyz"]
     assert shift == pytest.approx([8e-4, -5e-4, 3e-4], abs=5e-5)
 
 
@@ -93,4 +94,4 @@ def test_motor_turns_with_their_ratios_are_joints(tmp_path: Path) -> None:
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     np.testing.assert_allclose(data.with_joints(robot.actuated).joints, A, atol=1e-8)
     found = explain_positions(Model(robot), data.with_joints(robot.actuated))
-    assert found.verdict == "none" and found.final.fit.rms < 1.2 * SIGMA
+    assert found.verdict == "none" and found.final.rms < 1.2 * SIGMA

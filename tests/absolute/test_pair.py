@@ -9,7 +9,8 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.explain import Options
-from sk120stiff.explain.absolute.run import Explained, explain_positions
+from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.model import Model
 from tests.absolute.arm import ORIGINS, TOOL, Array, tracked, urdf
 from tests.absolute.arm import TURN as TRACKER
@@ -88,7 +89,7 @@ def test_the_turn_of_the_tool_settles_what_positions_leave_open(
     rotations: bool, tmp_path: Path
 ) -> None:
     found = explained(tmp_path, rotations)
-    (named,) = found.named
+    (named,) = found.findings
     if rotations:
         assert (named.effect.id, named.alternatives) == (PAIR[0], ())
     else:

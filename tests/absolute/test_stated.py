@@ -135,8 +135,8 @@ def test_what_is_stated_of_one_kind_stays_the_yardstick(stated: str, tmp_path: P
         sigma = found.problem.of_channels.sigma
         assert sigma[kinds[own]][0] == pytest.approx(2e-5 * factor)
         assert sigma[kinds[other]][0] == pytest.approx(size, rel=0.3)
-        assert found.fit.sigma_known and found.fit.exceeds == (factor < 1.0)
-        assert found.fit.noise_factor == pytest.approx(1.0 / factor, rel=0.15)
+        assert found.sigma_known and found.exceeds == (factor < 1.0)
+        assert found.noise_factor == pytest.approx(1.0 / factor, rel=0.15)
 
 
 @pytest.mark.parametrize(

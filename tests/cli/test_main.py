@@ -33,7 +33,7 @@ HEAVY = {
 INFRASTRUCTURE = {
     "__init__", "calibration", "cell", "compensate_path", "compensate_files",
     "compensate_words", "environment", "explain_output", "frame",
-    "identify_rows", "import_preview", "main", "map_postures", "opening", "options",
+    "identify_rows", "import_preview", "main", "opening", "options",
     "outputs", "positions", "signature", "tables", "uncertainty", "xacro_option",
 }  # fmt: skip
 

@@ -208,7 +208,7 @@ def test_poses_are_given_as_places_of_the_point(run, tmp_path: Path) -> None:
 
 
 def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, monkeypatch):
-    from sk120stiff.cli.plan import entry as command
+    from sk120stiff.plan import planned as command
 
     asked: list[np.ndarray] = []
     drive = command.in_order
@@ -229,7 +229,7 @@ def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, 
 
 @pytest.mark.parametrize("said", ["no free way to it was found", "the motors hold no load there"])
 def test_a_place_that_falls_out_is_named(run, tmp_path: Path, monkeypatch, said: str) -> None:
-    from sk120stiff.cli.plan import entry as command
+    from sk120stiff.plan import planned as command
 
     drive, drawn = command.in_order, command.feasible_pool
 

@@ -7,11 +7,12 @@ import pytest
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from sk120stiff.cli.plan.shown import write_page
 from sk120stiff.effects import load_case
 from sk120stiff.plan import Pool, to_be_taken
+from sk120stiff.show import static_scene
 from sk120stiff.show.scene.frame import Request, compute_frame
 from sk120stiff.show.scene.payload import frame_payload
+from sk120stiff.show.stories import plan_scene
 from sk120stiff.stiffness import POSITIONS
 from tests.show.browser import Page, changed, clean, colours
 from tests.show.scenes import random_pose, sk120, sk120_scene, springs, walled_cell
@@ -212,7 +213,7 @@ def test_the_way_through_a_plan_is_driven_and_all_of_it_seen(page: Page, tmp_pat
     load = np.tile([0.0, 0.0, -300.0, 0.0, 0.0, 0.0], (3, 1))
     pool = Pool(load_case(sk120(), stops, load, point=np.array([0.0, 0.0, 0.1])))
     plan = to_be_taken(sk120(), pool, [0, 1, 2], zero="separate")
-    write_page(tmp_path / "plan.html", springs(), plan, walled_cell())
+    static_scene(tmp_path / "plan.html", plan_scene(springs(), plan, walled_cell()))
     page.open((tmp_path / "plan.html").as_uri())
     page.ready()
     path = json.loads(page.js("return document.getElementById('scene').textContent"))["path"]

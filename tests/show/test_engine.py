@@ -21,11 +21,12 @@ from sk120stiff.effects.joint_tilt import NonlinearTilt
 from sk120stiff.effects.tool_compliance import NonlinearTool
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model import Model, base_model, joint_spring_model
-from sk120stiff.robot import load_robot
+from sk120stiff.robot import Robot, load_robot
 from sk120stiff.show import Elastic, Scene
 from sk120stiff.show.scene.frame import Request, compute_frame
 from sk120stiff.show.scene.mechanism import HELD, follows_pose_and_load, serialised
 from sk120stiff.show.scene.payload import frame_payload, scene_payload
+from tests.effects.arms import arm
 from tests.oracles.sample_urdfs import six_axis_arm
 from tests.show.scenes import TWO_SLIDES, random_pose
 from tests.stiffness.test_kernel import ROBOTS
@@ -41,9 +42,9 @@ console.log(JSON.stringify(out));
 """
 
 
-def with_effects(robot: str, *names: str | Effect) -> Model:
+def with_effects(robot: str | Robot, *names: str | Effect) -> Model:
     """Springs and effects at sizes that show."""
-    loaded = load_robot(robot)
+    loaded = load_robot(robot) if isinstance(robot, str) else robot
     model = base_model(loaded) if robot == "motoman_sk120" else None
     model = model or joint_spring_model(loaded, np.full(loaded.n, 2e5))
     for name in names:
@@ -82,6 +83,9 @@ COLUMN = (
 )
 MODELS = {
     **{name: lambda make=make: with_effects(make()) for name, make in ROBOTS.items()},
+    **{name: lambda name=name: with_effects(arm(name)) for name in ("telescope", "scara")},
+    "ur5e": lambda: with_effects("ur5e", "joint_tilt:shoulder_lift_joint"),
+    "scara and base": lambda: with_effects(arm("scara"), "base_rocking:base", "joint_tilt:elbow"),
     "gantry": lambda: with_effects(TWO_SLIDES),
     "tilt and base": lambda: with_effects(
         SK120, "joint_tilt:joint_2_l", "base_rocking:base_link", "base_sliding:base_link"

@@ -9,35 +9,25 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from sk120stiff.cli.cell import CellOption, as_measured, height_words, opened_cell
+from sk120stiff.cli.cell import CellOption, height_words, opened_cell
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.outputs import will_draw, will_show
+from sk120stiff.cli.plan.asked import named_parameters, two_effects
 from sk120stiff.cli.plan.check import checked, points_of
-from sk120stiff.cli.plan.chosen import precise, telling
-from sk120stiff.cli.plan.places import Places, places_of
-from sk120stiff.cli.plan.shown import as_keys, in_order, language_for, write_page, write_route
-from sk120stiff.cli.tables import plan_table, progress_bar
-from sk120stiff.effects import load_cases_of
+from sk120stiff.cli.plan.told import told
+from sk120stiff.cli.tables import progress_bar
 from sk120stiff.errors import InputError
-from sk120stiff.files import will_write
+from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
-from sk120stiff.plan import (
-    Cell,
-    NoWay,
-    Pool,
-    Route,
-    feasible_pool,
-    lowest_points,
-    numbered,
-    to_be_taken,
-)
+from sk120stiff.plan import Cell, as_measured, lowest_points, plan
+from sk120stiff.programs.driving import language_by_joints, route_program
 from sk120stiff.units import parse_size, parse_values
+from sk120stiff.workspace import places_of
 
 MOST_CANDIDATES = 1_000_000
-MOST_LEFT_OUT = 5  # poses to which no way is found, before that is the answer
 
 
 def command(
@@ -126,114 +116,86 @@ def command(
     will_write(program, "--program")
     will_show(page)
     will_draw(None, page)
-    language = None if program is None else language_for(program)
+    language = None if program is None else language_by_joints(program)
     known, start = _opened(robot, model, data)
-    at, force_at = points_of(known, point)
+    at = points_of(known, point)[0]
     within = _stated(opened_cell(start.robot, cell, data, model or _file(robot)), lowest, box)
-    within = as_measured(start.robot, within, known)
-    given: Places | None = None
-    wanted_poses = count or 0
+    given = None
     if places is not None:
+        around = within if known is None else as_measured(start.robot, within, known)
         towards = None if axis is None else direction_of(axis, "--tool-axis")
         with progress_bar("poses at the places"):
-            given = places_of(places, start, within, at, towards)
-    pool = feasible_pool(
-        start.robot,
-        poses=candidates if given is None else given.a,
-        directions=directions,
-        force=parse_size(force, "force", where="--force", like="400 N"),
-        point=at,
-        force_point=force_at,
-        seed=seed,
-        cell=within,
-    )
-    unheld = () if given is None else given.lost(pool)
-    sigma = _sigma(known, noise)
-    before = None if known is None else Pool(load_cases_of(start.robot, known.masked()))
-    zero = "unknown" if known is None else known.zero
-    route: Route | None = None
-    left_out = 0
-    while True:
-        choice = pool
-        if given is not None and count is None:
-            choice = given.one_each(start, pool)
-            wanted_poses = len(np.unique(choice.pose))
-        size = wanted_poses, loads
-        with progress_bar("plan"):
-            if between is None:
-                chosen = precise(start, choice, known, wanted, size, sigma, seed)
-            else:
-                chosen = telling(start, choice, before, between, size, sigma, seed)
-        rows, document, said = chosen
-        plan = to_be_taken(start.robot, choice, rows, zero=zero)
-        if given is not None:
-            plan = given.named(plan)
-        if language is None:
-            break
-        labels = plan.poses
-        try:
-            with progress_bar("the way between the poses"):
-                plan, route = in_order(plan, start.robot, within, seed)
-            break
-        except NoWay as error:
-            if left_out == MOST_LEFT_OUT:
-                raise
-            left_out += 1
-            pool = pool.without(plan.joints[plan.pose.index(labels[error.pose])])
-    remarks = pool.remarks
-    if given is not None:
-        unreached = [name for name in given.lost(pool) if name not in unheld]
-        remarks = (
-            *given.remarks,
-            *(f"{name}: the motors hold no load there." for name in unheld),
-            *(f"{name}: no free way to it was found." for name in unreached),
-            *remarks,
+            given = places_of(places, start.robot, around, at, towards)
+    larger, names = start, list[str]()
+    for text in wanted or () if between is None else ():
+        larger, found = named_parameters(larger, text)
+        names += found
+    with progress_bar("plan"):
+        made = plan(
+            larger,
+            count,
+            loads=loads,
+            between=None if between is None else two_effects(start, between),
+            parameters=names,
+            force=parse_size(force, "force", where="--force", like="400 N"),
+            point=None if point is None else at,
+            sigma=None
+            if noise is None
+            else parse_size(noise, "length", where="--noise", like="10 um"),
+            cell=within,
+            known=known,
+            places=given,
+            candidates=candidates,
+            directions=directions,
+            drive=language is not None,
+            seed=seed,
         )
+        document, said = told(made)
     way: dict[str, object] | None = None
-    if language is not None and program is not None and route is not None:
-        if given is None:
-            plan = replace(plan, pose=numbered(plan.pose))
-        write_route(language, program, start.robot, route, plan.poses)
+    if language is not None and program is not None and made.way is not None:
+        driven = route_program(language, program.stem, start.robot, made.way, made.poses)
+        write_atomically(program, language.text(driven))
         way = {
-            "order": plan.poses,
-            "via_points": int((route.pose < 0).sum()),
-            "driving_s": route.seconds,
-            "minutes": route.minutes(plan.n_readings),
-            "left_out": left_out,
+            "order": made.poses,
+            "via_points": int((made.way.pose < 0).sum()),
+            "driving_s": made.way.seconds,
+            "minutes": made.way.minutes(made.n_readings),
+            "left_out": made.left_out,
         }
         said.append(
-            f"Driven in this order: {route.seconds:.0f} s of way with {way['via_points']} via "
-            f"points; about {route.minutes(plan.n_readings):.0f} min with the readings. Written "
-            f"to {program}."
+            f"Driven in this order: {made.way.seconds:.0f} s of way with {way['via_points']} via "
+            f"points; about {way['minutes']:.0f} min with the readings. Written to {program}."
         )
-        if left_out:
+        if made.left_out:
             said.append(
                 "Poses to which no free way was found, others taken instead where there are any: "
-                f"{left_out}."
+                f"{made.left_out}."
             )
-    heights = lowest_points(start.robot, plan.joints, at, within)
-    document = {
-        "poses": as_keys(plan),
-        **document,
-        "sigma_um": sigma * 1e6,
+    floor = made.cell.floor
+    heights = lowest_points(start.robot, made.joints, at, made.cell)
+    document |= {
+        "sigma_um": made.standard * 1e6,
         "seed": seed,
         "cell": within.source or None,
-        "floor_m": within.floor if np.isfinite(within.floor) else None,
+        "floor_m": floor if np.isfinite(floor) else None,
         "lowest_m": float(heights.min()),
-        "remarks": remarks,
+        "remarks": made.remarks,
         "route": way,
         "program": program,
         "page": page,
         "out": out,
     }
-    said += [*remarks, height_words(heights, plan.pose, within.floor)]
+    said += [*made.remarks, height_words(heights, made.pose, floor)]
     if page is not None:
-        write_page(page, start, plan, within, route)
+        from sk120stiff.show import static_scene
+        from sk120stiff.show.stories import plan_scene
+
+        static_scene(page, plan_scene(start, made, made.cell, made.way))
         said.append(f"Shown in {page}.")
     if out is not None:
-        write_measurements(plan, out)
+        write_measurements(made, out)
         said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
-    return Answer(document, [plan_table("Measure", plan), *said])
+    return Answer(document, said)
 
 
 def _opened(
@@ -247,14 +209,6 @@ def _opened(
 
 def _file(named: str | None) -> Path | None:
     return None if named is None else Path(named)
-
-
-def _sigma(known: Measurements | None, text: str | None) -> float:
-    if text is not None:
-        return parse_size(text, "length", where="--noise", like="10 um")
-    if known is not None and known.noise.sigma is not None:
-        return known.noise.sigma
-    return 1e-5
 
 
 def _stated(cell: Cell, lowest: str | None, box: str | None) -> Cell:

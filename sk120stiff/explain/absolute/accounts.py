@@ -30,7 +30,7 @@ def steps_of(
 ) -> tuple[GapStep, ...]:
     """The gap as one named cause after the other joins."""
     sigma, whole = seen.problem.of_channels.sigma, _whole(linear, seen)
-    first = " + ".join(effect.id for effect in base.fit.model.effects) or "rigid"
+    first = " + ".join(effect.id for effect in base.model.effects) or "rigid"
     labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
     steps = []
     for k, label in enumerate(labels):
@@ -106,8 +106,8 @@ def rms(x: Array) -> float:
 
 def heldout_on(final: Calibration, others: Measurements) -> tuple[float, float]:
     """Rms per axis and mean distance [m] of a calibration at readings it never saw."""
-    problem = replace(final.problem, measurements=others.masked(), model=final.fit.model)
-    gap = problem.channel_gap(final.fit.model.values)[0]
+    problem = replace(final.problem, measurements=others.masked(), model=final.model)
+    gap = problem.channel_gap(final.model.values)[0]
     if "position" not in problem.channels.present:
         return rms(gap[problem.lengths]), np.nan
     held = problem.channels.held("position")

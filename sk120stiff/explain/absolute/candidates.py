@@ -88,14 +88,14 @@ def linear_at(
             geometry together are more than their sum. None: about the base.
     """
     seen = at or base
-    problem, model = seen.problem, seen.fit.model
+    problem, model = seen.problem, seen.model
     readings = problem.measurements
-    present = [effect.id for effect in base.fit.model.effects]
+    present = [effect.id for effect in base.model.effects]
     effects = candidates_at(model.robot, problem.load_cases, readings, present, options, catalogue)
     sigma = problem.of_channels.sigma
-    residual = seen.fit.residual
-    own = [k for k, p in enumerate(seen.fit.parameters) if p.effect.id in present]
-    Q = np.asarray(np.linalg.qr(seen.fit.jacobian[:, own])[0])
+    residual = seen.residual
+    own = [k for k, p in enumerate(seen.parameters) if p.effect.id in present]
+    Q = np.asarray(np.linalg.qr(seen.jacobian[:, own])[0])
     fitted = {effect.id: effect for effect in model.effects if effect.id not in present}
     effects = tuple(fitted.get(effect.id, effect) for effect in effects)  # by the law it was given
     found = slopes(problem, model, [each for each in effects if each.id not in fitted])
@@ -135,7 +135,7 @@ def linear_at(
         slices=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
         row=rows,
         fold=fold[rows],
-        stated=seen.fit.sigma_known,
+        stated=seen.sigma_known,
     )
     return linear, tuple(hidden)
 

@@ -10,28 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from sk120stiff.arrays import Mask
 from sk120stiff.effects import load_cases_of
 from sk120stiff.explain.absolute.advice import NextPoses
-from sk120stiff.explain.absolute.run import Explained, Named
+from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.answer.document import BEST_GUESS, micrometres, parameter_entry
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
-from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.absolute.remainder import remainder_entry
-from sk120stiff.identify.absolute.words import findings, gap_sentence, known_calibration, unseen
-from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model, Parameter, write_model
-from sk120stiff.model.pose_reading import read_poses
-from sk120stiff.model.predicted import Columns
+from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
+from sk120stiff.model import Parameter, write_model
+from sk120stiff.model.predicted import predict_positions, prediction_table
 
 SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes certain
 
 
-def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str, Any]:
+def verdict_of_positions(answer: Explained) -> dict[str, Any]:
     """The content of `verdict.json`."""
-    final = answer.final
+    final, readings = answer.final, answer.readings
     stated = final.problem.stated_sigma
     reasons = unseen(final)
     lengths = bool(len(final.problem.lengths))
@@ -39,11 +36,9 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
     return {
         "schema": SCHEMA,
         "verdict": answer.verdict,
-        "effects": [_effect(answer, item, reasons) for item in answer.named],
+        "effects": [_effect(answer, item, reasons) for item in answer.findings],
         "parameters": [
-            _parameter(p, reasons, final.problem.reach(p))
-            for p in final.fit.model.parameters
-            if p.free
+            _parameter(p, reasons, final.problem.reach(p)) for p in final.model.parameters if p.free
         ],
         "gap": {
             "unit": "um" if lengths else "urad",
@@ -97,53 +92,22 @@ def verdict_of_positions(answer: Explained, readings: Measurements) -> dict[str,
     }
 
 
-def save_positions(
-    answer: Explained, readings: Measurements, out: Path, provenance: Mapping[str, str]
-) -> dict[str, Any]:
+def save_positions(answer: Explained, out: Path, provenance: Mapping[str, str]) -> dict[str, Any]:
     """Write verdict, model and gaps, all in one moment; the content of verdict.json."""
-    document = verdict_of_positions(answer, readings)
-    fitted = replace(known_calibration(answer.final), provenance=dict(provenance))
-    table = gaps_table(fitted, readings, answer.final.wild)
+    document = verdict_of_positions(answer)
+    fitted = replace(known_model(answer.final), provenance=dict(provenance))
+    readings = replace(answer.readings, use=answer.readings.use & ~answer.final.wild)
+    predicted = predict_positions(fitted, load_cases_of(fitted.robot, readings))
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
-        write_atomically(out / "gaps.csv", csv_text(table.items()))
+        write_atomically(out / "gaps.csv", csv_text(prediction_table(readings, predicted).items()))
         if answer.guess is not None:
-            guess = replace(known_calibration(answer.guess), provenance=dict(provenance))
+            guess = replace(known_model(answer.guess), provenance=dict(provenance))
             write_model(guess, out / BEST_GUESS)
         if answer.following is not None:
             write_atomically(out / NEXT_POSES, _next_csv(answer.following))
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
     return document
-
-
-def gaps_table(model: Model, readings: Measurements, wild: Mask | None = None) -> Columns:
-    """Predicted position, measured one and gap of every row, in axes of the instrument.
-
-    Where gauges were read, the same of the displacement along their directions.
-    """
-    load_cases = load_cases_of(model.robot, readings)
-    seen = read_poses(model, load_cases)
-    columns: dict[str, object] = {"pose": list(readings.pose)}
-    for k, axis in enumerate("xyz"):
-        columns[f"predicted_{axis}[mm]"] = seen.position[:, k] * 1e3
-    said = readings.absolute
-    if said is not None and said.channels.position is not None:
-        x = said.channels.position
-        for k, axis in enumerate("xyz"):
-            columns[f"{axis}[mm]"] = x[:, k] * 1e3
-        for k, axis in enumerate("xyz"):
-            columns[f"gap_{axis}[um]"] = (x - seen.position)[:, k] * 1e6
-    if said is not None and said.channels.shift is not None and said.channels.along is not None:
-        d, moved = said.channels.shift, model.predict(load_cases)
-        along = np.where(np.isfinite(d), np.einsum("ni,ni->n", said.channels.along, moved), np.nan)
-        columns |= {
-            "predicted_d[mm]": along * 1e3,
-            "d[mm]": d * 1e3,
-            "gap_d[um]": (d - along) * 1e6,
-        }
-    used = readings.use if wild is None else readings.use & ~wild
-    columns["use"] = used.astype(int)
-    return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
 
 
 def _next_csv(following: NextPoses) -> str:
@@ -174,7 +138,7 @@ def _none(_radians: float | None) -> None:
 
 def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[str, Any]:
     problem = answer.final.problem
-    own = [p for p in answer.final.fit.model.parameters if p.effect == item.effect]
+    own = [p for p in answer.final.model.parameters if p.effect == item.effect]
     share = None
     for before, step in pairwise(answer.steps):
         if step.label == f"+ {item.effect.id}":

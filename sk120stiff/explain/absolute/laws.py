@@ -43,7 +43,7 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
         chosen: Candidates.
         seen: The calibration about which they were.
     """
-    problem, model = seen.problem, seen.fit.model
+    problem, model = seen.problem, seen.model
     told, per = options_of(problem.measurements), 1.0 / problem.of_channels.sigma[:, None]
     laws: dict[int, tuple[Effect, ...]] = {}
     for e in chosen:
@@ -106,12 +106,12 @@ def beside_laws(
         there = _at_rest(*other, noise, load_cases)
         for name in doubt.keys() & there.keys():
             doubt[name] = max(doubt[name], abs(there[name] - here[name]))
-    fit = final.fit
     more = [
-        0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.quantity, 0.0) for p in fit.parameters
+        0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.quantity, 0.0)
+        for p in final.parameters
     ]
-    moved = np.array(more) / fit.problem.scale
-    return replace(final, fit=with_values(replace(fit, selection_uncertainty=moved)))
+    moved = np.array(more) / final.problem.scale
+    return with_values(replace(final, selection_uncertainty=moved))
 
 
 def _at_rest(

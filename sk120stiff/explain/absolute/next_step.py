@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sk120stiff.explain.absolute.run import Explained
+    from sk120stiff.explain.absolute.explained import Explained
 
 
 def headline(answer: Explained) -> str:
@@ -21,8 +21,8 @@ def headline(answer: Explained) -> str:
         return "Something is missing that no effect of the catalogue explains for sure."
     left = answer.final.form is not None or answer.lacking
     more = "; more is left than noise makes" if left else ""
-    open_ones = [item for item in answer.named if not item.settled]
-    count = len(answer.named)
+    open_ones = [item for item in answer.findings if not item.settled]
+    count = len(answer.findings)
     if not open_ones:
         what = "its name is" if count == 1 else f"its {count} names are"
         return f"Something was missing, and {what} settled{more}."

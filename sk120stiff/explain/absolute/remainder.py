@@ -28,7 +28,7 @@ def where_it_lives(
     form = seen.form
     if form is not None and form.by_joint.max() > MOSTLY:
         k = int(np.argmax(form.by_joint))
-        joint = seen.fit.model.robot.actuated[k]
+        joint = seen.model.robot.actuated[k]
         said.append(
             f"It looks as if {joint} stood off by an unknown function of the joints' angles "
             f"({100 * form.by_joint[k]:.0f} % of it)."

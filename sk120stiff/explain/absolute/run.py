@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute.accounts import (
-    GapStep,
     families_of,
+    heldout_on,
     rms,
     springs_of,
     steps_of,
     suspects_of,
 )
 from sk120stiff.explain.absolute.advice import (
-    NextPoses,
     detectable,
     next_poses,
     open_pair,
@@ -27,17 +26,18 @@ from sk120stiff.explain.absolute.advice import (
 from sk120stiff.explain.absolute.candidates import linear_at
 from sk120stiff.explain.absolute.choose import (
     Chosen,
-    Gain,
     alternatives,
     choose,
     gain,
     nothing_named,
 )
+from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.absolute.remainder import where_it_lives
-from sk120stiff.explain.findings import Contender, Detectable
+from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options
+from sk120stiff.identify import refuse_for_positions
 from sk120stiff.identify.absolute.calibrate import (
     Calibration,
     calibrate,
@@ -47,126 +47,47 @@ from sk120stiff.identify.absolute.calibrate import (
 )
 from sk120stiff.identify.absolute.remainder import (
     LEVEL,
-    Size,
     chance_of_noise,
     left_beyond_noise,
-    remainder_sentences,
 )
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
-SURE = 0.95  # probability of a name that is settled
 EVEN = 0.5  # probability that one name at least must have to be confirmed
 MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
-
-
-@dataclass(frozen=True)
-class Named:
-    """One named cause: the effect, what cannot be told from it, its probability and gain."""
-
-    effect: Effect
-    alternatives: tuple[str, ...]
-    probability: float
-    gain: Gain
-
-    @property
-    def settled(self) -> bool:
-        """Nothing else explains as much, and it is sure."""
-        return not self.alternatives and self.probability >= SURE
-
-
-@dataclass(frozen=True, eq=False)
-class Explained:
-    """What is missing where positions were read.
-
-    Attributes:
-        verdict: none, named, ambiguous or outside.
-        named: Causes in the order in which they joined.
-        base, final: Calibrations without them and with them.
-        linear: The positions linearised at the last fit but one, the base beside which all others
-            are judged.
-        steps: The gap step by step.
-        families: Family → rms per axis that its causes take off the held-out gap together [m].
-        springs: What springs in all joints would take off the held-out gap beside the named causes,
-            as a share of it; None where they are named, or nothing bends the arm.
-        dropped: What fitted and is not named, in sentences.
-        hidden: Candidates that do not show in these positions at all.
-        remainder: Rms per axis that is left beyond the noise, and its 95 % interval [m]; None: no
-            noise is stated, and what is left may be noise.
-        chance: Probability of as large a misfit if the noise were all; None as before.
-        suspects: Where nothing is confirmed: names that fit, and what they take off the held-out
-            rms [m].
-        guess: The calibration with these.
-        where: Where what is left lives, in sentences.
-        smallest: Sizes that would have been named beside the named causes.
-        probabilities: Name → probability of its being at work, of all that have one worth telling.
-        following: Readings that would tell the first open pair of names apart, or None.
-    """
-
-    verdict: str
-    named: tuple[Named, ...]
-    base: Calibration
-    final: Calibration
-    linear: Linear
-    steps: tuple[GapStep, ...]
-    families: dict[str, float]
-    springs: float | None
-    dropped: tuple[str, ...]
-    hidden: tuple[str, ...]
-    remainder: Size | None
-    chance: float | None
-    suspects: tuple[Contender, ...]
-    guess: Calibration | None
-    where: tuple[str, ...]
-    smallest: tuple[Detectable, ...]
-    probabilities: dict[str, float]
-    following: NextPoses | None
-
-    @property
-    def lacking(self) -> bool:
-        """More is left than the noise makes."""
-        return self.chance is not None and self.chance < LEVEL
-
-    def weight(self) -> tuple[str, ...]:
-        """What the arm's weight would explain where no spring is named, in a sentence."""
-        if self.springs is None:
-            return ()
-        more = f"{100 * self.springs:.2g} % more" if self.springs > 0.0 else "nothing more"
-        return (
-            f"Springs in all joints under the arm's weight would take {more} off the gap at poses "
-            "left out: they are not named.",
-        )
-
-    def left_over(self) -> tuple[str, ...]:
-        """What is left beyond the stated noise and where it lives, in sentences."""
-        return (*remainder_sentences(self.final), *self.where)
 
 
 def explain_positions(
     model: Model,
     readings: Measurements,
     *,
+    holdout: Measurements | None = None,
     options: Options | None = None,
     catalogue: Catalogue = CATALOGUE,
     progress: Callable[[str, float], None] | None = None,
 ) -> Explained:
-    """Find what is missing where readings say where markers stand.
+    """See `sk120stiff.explain.run.explain`.
 
-    Args:
-        model: Effects that are taken for granted; a rigid arm otherwise.
-        readings: Rows of positions and what goes with them.
-        options: How the search is steered.
-        catalogue: The effects that may be missing.
-        progress: Called with a phrase and a share of the work done.
-
-    Raises:
-        InputError: No such robot gave these positions, or too few poses.
-        Refusal: The fit did not converge.
+    Effects of the model are taken for granted; what else yields or is off is looked for.
     """
     options = options or Options()
+    usual = Options()
+    refuse_for_positions(
+        readings,
+        assume=options.assume,
+        max_effects=options.max_effects != usual.max_effects,
+        alpha=options.alpha != usual.alpha,
+        prior=options.prior,
+    )
+    if holdout is not None and holdout.absolute is None:
+        raise InputError(
+            "the held-out readings are no positions", remedy="Hold out readings of the same kind."
+        )
+    joints = model.robot.actuated, model.robot.kinds
+    readings = readings.with_joints(*joints)
     tell = progress or (lambda _phrase, _share: None)
     if len(readings.masked().poses) < FEWEST:
         raise InputError(
@@ -212,7 +133,7 @@ def explain_positions(
         verdict = "named" if all(item.settled for item in named) else "ambiguous"
     return Explained(
         verdict=verdict,
-        named=named,
+        findings=named,
         base=base,
         final=final,
         linear=linear,
@@ -231,6 +152,8 @@ def explain_positions(
         following=None
         if pair is None
         else next_poses(final, *pair, seed=options.seed, cell=options.cell),
+        readings=readings,
+        heldout=None if holdout is None else heldout_on(final, holdout.with_joints(*joints)),
     )
 
 
@@ -258,22 +181,20 @@ def _exactly(
     than to first order, the values found so are another start.
     """
     picked = _picked(linear, found)
-    final = refined(base, picked, readings, seen.fit.model, catalogue)
+    final = refined(base, picked, readings, seen.model, catalogue)
     noise = linear.noise(found.order)
     foretold = linear.gap(found.order, noise, held_out=False) * seen.problem.of_channels.sigma
     if _left(final) <= MORE * rms(foretold):
         return final
     known = linear.values(found.order, noise)
-    wide = final.fit.model
-    values = [
-        known.get(p.name, p.internal) for p in with_values_of(wide, seen.fit.model).parameters
-    ]
+    wide = final.model
+    values = [known.get(p.name, p.internal) for p in with_values_of(wide, seen.model).parameters]
     again = refined(base, picked, readings, wide.with_values(np.array(values)), catalogue)
     return min(final, again, key=_left)
 
 
 def _left(found: Calibration) -> float:
-    return rms(found.fit.residual * found.problem.of_channels.sigma)
+    return rms(found.residual * found.problem.of_channels.sigma)
 
 
 def _picked(linear: Linear, found: Chosen) -> list[Effect]:

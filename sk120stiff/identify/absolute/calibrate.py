@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -39,12 +40,12 @@ FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is w
 LARGEST = 0.03  # of the reach of the arm, which the fitted model of the right arm does not leave
 
 
-@dataclass(frozen=True, eq=False)
-class Calibration:
-    """Geometry and springs from positions.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Calibration(Fit):
+    """A `Fit` of positions: geometry and springs.
 
     Attributes:
-        fit: The fit; its problem is a `PoseProblem`.
+        problem: What was fitted, number by number.
         placed: The closed-form placing that came before; None where positions were not whole.
         frozen: Small errors of geometry that these readings cannot tell.
         still: Actuated joints that never move.
@@ -55,7 +56,7 @@ class Calibration:
             it is in the standard errors.
     """
 
-    fit: Fit
+    problem: PoseProblem
     placed: Placing | None
     frozen: tuple[Frozen, ...]
     still: tuple[str, ...]
@@ -64,17 +65,21 @@ class Calibration:
     notes: tuple[str, ...]
     form: ModelForm | None = None
 
+    @classmethod
+    def of(cls, found: Fit, **told: Any) -> Calibration:
+        """A fit of poses, with what is told beside it."""
+        return cls(**{own.name: getattr(found, own.name) for own in fields(Fit)}, **told)
+
     @property
-    def problem(self) -> PoseProblem:
-        """What was fitted."""
-        if not isinstance(self.fit.problem, PoseProblem):
-            raise TypeError("a calibration is a fit of poses")
-        return self.fit.problem
+    def size(self) -> str:
+        """See `Fit.size`: of lengths, or of angles where nothing else was read."""
+        gap = (self.residual * self.problem.of_channels.sigma)[self.problem.counted]
+        return f"{1e6 * np.sqrt(np.mean(gap**2)):.3g} {self.problem.unit} rms"
 
     @property
     def distances(self) -> Array:
         """(K,) length of the gap at every row with a whole position [m]."""
-        return row_lengths(self.problem, self.fit.x)
+        return row_lengths(self.problem, self.x)
 
 
 def row_lengths(problem: PoseProblem, x: Array) -> Array:
@@ -152,7 +157,15 @@ def calibrate(
     notes = [*sizes, *(placed.notes if placed is not None else ()), *unloaded]
     found = doubted(found, catalogue)
     found = beside_waves(found, catalogue) if waves else found
-    return Calibration(found, placed, frozen, still, wild, chosen, tuple(notes))
+    return Calibration.of(
+        found,
+        placed=placed,
+        frozen=frozen,
+        still=still,
+        wild=wild,
+        waves=chosen,
+        notes=tuple(notes),
+    )
 
 
 def _nowhere(readings: Measurements) -> InputError:
@@ -352,16 +365,19 @@ def refined(
 
     `near`: a model with much the same effects, from whose values to start.
     """
-    model = base.fit.model
+    model = base.model
     for effect in effects:
         model = model + effect
     if near is not None:
         model = with_values_of(model, near)
     found, frozen, wild = _fitted(model, readings, base.wild)
-    return replace(base, fit=doubted(found, catalogue), frozen=frozen, wild=wild)
+    return Calibration.of(
+        doubted(found, catalogue), placed=base.placed, frozen=frozen, still=base.still, wild=wild,
+        waves=base.waves, notes=base.notes,
+    )  # fmt: skip
 
 
 def with_model_form(found: Calibration) -> Calibration:
     """The calibration with the smooth error of the model, if any, in its standard errors."""
-    form = model_form(found.fit)
-    return replace(found, fit=widened(found.fit, form), form=form)
+    form = model_form(found)
+    return replace(widened(found, form), form=form)

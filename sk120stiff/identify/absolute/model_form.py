@@ -21,7 +21,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.base import Options
 from sk120stiff.effects.geometry import JointOffset
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.fit import Fit, with_values
+from sk120stiff.identify.fit import AnyFit, Fit, with_values
 from sk120stiff.model import Parameter
 
 MOST = 480  # numbers that sizes are estimated from: time goes with the cube
@@ -102,7 +102,7 @@ def model_form(found: Fit) -> ModelForm | None:
     )
 
 
-def widened(found: Fit, form: ModelForm | None) -> Fit:
+def widened(found: AnyFit, form: ModelForm | None) -> AnyFit:
     """The fit with standard errors that hold the smooth error: what it moves the estimates by."""
     problem = found.problem
     if form is None or not isinstance(problem, PoseProblem):

@@ -22,7 +22,7 @@ def beyond(final: Calibration, sigma: float) -> Size:
     Readings that scatter less than was stated by chance exclude no more than others: the upper end
     is at least what noise alone would hide (power-constrained, Cowan et al. 2011).
     """
-    square, freedom = final.fit.judged
+    square, freedom = final.judged
     freedom = max(freedom, 1)
     high, low = (float(stats.chi2.ppf(level, freedom)) for level in ENDS)
     shares = square / freedom, square / high, max(square / low, high / freedom)
@@ -32,8 +32,8 @@ def beyond(final: Calibration, sigma: float) -> Size:
 
 def smooth_part(final: Calibration, form: ModelForm) -> Size:
     """Rms per axis of the smooth error where no noise is stated [m]."""
-    gap = final.fit.residual * final.problem.of_channels.sigma
-    whole = len(gap) / max(final.fit.degrees_of_freedom, 1)
+    gap = final.residual * final.problem.of_channels.sigma
+    whole = len(gap) / max(final.degrees_of_freedom, 1)
     own = gap[final.problem.counted]
     best = float(np.sqrt(np.mean(own**2) * form.share * whole))
     ends = [(form.smooth / float(stats.chi2.ppf(level, form.smooth))) ** 0.5 for level in ENDS]
@@ -43,15 +43,15 @@ def smooth_part(final: Calibration, form: ModelForm) -> Size:
 def left_beyond_noise(final: Calibration) -> Size | None:
     """Rms per axis beyond the noise and its 95 % interval; None where nothing tells the two."""
     form, stated = final.form, final.problem.stated_sigma
-    if final.fit.sigma_known and stated is not None:
+    if final.sigma_known and stated is not None:
         return beyond(final, stated)
     return None if form is None else smooth_part(final, form)
 
 
 def chance_of_noise(final: Calibration) -> float | None:
     """Probability that noise alone leaves as much; None where nothing tells the two apart."""
-    if final.fit.sigma_known and final.fit.misfit is not None:
-        return final.fit.misfit[2]
+    if final.sigma_known and final.misfit is not None:
+        return final.misfit[2]
     return None if final.form is None else final.form.chance
 
 
@@ -74,7 +74,7 @@ def remainder_sentences(final: Calibration) -> list[str]:
     size = left_beyond_noise(final)
     if size is None:
         return []
-    return [in_words(size, final.problem.unit, stated=final.fit.sigma_known)]
+    return [in_words(size, final.problem.unit, stated=final.sigma_known)]
 
 
 def in_words(size: Size, unit: str, *, stated: bool) -> str:

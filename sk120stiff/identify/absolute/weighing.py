@@ -22,15 +22,15 @@ def pounds(found: Calibration) -> list[str]:
     much against it. A payload that is the same in every row tells little, and one that is fitted
     nothing.
     """
-    problem, fit = found.problem, found.fit
+    problem = found.problem
     said = problem.said
-    if not said.payload.any() or not any(p.effect.joint_spring for p in fit.parameters):
+    if not said.payload.any() or not any(p.effect.joint_spring for p in found.parameters):
         return []
-    if any(p.effect.name == "payload" for p in fit.parameters):
+    if any(p.effect.name == "payload" for p in found.parameters):
         return []
     lighter = replace(said, payload=POUND * said.payload)
     other = PoseProblem(
-        fit.model,
+        found.model,
         replace(problem.measurements, absolute=lighter),
         problem.noise,
         sigma=problem.sigma,
@@ -39,8 +39,8 @@ def pounds(found: Calibration) -> list[str]:
         tried = fitted(other)
     except Refusal:
         return []
-    share = tried.chi_square / fit.chi_square
-    if share > BETTER**2 or -0.5 * len(fit.residual) * np.log(share) < CLEAR:
+    share = tried.chi_square / found.chi_square
+    if share > BETTER**2 or -0.5 * len(found.residual) * np.log(share) < CLEAR:
         return []
     return [
         f"The payloads look like pounds: taken so, the fit leaves {100 * share**0.5:.0f} % of the "

@@ -29,25 +29,24 @@ SHARED = "these positions tell it together with errors of geometry only"
 
 def known_calibration(found: Calibration) -> Model:
     """The fitted model with its uncertainty, as it is written to a file."""
-    fit = found.fit
     problem = found.problem
-    sigma = problem.stated_sigma or fit.rms if len(problem.lengths) else None
+    sigma = problem.stated_sigma or found.rms if len(problem.lengths) else None
     source = f"{found.problem.load_cases.count} readings of positions"
-    return fit.model.known(known_estimates(fit, sigma, source))
+    return found.model.known(known_estimates(found, sigma, source))
 
 
 def gap_sentence(found: Calibration) -> str:
     """How far positions are off the model, and what the noise is taken to be."""
-    fit, problem = found.fit, found.problem
+    problem = found.problem
     distances, angles = found.distances, angle_gap(found)
     sizes = [
-        *([f"{1e6 * fit.rms:.3g} µm rms per axis"] if len(problem.lengths) else []),
+        *([f"{1e6 * found.rms:.3g} µm rms per axis"] if len(problem.lengths) else []),
         *([f"{1e6 * distances.mean():.3g} µm mean distance"] if len(distances) else []),
         *([f"{1e6 * np.sqrt(np.mean(angles**2)):.3g} µrad rms of angles"] if len(angles) else []),
     ]
     said = (
         f"Gap {', '.join(sizes)}, over {len(problem.rows)} numbers of "
-        f"{problem.load_cases.count} readings; {fit.estimated} values estimated."
+        f"{problem.load_cases.count} readings; {found.estimated} values estimated."
     )
     unstated = [kind for kind in problem.channels.present if not problem.channels.stated(kind)]
     if unstated:
@@ -58,14 +57,14 @@ def gap_sentence(found: Calibration) -> str:
             return said
         others = [kind for kind in problem.channels.present if kind not in unstated]
         said += f" Of {listed(others)}:"
-    if fit.exceeds:
+    if found.exceeds:
         return (
-            f"{said} That is {fit.noise_factor:.3g} times the stated uncertainty: more is at work "
-            "than is in the model, and the standard errors are larger by as much."
+            f"{said} That is {found.noise_factor:.3g} times the stated uncertainty: more is at "
+            "work than is in the model, and the standard errors are larger by as much."
         )
-    if fit.misfit is not None and fit.misfit[2] > SURELY and fit.noise_factor < MUCH_LESS:
+    if found.misfit is not None and found.misfit[2] > SURELY and found.noise_factor < MUCH_LESS:
         return (
-            f"{said} That is only {fit.noise_factor:.2g} times the stated uncertainty, on which "
+            f"{said} That is only {found.noise_factor:.2g} times the stated uncertainty, on which "
             "the standard errors rest: check its number and its unit."
         )
     return f"{said} That agrees with the stated uncertainty."
@@ -73,18 +72,17 @@ def gap_sentence(found: Calibration) -> str:
 
 def angle_gap(found: Calibration) -> Array:
     """(K,) what is left of every channel that is an angle [rad]."""
-    fit, problem = found.fit, found.problem
-    return np.delete(fit.residual * problem.of_channels.sigma, problem.lengths)
+    problem = found.problem
+    return np.delete(found.residual * problem.of_channels.sigma, problem.lengths)
 
 
 def unseen(found: Calibration) -> dict[str, str]:
     """Full name → reason, for every estimated parameter that the positions do not determine."""
-    fit = found.fit
     about = ABOUT if "position" not in found.problem.channels.present else SHARED
-    alone = np.linalg.norm(fit.jacobian, axis=0) * fit.problem.span > FAINTEST
+    alone = np.linalg.norm(found.jacobian, axis=0) * found.problem.span > FAINTEST
     return {
         p.name: (about if isinstance(p.effect, Viewpoint) else SHARED) if shows else NO_TORQUE
-        for p, known, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
+        for p, known, shows in zip(found.parameters, found.identifiable, alone, strict=True)
         if not known
     }
 
@@ -126,13 +124,12 @@ def _errors(frozen: Sequence[Frozen]) -> str:
 
 def _few(found: Calibration) -> list[str]:
     """That too little is left over for waves to show, which springs then stand for."""
-    fit = found.fit
-    waves = WAVES * len(fit.model.robot.actuated)
-    springs = any(isinstance(p.effect, Elastic) for p in fit.parameters)
-    if found.waves or not springs or fit.degrees_of_freedom >= waves:
+    waves = WAVES * len(found.model.robot.actuated)
+    springs = any(isinstance(p.effect, Elastic) for p in found.parameters)
+    if found.waves or not springs or found.degrees_of_freedom >= waves:
         return []
     return [
-        f"Only {fit.degrees_of_freedom} numbers are left over: waves over the joints' angles "
+        f"Only {found.degrees_of_freedom} numbers are left over: waves over the joints' angles "
         f"({waves} unknowns) could not show. That there may be such as gears usually have is in "
         "the standard errors; larger ones are not. Measure more poses."
     ]
@@ -141,9 +138,7 @@ def _few(found: Calibration) -> list[str]:
 def _implausible(found: Calibration) -> list[str]:
     """That values came out larger than any arm has them."""
     reach, hidden = found.problem.reach, unseen(found)
-    far = [
-        p for p in found.fit.model.parameters if p.name not in hidden and abs(p.internal) > reach(p)
-    ]
+    far = [p for p in found.model.parameters if p.name not in hidden and abs(p.internal) > reach(p)]
     if not far:
         return []
     told = [f"{p.name} = {p.value:.3g} {p.spec.unit}" for p in far[:SHOWN]]
@@ -155,7 +150,7 @@ def _implausible(found: Calibration) -> list[str]:
 
 def _payload(found: Calibration, readings: Measurements) -> list[str]:
     """That a payload was found that no arm carries, or that weighs less than nothing."""
-    own = [p for p in found.fit.parameters if p.effect.name == "payload" and p.spec.name == "mass"]
+    own = [p for p in found.parameters if p.effect.name == "payload" and p.spec.name == "mass"]
     if not own or readings.absolute is None or own[0].name in unseen(found):
         return []
     stated = readings.absolute.payload[readings.use]
@@ -166,7 +161,7 @@ def _payload(found: Calibration, readings: Measurements) -> list[str]:
             f"With the payload that was found the tool carries {lightest:.3g} kg: no mass is "
             "negative. Check the stated payloads and the masses of the last links in the URDF."
         ]
-    return heavier_than_the_arm(heaviest, found.fit.model.robot.total_mass, "comes out as")
+    return heavier_than_the_arm(heaviest, found.model.robot.total_mass, "comes out as")
 
 
 def _wild(found: Calibration, readings: Measurements, row: int) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.identify.checks.held_out import HeldOut, held_out, refitted
-from sk120stiff.identify.estimate import fit, likelier
+from sk120stiff.identify.estimate import fit_displacements, likelier
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import Model
@@ -106,7 +106,10 @@ def _fits(
     models: Mapping[str, Model], used: Measurements, noises: Sequence[NoiseModel]
 ) -> dict[str, Fit]:
     """All models under the noise under which the best of them is likelier."""
-    tried = [{name: fit(m, used, noise=noise) for name, m in models.items()} for noise in noises]
+    tried = [
+        {name: fit_displacements(m, used, noise=noise) for name, m in models.items()}
+        for noise in noises
+    ]
     best = [max(2.0 * found.log_likelihood for found in fits.values()) for fits in tried]
     return tried[likelier(best)]
 

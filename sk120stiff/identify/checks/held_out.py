@@ -14,7 +14,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
-from sk120stiff.identify.estimate import fit
+from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -68,7 +68,9 @@ def refitted(
     model: Model, *, noise: NoiseModel | None = None, method: Method = "trf", robust: bool = False
 ) -> Learn:
     """Learning by `fit`: values, and the noise unless it is given, from the readings at hand."""
-    return lambda readings: [fit(model, readings, noise=noise, method=method, robust=robust)]
+    return lambda readings: [
+        fit_displacements(model, readings, noise=noise, method=method, robust=robust)
+    ]
 
 
 def held_out(

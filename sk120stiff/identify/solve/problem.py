@@ -36,8 +36,7 @@ class Problem:
             raise InputError(
                 "these readings say where a marker stands, not how far a load moved it",
                 where=where,
-                remedy="Use 'sk120stiff identify' or 'sk120stiff explain', or calibrate of "
-                "sk120stiff.identify.absolute.calibrate.",
+                remedy="sk.fit and sk.explain take them, 'sk120stiff identify' and 'explain' too.",
             )
         if self.measurements.displacement is None:
             raise InputError(

@@ -21,16 +21,12 @@ COUNTS = 0.05  # probability of noise alone below which the remainder counts in 
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 
 
-def known_model(fit: Fit, left: LeftOver | None = None) -> Model:
-    """The fitted model with its uncertainty, as it is written to a file.
+def known_of_displacements(fit: Fit, left: LeftOver | None = None) -> Model:
+    """See `sk120stiff.identify.run.known_model`.
 
     It has none where as many values were estimated as were read and no σ was stated. Estimates on
     a physical bound count as free: to be cut by a bound takes an estimate no farther from the
     truth (a projection on a convex set), so nothing is said too surely.
-
-    Args:
-        fit: The fitted model.
-        left: Its remainder, where that is known already.
     """
     if not np.isfinite(fit.unit):
         return fit.model

@@ -4,7 +4,7 @@ from sk120stiff.show.stories.demo_report import demo_report
 from sk120stiff.show.stories.explain_report import explain_report
 from sk120stiff.show.stories.path_sheet import PathSheet
 from sk120stiff.show.stories.positions_report import positions_report
-from sk120stiff.show.stories.scenes import explain_scene, identify_scene
+from sk120stiff.show.stories.scenes import explain_scene, identify_scene, plan_scene
 
 __all__ = [
     "PathSheet",
@@ -12,5 +12,6 @@ __all__ = [
     "explain_report",
     "explain_scene",
     "identify_scene",
+    "plan_scene",
     "positions_report",
 ]

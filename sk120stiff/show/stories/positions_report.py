@@ -6,10 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
-from sk120stiff.explain.absolute.run import Explained
 from sk120stiff.identify.absolute.words import findings, unseen
-from sk120stiff.measurements import Measurements
 from sk120stiff.show.figures import GapStep, gap_waterfall
 from sk120stiff.show.figures.budget import budget_bars
 from sk120stiff.show.report import (
@@ -25,9 +24,7 @@ from sk120stiff.show.report import (
 from sk120stiff.show.wording import said_in
 
 
-def positions_report(
-    answer: Explained, readings: Measurements, *, data: str, reproducibility: Mapping[str, str]
-) -> Report:
+def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[str, str]) -> Report:
     """Gap step by step, named causes with their values, what cannot be told, what is left."""
     first, end = answer.steps[0], answer.steps[-1]
     unit, away = answer.final.problem.unit, end.heldout_distance
@@ -63,7 +60,7 @@ def positions_report(
         f"{item.effect.sentence()} (`{item.effect.id}`) P = {item.probability:.3f}; takes off "
         f"{100 * item.gain.share:.1f} % of the held-out gap beside the others."
         + (f" Not told from: {', '.join(item.alternatives)}." if item.alternatives else "")
-        for item in answer.named
+        for item in answer.findings
     ]
     return Report(
         f"Positions explained: {data}",
@@ -85,7 +82,7 @@ def positions_report(
                     Items(
                         [
                             *answer.weight(),
-                            *findings(answer.final, readings),
+                            *findings(answer.final, answer.readings),
                             *answer.dropped,
                             *answer.left_over(),
                         ]
@@ -101,7 +98,7 @@ def positions_report(
 def _values(answer: Explained) -> Table:
     reasons = unseen(answer.final)
     rows: list[tuple[object, ...]] = []
-    for p in answer.final.fit.parameters:
+    for p in answer.final.parameters:
         factor, unit = said_in(p.spec.unit, p.value)
         if p.name in reasons:
             rows.append((p.name, None, None, unit, reasons[p.name]))

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit
+from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
+from sk120stiff.plan import Cell, Route, straight_on
 from sk120stiff.show.scene.building import scene_of_model
-from sk120stiff.show.scene.scene import Scene
+from sk120stiff.show.scene.scene import Scene, ScenePath
+from sk120stiff.show.scene.surroundings import surroundings_of
 from sk120stiff.show.stories.pictures import ArmView
 
 
@@ -46,6 +51,28 @@ def identify_scene(
         subtitle=subtitle,
         model_file=model_file,
     )
+
+
+def plan_scene(model: Model, plan: Measurements, cell: Cell, driven: Route | None = None) -> Scene:
+    """The arm at every pose of a plan, in its order, with the loads there and what stands around.
+
+    The point's way between the poses is that of joints that go straight, by the via points of
+    `driven` where there are any.
+    """
+    said = f"{len(plan.poses)} poses in their order, {plan.n_readings} loads"
+    if cell.source:
+        said += f"; around it what {Path(cell.source).name} states"
+    scene = scene_of_model(model, plan, title=f"{model.robot.name}: plan", subtitle=said)
+    stands = np.array([pose.a for pose in scene.poses]) if driven is None else driven.a
+    a, reached = straight_on(model.robot, stands)
+    planned = np.ones(len(stands), dtype=bool) if driven is None else driven.pose >= 0
+    at = model.robot.screws(a, point=plan.point).position
+    path = ScenePath(
+        at, at, 0, said=f"first: {plan.poses[0]}", freedom="", mark="the first pose's point",
+        stops=tuple(int(k) for k in reached[planned]),
+    )  # fmt: skip
+    around = surroundings_of(cell, model.robot, scene.tree)
+    return replace(scene, path=path, surroundings=around)
 
 
 def arm_views(fit: Fit, models: Mapping[str, Model]) -> list[ArmView]:

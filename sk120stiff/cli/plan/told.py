@@ -1,0 +1,87 @@
+"""A plan as JSON and for people."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.cli.tables import plan_table, table
+from sk120stiff.plan import Plan
+
+Told = tuple[dict[str, object], list[object]]
+
+
+def told(plan: Plan) -> Told:
+    """Keys of the JSON that say what was chosen and what for, and the same for people."""
+    document, said = _parameters(plan) if plan.chosen.evidence is None else _effects(plan)
+    return {"poses": _rows(plan), **document}, [plan_table("Measure", plan), *said]
+
+
+def _rows(plan: Plan) -> list[dict[str, object]]:
+    return [
+        {
+            "pose": label,
+            "joints": dict(zip(plan.joint_names, a.tolist(), strict=True)),
+            "wrench": wrench.tolist(),
+        }
+        for label, a, wrench in zip(plan.pose, plan.joints, plan.wrench, strict=True)
+    ]
+
+
+def _parameters(plan: Plan) -> Told:
+    random, spread = plan.gain
+    expected: list[dict[str, object]] = []
+    rows: list[tuple[object, ...]] = []
+    blind: list[object] = []
+    for item in plan.expected:
+        p, why = item.parameter, item.reason
+        public, unit = p.spec.public_std(p.internal, item.std), p.spec.unit
+        expected.append(
+            {
+                "name": p.name,
+                "value": p.value,
+                "std": None if why else public,
+                "unit": unit,
+                "internal_std": None if why else item.std,
+                "internal_unit": p.spec.internal_unit,
+                "reason": why,
+            }
+        )
+        if why:
+            blind.append(f"{p.name} cannot be seen: {why}.")
+            rows.append((p.name, p.value, "cannot be seen", unit))
+            continue
+        shown = (public, unit) if np.isfinite(public) else (item.std, p.spec.internal_unit)
+        rows.append((p.name, p.value, *shown))
+    document = {
+        "criterion": "D-optimal",
+        "for": list(plan.chosen.names),
+        "gain": random,
+        "gain_over_spread": spread,
+        "expected": expected,
+    }
+    return document, [
+        table("To expect", ["parameter", "value", "std. error", "unit"], rows),
+        f"Standard errors {random:.2f} times smaller than with random poses, {spread:.2f} times "
+        "smaller than with well-spread ones.",
+        *blind,
+    ]
+
+
+def _effects(plan: Plan) -> Told:
+    random, spread = plan.gain
+    first, second = plan.chosen.names
+    before, after = plan.chosen.evidence or (0.0, 0.0)
+    document: dict[str, object] = {
+        "criterion": "T-optimal",
+        "between": [first, second],
+        "gain": random,
+        "gain_over_spread": spread,
+        "evidence": after,
+        "evidence_before": before,
+    }
+    verdict = "enough to tell them apart" if after > 3.3 else "not enough: plan more readings"
+    return document, [
+        f"Evidence between {first} and {second}: {after:.2f} standard errors ({verdict}), "
+        f"{before:.2f} before.",
+        f"{random:.2f} times that of random poses, {spread:.2f} times that of well-spread ones.",
+    ]

@@ -1,0 +1,144 @@
+"""What `explain` answers of positions: frozen data, ready to be shown or written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sk120stiff.effects import Effect
+from sk120stiff.explain.absolute.accounts import GapStep
+from sk120stiff.explain.absolute.advice import NextPoses
+from sk120stiff.explain.absolute.choose import Gain
+from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.findings import Contender, Detectable
+from sk120stiff.identify import Calibration
+from sk120stiff.identify.absolute.remainder import LEVEL, Size, remainder_sentences
+from sk120stiff.measurements import Measurements
+
+if TYPE_CHECKING:
+    from sk120stiff.show import Report
+
+SURE = 0.95  # probability of a name that is settled
+
+
+@dataclass(frozen=True)
+class Named:
+    """One named cause: the effect, what cannot be told from it, its probability and gain."""
+
+    effect: Effect
+    alternatives: tuple[str, ...]
+    probability: float
+    gain: Gain
+
+    @property
+    def settled(self) -> bool:
+        """Nothing else explains as much, and it is sure."""
+        return not self.alternatives and self.probability >= SURE
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Explained:
+    """What is missing where positions were read.
+
+    Attributes:
+        verdict: none, named, ambiguous or outside.
+        findings: Causes in the order in which they joined.
+        base, final: Calibrations without them and with them.
+        linear: The positions linearised at the last fit but one, the base beside which all others
+            are judged.
+        steps: The gap step by step.
+        families: Family → rms per axis that its causes take off the held-out gap together [m].
+        springs: What springs in all joints would take off the held-out gap beside the named causes,
+            as a share of it; None where they are named, or nothing bends the arm.
+        dropped: What fitted and is not named, in sentences.
+        hidden: Candidates that do not show in these positions at all.
+        remainder: Rms per axis that is left beyond the noise, and its 95 % interval [m]; None: no
+            noise is stated, and what is left may be noise.
+        chance: Probability of as large a misfit if the noise were all; None as before.
+        suspects: Where nothing is confirmed: names that fit, and what they take off the held-out
+            rms [m].
+        guess: The calibration with these.
+        where: Where what is left lives, in sentences.
+        smallest: Sizes that would have been named beside the named causes.
+        probabilities: Name → probability of its being at work, of all that have one worth telling.
+        following: Readings that would tell the first open pair of names apart, or None.
+        readings: What was explained, masked rows included.
+        heldout: Rms per axis and mean distance at readings kept out of everything [m]; None where
+            there were none.
+    """
+
+    verdict: str
+    findings: tuple[Named, ...]
+    base: Calibration
+    final: Calibration
+    linear: Linear
+    steps: tuple[GapStep, ...]
+    families: dict[str, float]
+    springs: float | None
+    dropped: tuple[str, ...]
+    hidden: tuple[str, ...]
+    remainder: Size | None
+    chance: float | None
+    suspects: tuple[Contender, ...]
+    guess: Calibration | None
+    where: tuple[str, ...]
+    smallest: tuple[Detectable, ...]
+    probabilities: dict[str, float]
+    following: NextPoses | None
+    readings: Measurements
+    heldout: tuple[float, float] | None = None
+
+    def __repr__(self) -> str:
+        names = ", ".join(item.effect.id for item in self.findings)
+        first, last = (1e6 * self.steps[k].fit_rms for k in (0, -1))
+        gap = f"{first:.3g} → {last:.3g}" if self.findings else f"{first:.3g}"
+        said = f"{self.verdict} {names}".rstrip()
+        return f"<Explained: {said}; gap {gap} {self.final.problem.unit} rms>"
+
+    @property
+    def lacking(self) -> bool:
+        """More is left than the noise makes."""
+        return self.chance is not None and self.chance < LEVEL
+
+    def weight(self) -> tuple[str, ...]:
+        """What the arm's weight would explain where no spring is named, in a sentence."""
+        if self.springs is None:
+            return ()
+        more = f"{100 * self.springs:.2g} % more" if self.springs > 0.0 else "nothing more"
+        return (
+            f"Springs in all joints under the arm's weight would take {more} off the gap at poses "
+            "left out: they are not named.",
+        )
+
+    def left_over(self) -> tuple[str, ...]:
+        """What is left beyond the stated noise and where it lives, in sentences."""
+        return (*remainder_sentences(self.final), *self.where)
+
+    def next_readings(self) -> Measurements | None:
+        """The poses and loads that would tell names apart, as a plan; None: none are needed."""
+        return None if self.following is None else self.following.readings
+
+    def save(
+        self, folder: str | os.PathLike[str], *, provenance: Mapping[str, str] | None = None
+    ) -> dict[str, Any]:
+        """Write verdict.json, model.yaml, gaps.csv; see `Explanation.save`."""
+        from sk120stiff.explain.absolute.document import save_positions
+
+        return save_positions(self, Path(folder), provenance or {})
+
+    def report(self, file: str | os.PathLike[str] | None = None, **told: Any) -> Report:
+        """The report that `sk120stiff explain` writes; see `Explanation.report`."""
+        from sk120stiff.show import reproducibility
+        from sk120stiff.show.stories import positions_report
+
+        path = self.readings.path
+        told.setdefault("data", "" if path is None else path.name)
+        if "reproducibility" not in told:
+            told["reproducibility"] = reproducibility("Explained.report", [path] if path else [])
+        report = positions_report(self, **told)
+        if file is not None:
+            report.write(file)
+        return report

@@ -1,0 +1,108 @@
+"""The verb `fit`: displacements or positions become a `Fit`, and that a model to be kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sk120stiff.errors import InputError, listed
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
+from sk120stiff.identify.absolute.weighing import pounds
+from sk120stiff.identify.absolute.words import known_calibration
+from sk120stiff.identify.estimate import fit_displacements
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.solvers import Method
+from sk120stiff.identify.uncertainty.known_model import known_of_displacements
+from sk120stiff.identify.uncertainty.left_over import LeftOver
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.model import Model
+
+
+def fit(
+    model: Model,
+    measurements: Measurements,
+    *,
+    noise: NoiseModel | None = None,
+    method: Method = "trf",
+    robust: bool = False,
+    fix: Sequence[str] = (),
+    waves: bool = True,
+) -> Fit:
+    """Estimate a model's free parameters from readings, at exact equilibrium.
+
+    Of absolute readings the instrument's frame, the marker's place and errors of geometry are
+    estimated too, as far as they can be told; the result is a `Calibration`, which is a `Fit`.
+
+    Args:
+        model: Starting values, and which parameters are free (`Parameter.free`).
+        measurements: Readings; masked rows are left out.
+        noise: Covariance of displacements. Default: what the data say of themselves (`candidates`).
+            A zero that nobody described is decided by the likelihood of the fits, and in doubt
+            shared; a σ that neither the data nor repeats tell is estimated with the fit.
+        method: ``"trf"`` (trust region, bounds) or ``"lm"`` (Levenberg–Marquardt); both reach the
+            same. Of displacements.
+        robust: Trust displacements less that lie far from all others (Huber's loss on whole
+            readings).
+        fix: Full names of parameters to keep at their values.
+        waves: Of positions: let transmission errors in where they show. Without them the geometry
+            fits best alone, and springs take the blame.
+
+    Raises:
+        InputError: No readings, no loads, nothing free, too few readings for the parameters, or a
+            choice that does nothing for such readings.
+        Refusal: The fit did not converge, no equilibrium exists, or the readings show none of the
+            parameters.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> folder = sk.bundled_robots()["motoman_sk120"] / "data"
+        >>> readings = sk.read(folder / "table2_measured.csv")
+        >>> found = sk.fit(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+        >>> print(f"{1e6 * found.rms:.1f} µm rms")
+        17.2 µm rms
+    """
+    if measurements.absolute is not None:
+        refuse_for_positions(
+            measurements, noise=noise is not None, method=method != "trf", robust=robust
+        )
+        readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
+        found = with_model_form(calibrate(model, readings, freedom=fix, waves=waves))
+        return replace(found, notes=(*found.notes, *pounds(found)))
+    if not waves:
+        raise InputError(
+            "only positions show waves of a gear, and these readings are displacements",
+            where=str(measurements.path or "measurements"),
+            remedy="Leave the choice of waves out.",
+        )
+    kept = {model.parameter(name).name for name in fix}
+    parameters = (replace(p, free=p.free and p.name not in kept) for p in model.parameters)
+    start = replace(model, parameters=tuple(parameters)) if kept else model
+    return fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
+
+
+def known_model(fit: Fit, left: LeftOver | None = None) -> Model:
+    """The fitted model with its uncertainty, as it is written to a file.
+
+    Args:
+        fit: The fitted model.
+        left: The remainder of displacements, where that is known already.
+    """
+    if isinstance(fit, Calibration):
+        return known_calibration(fit)
+    return known_of_displacements(fit, left)
+
+
+def refuse_for_positions(measurements: Measurements, **given: object) -> None:
+    """Refuse what does nothing for positions, rather than pass it over.
+
+    Raises:
+        InputError: One of them was given.
+    """
+    unused = [name for name, value in given.items() if value]
+    if unused:
+        raise InputError(
+            f"{listed(unused)} {'is' if len(unused) == 1 else 'are'} for displacements, and these "
+            "readings are positions",
+            where=str(measurements.path or "measurements"),
+            remedy="Leave it out." if len(unused) == 1 else "Leave them out.",
+        )
