@@ -93,7 +93,7 @@ class Screws:
     def alone(self, coordinates: Index) -> Screws:
         """The same pose where these coordinates alone may change, with the joints they move."""
         first = self.first[..., coordinates]
-        moved = first.any(axis=(*range(first.ndim - 2), -1))
+        moved = np.asarray(first.any(axis=(*range(first.ndim - 2), -1)))
         second = None if self.second is None else self.second.along(coordinates)
         if second is not None:
             moved[second.joints] = True
