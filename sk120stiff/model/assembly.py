@@ -364,7 +364,7 @@ def _adjoint(rest: Equilibrium, soft: Index, J: Array) -> Array:
     """
     if not len(soft):
         return J
-    rows = rest.feedback[..., soft, :]
+    rows = rest.feedback(soft)
     newton = np.eye(len(soft)) - rows[..., soft]
     Y_soft = np.swapaxes(
         np.linalg.solve(np.swapaxes(newton, -1, -2), np.swapaxes(J[..., soft], -1, -2)), -1, -2

@@ -134,7 +134,7 @@ def symmetric_part(matrix: Array) -> Array:
 
 def _congruent(K: Array, G: Array) -> Array:
     """Gᵀ K G (..., n, n); where joints only stand in another order than coordinates, by index."""
-    if G.ndim == 2 and G.shape[0] == G.shape[1]:
+    if G.ndim == 2 and G.shape[0] == G.shape[1] > 0:
         there = G != 0.0
         if (there.sum(axis=0) == 1).all() and (there.sum(axis=1) == 1).all():
             row = there.argmax(axis=0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,11 +38,11 @@ class Equilibrium:
         screws: Kinematics there, at the point of measurement.
         torques: (..., n) generalised forces of the load [N·m or N].
         compliance: (..., n, n) tangent compliance of the springs [rad/(N·m)].
-        K_C: (..., n, n) complementary stiffness of the load there [N·m/rad].
         weights: (..., n) torques of the arm's own weight [N·m or N]; zero where it was not asked
             for.
-        feedback: (..., n, n) derivative of all elongations by the coordinates, C K_C and the
-            weight's share.
+        pulled: Kinematics at the point where the force acts.
+        load: (..., 6) the load there, base axes [N, N·m].
+        weight: The arm's own weight, if it was asked for.
         iterations: Newton steps taken.
     """
 
@@ -49,10 +50,24 @@ class Equilibrium:
     screws: Screws
     torques: Array
     compliance: Array
-    K_C: Array
     weights: Array
-    feedback: Array
+    pulled: Screws
+    load: Array
+    weight: Weight | None
     iterations: int
+
+    @cached_property
+    def K_C(self) -> Array:
+        """(..., n, n) complementary stiffness of the load there [N·m/rad]."""
+        return complementary_stiffness(self.pulled, self.load)
+
+    def feedback(self, rows: Index) -> Array:
+        """(..., r, n) derivative of r elongations by all coordinates: C K_C, the weight's share."""
+        out = self.compliance[..., rows, :] @ self.K_C
+        if self.weight is not None:
+            hanging = gravity_stiffness(self.pulled, self.weight.gravity)
+            out = out + self.weight.compliance[..., rows, :] @ hanging
+        return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,20 +143,23 @@ def equilibrium(
     if not trusted.all():
         raise _beyond(1.0)
     screws = state.screws if force_point is None else state.screws.at(_given(point))
-    compliance = np.broadcast_to(state.compliance, state.K_C.shape)
+    compliance = np.broadcast_to(state.compliance, (*z.shape, z.shape[-1]))
     return Equilibrium(
-        z, screws, state.torques, compliance, state.K_C, state.weights, state.feedback, steps
+        z, screws, state.torques, compliance, state.weights, state.screws, load, weight, steps
     )
 
 
 @dataclass(frozen=True, eq=False)
 class _State:
-    """What holds at coordinates z: `error` (..., s) is what they are off, of those that yield."""
+    """What holds at coordinates z.
+
+    Of the s that yield, `error` (..., s) is what they are off, and `feedback` (..., s, s) the
+    derivative of their elongations by themselves.
+    """
 
     screws: Screws
     torques: Array
     compliance: Array
-    K_C: Array
     weights: Array
     feedback: Array
     error: Array
@@ -166,17 +184,18 @@ class _Statics:
         screws = self.mechanism.screws(z, self.point)
         torques = screws.torques(load)
         elongation, compliance = self.law(torques)
-        K_C = complementary_stiffness(screws, load)
-        feedback = compliance @ K_C
+        yielding = screws.alone(self.pick)
+        own = (..., self.pick[:, None], self.pick)
+        feedback = compliance[own] @ complementary_stiffness(yielding, load)
         weights = np.zeros_like(torques)
         if self.weight is not None:
             sag, gravity = self.weight.compliance, self.weight.gravity
             weights = screws.gravity_torques(gravity) * heavy
             elongation = elongation + (sag @ weights[..., None])[..., 0]
-            hanging = gravity_stiffness(screws, gravity) * heavy[..., None]
-            feedback = feedback + sag @ hanging
+            hanging = gravity_stiffness(yielding, gravity) * heavy[..., None]
+            feedback = feedback + sag[own] @ hanging
         error = (z - self.z_0 - elongation)[..., self.pick]
-        return _State(screws, torques, compliance, K_C, weights, feedback, error)
+        return _State(screws, torques, compliance, weights, feedback, error)
 
     def newton(
         self,
@@ -196,7 +215,7 @@ class _Statics:
         good = np.ones(z.shape[:-1], dtype=bool)
         for step in range(iterations + 1):
             state = self.at(z, loaded, hung)
-            inner = state.feedback[..., pick[:, None], pick]
+            inner = state.feedback
             good = good & _stable(inner) & np.isfinite(state.error).all(axis=-1)
             if not good.any():
                 break

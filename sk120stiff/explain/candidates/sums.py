@@ -5,13 +5,15 @@ A thousand models of the same readings share XᵀX and Xᵀy; every one of them 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dtrtrs
+from scipy.linalg import cho_solve
+from scipy.linalg.lapack import dposv, dtrtrs
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 
 DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
 
@@ -32,22 +34,24 @@ class Sums:
     _inverses: dict[bytes, Array] = field(default_factory=dict)
     scores: dict[bytes, Any] = field(default_factory=dict)
 
-    def left_by(self, solved: Solved) -> float:
-        """What a solution leaves of yᵀy."""
-        v = solved.values
-        inner = self.gram[solved.columns[:, None], solved.columns] @ v
-        return self.square + float(v @ (inner - 2.0 * self.moment[solved.columns]))
+    def left_by(self, solved: Solved | Solutions) -> Array:
+        """What a solution leaves of yᵀy, or each of several."""
+        v, columns = solved.values, solved.columns
+        inner = (self.gram[columns[..., None], columns[..., None, :]] @ v[..., None])[..., 0]
+        return np.asarray(self.square + (v * (inner - 2.0 * self.moment[columns])).sum(axis=-1))
 
-    def over(self, columns: Index, right: Array) -> Array:
-        """(XᵀX)⁻¹ of some columns, on a right-hand side (k, ...)."""
-        key = columns.tobytes()
+    def inverse(self, columns: Index, some: Mask) -> Array:
+        """(k, k) inverse of XᵀX for some of k columns, zero for the others."""
+        key = columns.tobytes() + some.tobytes()
         if key not in self._inverses:
-            gram = self.gram[np.ix_(columns, columns)]
+            within = columns[some]
+            gram = self.gram[np.ix_(within, within)]
             scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
-            self._inverses[key] = np.linalg.pinv(gram * np.outer(scale, scale)) * np.outer(
-                scale, scale
-            )
-        return np.asarray(self._inverses[key] @ right)
+            both = np.outer(scale, scale)
+            out = np.zeros((len(columns), len(columns)))
+            out[np.ix_(some, some)] = np.linalg.pinv(gram * both) * both
+            self._inverses[key] = out
+        return self._inverses[key]
 
     def marginal(self, members: Index, size: float) -> Marginal:
         """The sums with columns integrated out whose values are draws of one size τ.
@@ -91,7 +95,7 @@ class Marginal:
         """The solution of the other columns with the most likely draws beside it."""
         right = whole.moment[self.members]
         right = right - whole.gram[np.ix_(self.members, rest.columns)] @ rest.values
-        draws = np.linalg.solve(self.factor.T, np.linalg.solve(self.factor, right))
+        draws = np.asarray(cho_solve((self.factor, True), right), dtype=float)
         return Solved(
             np.concatenate([rest.columns, self.members]),
             np.concatenate([rest.values, draws]),
@@ -114,42 +118,78 @@ class Solved:
     rss: float
 
 
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """Least squares over several sets of columns, each filled up to k.
+
+    Attributes:
+        columns: (m, k) the columns asked for.
+        moves: (m, k) those of them that moved freely.
+        values: (m, k) their values in typical sizes, zero for the others.
+        rss: (m,) residual sums of squares.
+    """
+
+    columns: Index
+    moves: Mask
+    values: Array
+    rss: Array
+
+    def each(self) -> list[Solved]:
+        """One after the other."""
+        rows = zip(self.columns, self.moves, self.values, self.rss.tolist(), strict=True)
+        return [Solved(columns[moves], v[moves], rss) for columns, moves, v, rss in rows]
+
+
 def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) -> Solved:
-    """Least squares over `columns` with non-negative values where `lower` is zero.
+    """Least squares over one set of columns, see `solve_sets`."""
+    return solve_sets(sums, [columns], lower, plausible).each()[0]
+
+
+def solve_sets(sums: Sums, sets: Sequence[Index], lower: Array, plausible: Array) -> Solutions:
+    """Least squares over sets of columns with non-negative values where `lower` is zero.
 
     Values are drawn towards zero as if their plausible range were a standard deviation, which only
     counts in directions that the readings do not show; `rss` holds that share too.
 
     Columns that would be negative are dropped, the worst first.
     """
-    drawn = plausible[columns] ** -2.0
-    size = np.sqrt(sums.gram[columns, columns] + drawn)
-    seen = size > 0.0
-    columns, size = columns[seen], size[seen]
+    shape = len(sets), max(len(each) for each in sets)
+    columns, moves = np.zeros(shape, dtype=np.intp), np.zeros(shape, dtype=bool)
+    values, rss = np.zeros(shape), np.zeros(len(sets))
+    for k, each in enumerate(sets):
+        places, found, rss[k] = _least_squares(sums, each, lower, plausible)
+        columns[k, : len(each)], moves[k, places], values[k, places] = each, True, found
+    return Solutions(columns, moves, values, rss)
+
+
+def _least_squares(
+    sums: Sums, columns: Index, lower: Array, plausible: Array
+) -> tuple[Index, Array, float]:
+    """Places of those columns that move, their values, and the residual sum of squares."""
+    size = np.sqrt(sums.gram[columns, columns] + plausible[columns] ** -2.0)
+    active = np.flatnonzero(size > 0.0)
+    size[size == 0.0] = 1.0
     whole = sums.gram[columns[:, None], columns] / (size[:, None] * size)
     whole.flat[:: len(columns) + 1] = 1.0
     right = sums.moment[columns] / size
     bound = lower[columns] == 0.0
-    active = np.arange(len(columns))
     while len(active):
-        scaled = whole[active[:, None], active] if len(active) < len(columns) else whole
-        factor, failed = dpotrf(scaled, lower=1, clean=0)
+        scaled = whole.take(active, axis=0).take(active, axis=1)
+        factor, found, failed = dposv(scaled, right[active], lower=1)
         if failed:
-            active = np.delete(active, _dependent(scaled))
-            continue
-        least = int(factor.diagonal().argmin())
-        if factor[least, least] < DEPENDENT:
-            active = np.delete(active, least)
-            continue
-        half, _ = dtrtrs(factor, right[active], lower=1)
-        found, _ = dtrtrs(factor, half, lower=1, trans=1)
-        forbidden = (found < 0.0) & bound[active]
-        if not forbidden.any():
-            rss = max(sums.square - float(half @ half), 0.0)
-            return Solved(columns[active], found / size[active], rss)
-        worst = int(np.where(forbidden, found, np.inf).argmin())
-        active = np.concatenate((active[:worst], active[worst + 1 :]))
-    return Solved(columns[:0], np.zeros(0), sums.square)
+            drop = _dependent(scaled)
+        else:
+            pivots = factor.diagonal()
+            drop = int(pivots.argmin())
+            if pivots[drop] >= DEPENDENT:
+                held = np.where(bound[active], found, 0.0)
+                drop = int(held.argmin())
+                if held[drop] >= 0.0:
+                    half, _ = dtrtrs(factor, right[active], lower=1)
+                    rss = max(sums.square - float(half @ half), 0.0)
+                    return active, found / size[active], rss
+        active = np.concatenate((active[:drop], active[drop + 1 :]))
+    return active, np.zeros(0), sums.square
 
 
 def _dependent(scaled: Array) -> int:

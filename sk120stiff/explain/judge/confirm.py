@@ -13,7 +13,7 @@ from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import Sums
 from sk120stiff.explain.findings import Confirmation
 from sk120stiff.explain.select.beam import largest, likeliest, promises
-from sk120stiff.explain.select.score import Scored, score_set
+from sk120stiff.explain.select.score import Scored, score_set, score_sets
 from sk120stiff.identify import drawn_parts
 
 FOLDS = 5  # parts in which poses are left out, as is usual
@@ -123,12 +123,14 @@ def _winner(
     promised = promises(regression, sums, beside.solved)
     order = [int(e) for e in np.argsort(-largest(promised)) if int(e) not in rest][:RIVALS]
     contenders = {*same, *(e for e in order if not regression.candidates[e].random_effects)}
-    scored = {}
-    for e in contenders:
-        likely = start | {e: likeliest(regression, sums, e, promised[e])}
-        scored[e] = score_set(regression, sums, (*rest, e), start=likely, only=())
+    likely = [
+        beside.by_variant | {e: likeliest(regression, sums, e, promised[e])} for e in contenders
+    ]
+    sets = [dict(sorted(variants.items())) for variants in likely]
+    scored = dict(zip(contenders, score_sets(regression, sums, sets), strict=True))
+    for e, laws in zip(contenders, sets, strict=True):
         if not scored[e].plausible:  # another law of it may be
-            scored[e] = score_set(regression, sums, (*rest, e), start=likely, only=(e,))
+            scored[e] = score_set(regression, sums, laws, start=laws, only=(e,))
     fair = {e: model.score for e, model in scored.items() if model.plausible}
     best = min(fair, key=lambda e: fair[e], default=None)
     if best is None or best in same or effect not in fair:

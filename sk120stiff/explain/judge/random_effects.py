@@ -52,6 +52,6 @@ def is_constant(found: Selection, effect: Effect) -> bool:
         return True
 
     def evidence(each: OwnAtPoses) -> float:
-        return each.statistic - price_of_sizes(each.statistic, each.freedom, np.inf)
+        return each.statistic - float(price_of_sizes(each.statistic, each.freedom, np.inf))
 
     return evidence(own["constant"]) > evidence(own["proportional"])

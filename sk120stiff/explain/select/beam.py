@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import Solved, Sums
-from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set
+from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set, score_sets
 
 BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
@@ -68,12 +68,15 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
     total = regression.sums()
     seen: dict[tuple[int, ...], Scored] = {}
 
-    def scored(variants: Mapping[int, int]) -> Scored:
-        """A model by these variants, until it proves good enough to look at all."""
-        key = tuple(sorted(variants))
-        if key not in seen:
-            seen[key] = score_set(regression, total, key, start=variants, only=())
-        return seen[key]
+    def scored(models: Iterable[Mapping[int, int]]) -> list[Scored]:
+        """Models by these variants, until they prove good enough to look at all."""
+        wanted: dict[tuple[int, ...], Mapping[int, int]] = {}
+        for variants in models:
+            wanted.setdefault(tuple(sorted(variants)), dict(sorted(variants.items())))
+        new = [key for key in wanted if key not in seen]
+        found = score_sets(regression, total, [wanted[key] for key in new])
+        seen.update(zip(new, found, strict=True))
+        return [seen[key] for key in wanted]
 
     def settled(model: Scored) -> Scored:
         seen[model.effects] = score_set(regression, total, model.effects, start=model.by_variant)
@@ -82,7 +85,7 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
     front = [score_set(regression, total, ())]
     seen[()] = front[0]
     for _ in range(max_effects):
-        grown: dict[tuple[int, ...], Scored] = {}
+        children: list[dict[int, int]] = []
         for model in front:
             promised = promises(regression, total, model.solved)
             promise = largest(promised)
@@ -92,8 +95,8 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
             steps += _all_gears(regression, model, promise, max_effects)
             for step in steps:
                 likely = {e: likeliest(regression, total, e, promised[e]) for e in step}
-                child = scored(model.by_variant | likely)
-                grown[child.effects] = child
+                children.append(model.by_variant | likely)
+        grown = {child.effects: child for child in scored(children)}
         least = min((m.score for m in grown.values() if m.plausible), default=np.inf)
         beyond = (m for m in grown.values() if not m.plausible and m.score < least)
         for model in sorted(beyond, key=lambda m: m.score)[:width]:  # by another law they may be
@@ -113,10 +116,9 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
     for model in sorted(seen.values(), key=lambda m: m.score)[:width]:
         smaller = model
         while smaller.effects:  # backward: what became superfluous
-            less = [
-                scored({f: k for f, k in smaller.by_variant.items() if f != e})
-                for e in smaller.effects
-            ]
+            less = scored(
+                {f: k for f, k in smaller.by_variant.items() if f != e} for e in smaller.effects
+            )
             before, smaller = smaller, min(less, key=lambda m: (not m.plausible, m.score))
             if smaller.score > before.score:
                 break
@@ -127,11 +129,8 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
 
 def likeliest(regression: Regression, sums: Sums, effect: int, promised: Array) -> int:
     """The variant that promises the best score."""
-    rows = max(sums.count, 2.0)
-    sizes = [
-        price_of_sizes(gain, len(part), rows)
-        for gain, part in zip(promised.tolist(), regression.variants[effect], strict=True)
-    ]
+    counts = np.array([len(part) for part in regression.variants[effect]])
+    sizes = price_of_sizes(promised, counts, max(sums.count, 2.0))
     return int(np.argmax(promised - sizes - regression.prices_of_choice[effect]))
 
 

@@ -17,10 +17,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Index
+from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
-from sk120stiff.explain.candidates.sums import Solved, Sums, solve_columns
+from sk120stiff.explain.candidates.sums import Solutions, Solved, Sums, solve_sets
 
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
 PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit
@@ -78,17 +79,18 @@ def score_set(
     now = {e: known.get(e, 0) for e in chosen}
     if untied is not None and now[untied] == regression.tied[untied]:
         now[untied] = 0
-    best = _at(regression, sums, now, untied)
+    best = score_sets(regression, sums, [now], untied)[0]
     moving = [e for e in chosen if len(regression.variants[e]) > 1]
     moving = [e for e in moving if only is None or e in only]
     for _ in range(SWEEPS):
         before = best
         for e in moving:
-            tried = [
-                _at(regression, sums, now | {e: k}, untied)
+            others = [
+                now | {e: k}
                 for k in range(len(regression.variants[e]))
                 if k != now[e] and not (e == untied and k == regression.tied[e])
             ]
+            tried = score_sets(regression, sums, others, untied)
             better = min(tried, key=lambda m: (not m.plausible, m.score), default=best)
             if (better.plausible, -better.score) > (best.plausible, -best.score):
                 best = better
@@ -98,32 +100,43 @@ def score_set(
     return best
 
 
-def _at(
-    regression: Regression, sums: Sums, variants: Mapping[int, int], untied: int | None
-) -> Scored:
-    """Score the base model with some candidates, each by one of its variants."""
-    chosen = tuple(variants)
-    key = np.array([*variants.items(), (-1 if untied is None else untied, -1)]).tobytes()
-    if key in sums.scores:
-        found: Scored = sums.scores[key]
-        return found
-    parts = [
-        regression.variants[e][k]
-        for e, k in variants.items()
-        if not regression.candidates[e].random_effects
-    ]
-    drawn = [regression.columns[e] for e in chosen if regression.candidates[e].random_effects]
-    if drawn:
-        solved, score = _with_draws(regression, sums, parts, drawn)
-    else:
-        solved, score = _with_parts(regression, sums, parts)
-    added = ~regression.in_base[solved.columns]
-    limits = regression.plausible[solved.columns[added]]
-    plausible = bool((np.abs(solved.values[added]) <= limits).all())
-    score += sum(_of_choice(regression, e, k, e != untied) for e, k in variants.items())
-    made = Scored(chosen, float(score), solved, plausible, tuple(variants.values()))
-    sums.scores[key] = made
-    return made
+def score_sets(
+    regression: Regression,
+    sums: Sums,
+    sets: Sequence[Mapping[int, int]],
+    untied: int | None = None,
+) -> list[Scored]:
+    """Score the base model with several sets of candidates, each by one of its variants.
+
+    Args:
+        regression, sums: Linearised readings, and the poses of them that count.
+        sets: The variant of every candidate, ascending.
+        untied: A candidate that has to enter with all its parameters.
+    """
+    last = (-1 if untied is None else untied, -1)
+    keys = [np.array([*variants.items(), last]).tobytes() for variants in sets]
+    alike: dict[tuple[tuple[int, ...], int], dict[bytes, Mapping[int, int]]] = {}
+    for key, variants in zip(keys, sets, strict=True):
+        if key not in sums.scores:
+            drawn = tuple(e for e in variants if regression.candidates[e].random_effects)
+            alike.setdefault((drawn, len(variants)), {})[key] = variants
+    for (drawn, _), same in alike.items():
+        several = [
+            [regression.variants[e][k] for e, k in variants.items() if e not in drawn]
+            for variants in same.values()
+        ]
+        if drawn:
+            solutions = _with_draws(regression, sums, several, drawn)
+        else:
+            solutions = _with_parts(regression, sums, several)
+        for (key, variants), (solved, score) in zip(same.items(), solutions, strict=True):
+            added = ~regression.in_base[solved.columns]
+            limits = regression.plausible[solved.columns[added]]
+            plausible = bool((np.abs(solved.values[added]) <= limits).all())
+            score += sum(_of_choice(regression, e, k, e != untied) for e, k in variants.items())
+            chosen, laws = tuple(variants), tuple(variants.values())
+            sums.scores[key] = Scored(chosen, float(score), solved, plausible, laws)
+    return [sums.scores[key] for key in keys]
 
 
 def _of_choice(regression: Regression, effect: int, variant: int, tied: bool) -> float:
@@ -132,54 +145,60 @@ def _of_choice(regression: Regression, effect: int, variant: int, tied: bool) ->
     return price_of_choice(regression, effect, variant, tied=False)
 
 
-def _with_parts(regression: Regression, sums: Sums, parts: Sequence[Index]) -> tuple[Solved, float]:
-    """Solution and score of the base model with the columns of some effects."""
-    columns = np.concatenate([regression.base, *parts]).astype(np.intp)
-    solved = solve_columns(sums, columns, regression.lower, regression.plausible)
+def _with_parts(
+    regression: Regression, sums: Sums, several: Sequence[Sequence[Index]]
+) -> list[tuple[Solved, float]]:
+    """Solution and score of the base model with the columns of some effects, for several such."""
+    base = regression.base
+    sets = [np.concatenate([base, *parts]) for parts in several]
+    solved = solve_sets(sums, sets, regression.lower, regression.plausible)
     n = max(sums.count, 2.0)
-    price = len(parts) * price_of_looking(regression, n) + _sizes(regression, sums, solved, parts)
     # A spring of the base model is there whether it moves or not: none is cheaper for being rigid.
-    price += len(regression.base) * np.log(n)
-    return solved, _deviance(regression, sums, solved) + price
+    score = _deviance(regression, sums, solved) + len(base) * np.log(n)
+    score += price_of_looking(regression, n) * np.array([len(parts) for parts in several])
+    score += _sizes(regression, sums, solved, several)
+    return list(zip(solved.each(), score.tolist(), strict=True))
 
 
-def _deviance(regression: Regression, sums: Sums, solved: Solved) -> float:
+def _deviance(regression: Regression, sums: Sums, solved: Solved | Solutions) -> Array:
     """-2 ln L up to a constant, at the likeliest variances of what nobody stated."""
     rss, n = solved.rss, max(sums.count, 2.0)
-    own = 0.0
+    own = np.zeros(np.shape(rss))
     if regression.form is not None and sums.form is not None and sums.form.count:
-        left, count = max(sums.form.left_by(solved), 0.0), sums.form.count
-        size = max(left / count, regression.form.noise_share)
-        own = count * float(np.log(size)) + left / size
-        rss, n = max(rss - left, 0.0), n - count
+        left, count = np.maximum(sums.form.left_by(solved), 0.0), sums.form.count
+        size = np.maximum(left / count, regression.form.noise_share)
+        own = count * np.log(size) + left / size
+        rss, n = np.maximum(rss - left, 0.0), n - count
     if regression.sigma_known or n < 1.0:
         return own + rss
-    return own + n * float(np.log(max(rss, 1e-300) / n)) + n
+    return np.asarray(own + n * np.log(np.maximum(rss, 1e-300) / n) + n)
 
 
 def _with_draws(
-    regression: Regression, sums: Sums, parts: Sequence[Index], drawn: Sequence[Index]
-) -> tuple[Solved, float]:
-    """Best solution and score over the common size of random_effects parameters.
+    regression: Regression, sums: Sums, several: Sequence[Sequence[Index]], drawn: Sequence[int]
+) -> list[tuple[Solved, float]]:
+    """Best solutions and scores over the common size of random_effects parameters.
 
-    Such parameters (`drawn`, beside the `parts` of other effects) pay by their marginal likelihood;
+    Such parameters (`drawn`, beside the parts of other effects) pay by their marginal likelihood;
     that they exist at all is held against chance like one parameter, their size τ.
     """
-    members = np.concatenate(drawn)
+    members = np.concatenate([regression.columns[e] for e in drawn])
     flat = len(drawn) * (regression.least_fall + FLOOR)
 
-    def at(size: float) -> tuple[float, Solved]:
+    def at(size: float, several: Sequence[Sequence[Index]]) -> list[tuple[Solved, float]]:
         left = sums.marginal(members, size)
-        rest, score = _with_parts(regression, left.sums, parts)
-        return score + left.price + flat, rest
+        price = left.price + flat
+        return [
+            (rest, score + price) for rest, score in _with_parts(regression, left.sums, several)
+        ]
 
     # The size hardly goes with the laws of the other effects: the first of as many tells it.
-    key = b"size" + np.append(members, len(parts)).tobytes()
-    tried = {size: at(size) for size in sums.scores.get(key, DRAWN_SIZES)}
-    size = min(tried, key=lambda each: tried[each][0])
-    sums.scores[key] = (size,)
-    score, rest = tried[size]
-    return sums.marginal(members, size).joined(sums, rest), score
+    key = b"size" + np.append(members, len(several[0])).tobytes()
+    if key not in sums.scores:
+        sums.scores[key] = min(DRAWN_SIZES, key=lambda size: at(size, several[:1])[0][1])
+    size = sums.scores[key]
+    whole = sums.marginal(members, size)
+    return [(whole.joined(sums, rest), score) for rest, score in at(size, several)]
 
 
 def price_of_looking(regression: Regression, rows: float) -> float:
@@ -189,35 +208,33 @@ def price_of_looking(regression: Regression, rows: float) -> float:
     the number of candidates (Bonferroni) and a little more.
     """
     needed = regression.least_fall + FLOOR
-    return max(needed - price_of_sizes(needed, 1, rows), FLOOR)
+    return max(needed - float(price_of_sizes(needed, 1, rows)), FLOOR)
 
 
-def _sizes(regression: Regression, sums: Sums, solved: Solved, parts: Sequence[Index]) -> float:
-    """What the sizes of the effects' parameters cost.
+def _sizes(
+    regression: Regression, sums: Sums, solved: Solutions, several: Sequence[Sequence[Index]]
+) -> Array:
+    """What the sizes of the effects' parameters cost in each of several models.
 
     An effect's gain is counted as if it stood alone beside the base model: two effects that undo
     each other's work at large sizes pay for these sizes.
     """
-    if not parts:
-        return 0.0
-    n = max(sums.count, 2.0)
+    n, base = max(sums.count, 2.0), regression.base
     known = regression.sigma_known and regression.form is None
-    variance = 1.0 if known else max(solved.rss, 1e-300) / n
-    added = ~regression.in_base[solved.columns]
-    base, own, values = solved.columns[~added], solved.columns[added], solved.values[added]
-    across = sums.gram[base[:, None], own]
-    left = sums.gram[own[:, None], own] - across.T @ sums.over(base, across)
-    owner = np.zeros(len(regression.in_base), dtype=np.intp)
-    for k, part in enumerate(parts):
-        owner[part] = k
-    members = (owner[own][:, None] == np.arange(len(parts))) * values[:, None]
-    gains = (members * (left @ members)).sum(axis=0) / variance
-    counts = np.bincount(owner[own], minlength=len(parts))
-    return sum(
-        price_of_sizes(gain, count, n)
-        for gain, count in zip(gains.tolist(), counts.tolist(), strict=True)
-        if count
-    )
+    variance = 1.0 if known else np.maximum(solved.rss, 1e-300)[:, None] / n
+    own, moves = solved.columns[:, len(base) :], solved.moves[:, len(base) :]
+    lengths = [[len(part) for part in parts] for parts in several]
+    owner = np.full(own.shape, -1)
+    for row, each in zip(owner, lengths, strict=True):
+        row[: sum(each)] = np.repeat(np.arange(len(each)), each)
+    most = max(len(each) for each in lengths)
+    mine = (owner[:, :, None] == np.arange(most)) & moves[:, :, None]  # (m, k, effects)
+    members = mine * solved.values[:, len(base) :, None]
+    within = sums.gram[own[:, :, None], own[:, None, :]] @ members
+    across = sums.gram[base[:, None], own[:, None, :]] @ members
+    inverse = np.stack([sums.inverse(base, some) for some in solved.moves[:, : len(base)]])
+    gains = (members * within).sum(axis=1) - (across * (inverse @ across)).sum(axis=1)
+    return np.asarray(price_of_sizes(gains / variance, mine.sum(axis=1), n).sum(axis=1))
 
 
 def entry_fall(regression: Regression, effect: int) -> float:
@@ -231,10 +248,11 @@ def entry_fall(regression: Regression, effect: int) -> float:
     )
     fall = rest
     for _ in range(PRICED):  # the price of sizes grows with the logarithm of the fall
-        fall = rest + price_of_sizes(fall, count, rows)
+        fall = rest + float(price_of_sizes(fall, count, rows))
     return fall
 
 
-def price_of_sizes(gain: float, count: int, rows: float) -> float:
+def price_of_sizes(gain: ArrayLike, count: ArrayLike, rows: float) -> Array:
     """What `count` parameters cost that take `gain` away from the misfit of `rows` readings."""
-    return float(count * min(np.log(rows), 1.0 + np.log(max(gain / count, 1.0))))
+    each = np.maximum(gain / np.maximum(count, 1), 1.0)
+    return np.asarray(count * np.minimum(np.log(rows), 1.0 + np.log(each)))

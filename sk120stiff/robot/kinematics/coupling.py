@@ -47,6 +47,15 @@ class Curvature:
         here, there = np.array(found, dtype=np.intp).T
         return Curvature(here, self.coordinates, self.hessian[..., there, :, :])
 
+    def along(self, coordinates: Index) -> Curvature | None:
+        """The same by some coordinates a[coordinates] alone, or None if none of them bends."""
+        place = {int(each): k for k, each in enumerate(self.coordinates)}
+        found = [(k, place[int(each)]) for k, each in enumerate(coordinates) if int(each) in place]
+        if not found:
+            return None
+        here, there = np.array(found, dtype=np.intp).T
+        return Curvature(self.joints, here, self.hessian[..., there[:, None], there])
+
     def contracted(self, torques: Array, n: int) -> Array:
         """(..., n, n) Σ_k τ_k d²q_k/da² for torques (..., m) on all joints."""
         bent = np.einsum("...k,...kij->...ij", torques[..., self.joints], self.hessian)

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.robot.kinematics.chain import Chain, Sweep, VirtualJoint
 from sk120stiff.robot.kinematics.coupling import Coupling, Curvature
 
@@ -89,6 +89,24 @@ class Screws:
         if self.carried is None:
             return np.zeros((*self.position.shape[:-1], self.first.shape[-1]))
         return np.asarray(((self.carried @ gravity)[..., None, :] @ self.first)[..., 0, :])
+
+    def alone(self, coordinates: Index) -> Screws:
+        """The same pose where these coordinates alone may change, with the joints they move."""
+        first = self.first[..., coordinates]
+        moved = np.asarray(first.any(axis=(*range(first.ndim - 2), -1)))
+        second = None if self.second is None else self.second.along(coordinates)
+        if second is not None:
+            moved[second.joints] = True
+        joints = np.flatnonzero(moved)
+        return replace(
+            self,
+            axes=self.axes[..., joints, :],
+            origins=self.origins[..., joints, :],
+            revolute=self.revolute[joints],
+            first=first[..., joints, :],
+            second=None if second is None else second.picked(joints),
+            carried=None if self.carried is None else self.carried[..., joints, :],
+        )
 
     def at(self, point: Array) -> Screws:
         """The same pose seen from another point of the end frame, (3,) or (..., 3) [m]."""
