@@ -15,7 +15,9 @@ from sk120stiff.cli.tables import table
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
+from sk120stiff.explain.findings import Finding, likely
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -118,7 +120,7 @@ def parts(
     ]
     if answer.findings and answer.adequacy.lacking:
         shown.append("That is not all: more is left than the noise makes.")
-    shown += [answer.remainder.sentence(), *answer.remainder.where]
+    shown += [answer.remainder.sentence(), *answer.remainder.where, *_odds(answer)]
     if answer.guess is not None:
         shown.append(f"The best guess stands in {out / BEST_GUESS}; it is not confirmed.")
     shown.append(noise_sentence(answer.final))
@@ -164,11 +166,11 @@ def findings(answer: Explanation) -> list[str]:
     lines = []
     unseen = unseen_reasons(answer.final) if answer.findings else {}
     for finding in answer.findings:
-        sure = f"P = {finding.probability:.2f}"
-        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}] ({sure})")
+        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}] ({_sure(finding)})")
         for other in finding.alternatives:
+            share = finding.evidence.odds.get(other)
             kind = "always the same" if other in finding.exact else "not told apart here"
-            lines.append(f"  or {other} ({kind})")
+            lines.append(f"  or {other} ({kind}{'' if share is None else f'; {likely(share)}'})")
         own = [p for p in answer.final.model.parameters if p.effect == finding.effect]
         if len(own) > MANY:
             largest = max(own, key=lambda p: abs(p.value))
@@ -183,6 +185,24 @@ def findings(answer: Explanation) -> list[str]:
             worse = f"worse by {evidence.runner_up_gap:.0f} (BIC; {STRONG} is strong)"
             lines.append(f"  next best: {evidence.runner_up}, {worse}")
     return lines
+
+
+def _sure(finding: Finding) -> str:
+    """How probable a name is, and where others stand beside it, they and it together."""
+    together = likely(finding.probability)
+    if not finding.alternatives:
+        return together
+    own = likely(finding.evidence.odds.get(finding.effect.id, 0.0))
+    return f"{own}; it or one of those below: {together}"
+
+
+def _odds(answer: Explanation) -> list[str]:
+    """Of nothing and of something else."""
+    left = {each.kind: each.probability for each in probabilities(answer)}
+    return [
+        f"{likely(left['none'], 'Probability that nothing is missing')}, "
+        f"{likely(left['something_else'], 'that something without a name is at work')}."
+    ]
 
 
 def warn_of_known_poses(readings: Measurements, others: Measurements) -> None:

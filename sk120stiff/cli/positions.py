@@ -18,6 +18,7 @@ from sk120stiff.explain.absolute.document import gaps_table, save_positions
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.absolute.run import Explained, explain_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
+from sk120stiff.explain.findings import likely
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
@@ -123,7 +124,7 @@ def _parts(answer: Explained, readings: Measurements, out: Path) -> list[object]
     shown: list[object] = [headline(answer)]
     for item in answer.named:
         shown.append(
-            f"{item.effect.sentence()} [{item.effect.id}] (P = {item.probability:.2f}, takes off "
+            f"{item.effect.sentence()} [{item.effect.id}] ({likely(item.probability)}, takes off "
             f"{100 * item.gain.share:.1f} %)"
         )
         shown += [f"  or {other} (not told apart here)" for other in item.alternatives]

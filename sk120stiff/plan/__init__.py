@@ -6,6 +6,7 @@ from sk120stiff.plan.discriminate import (
     Choice,
     Rivalry,
     discriminating_readings,
+    readings_for_all,
     rivalry,
     signature_columns,
 )
@@ -54,6 +55,7 @@ __all__ = [
     "random_pool",
     "random_poses",
     "read_cell",
+    "readings_for_all",
     "rivalry",
     "route",
     "scheduled",

@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.findings import Finding
-from sk120stiff.explain.judge.posterior import LISTED, NONE
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -37,7 +37,15 @@ def verdict_document(
     return {
         "verdict": answer.verdict,
         "remainder": remainder_document(answer),
-        "probabilities": probabilities(answer),
+        "probabilities": [
+            {
+                "name": each.name,
+                "probability": each.probability,
+                "kind": each.kind,
+                "place": each.place,
+            }
+            for each in probabilities(answer)
+        ],
         "effects": [_effect(answer, finding) for finding in answer.findings],
         "parameters": parameters_before_and_after(answer),
         "gap": {
@@ -90,6 +98,10 @@ def verdict_document(
             for item in answer.smallest_detectable
         ],
         "next_poses": next_poses,
+        "next_pairs": [
+            {"name": pair.name, "rival": pair.rival, "apart": pair.apart, "settled": pair.settled}
+            for pair in answer.next_pairs
+        ],
     }
 
 
@@ -105,24 +117,6 @@ def remainder_document(answer: Explanation) -> dict[str, Any]:
         "constant_um": micrometres(left.form.constant),
         "where": list(left.where),
     }
-
-
-def probabilities(answer: Explanation) -> list[dict[str, Any]]:
-    """Every candidate above a hundredth, the likeliest first, with ``none`` and ``something_else``.
-
-    None: no effect of the catalogue is at work, and nothing else is.
-    """
-    found: dict[str, float] = dict(answer.odds)
-    something_else = answer.remainder.something_else
-    found[NONE] = found.get(NONE, 1.0) * (1.0 - something_else)
-    for finding in answer.findings:
-        found[NONE] *= 1.0 - finding.probability
-    found["something_else"] = something_else
-    for finding in answer.findings:
-        for name, share in finding.evidence.odds.items():
-            found[name] = max(share, found.get(name, 0.0))
-    ranked = sorted(found.items(), key=lambda item: -item[1])
-    return [{"name": name, "probability": share} for name, share in ranked if share > LISTED]
 
 
 def share_of(answer: Explanation, finding: Finding) -> float | None:

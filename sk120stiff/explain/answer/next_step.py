@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sk120stiff.errors import listed
 from sk120stiff.explain.localise.words import microns
 
 if TYPE_CHECKING:
@@ -51,12 +52,31 @@ def _ambiguous(answer: Explanation) -> list[str]:
     count = len(answer.next_poses[0])
     said = [
         f"Measure the {count} readings of next_poses.csv, append them to the file and run this "
-        "again: they tell the open names apart.",
+        f"again: {told_apart(answer)}.",
         "Until then the model foretells such poses alike under either name.",
     ]
     if answer.remainder.significant:
         said.append(_of_the_remainder(answer))
     return said
+
+
+def told_apart(answer: Explanation) -> str:
+    """Which names the proposed readings tell apart, and which they hardly do."""
+    pairs = answer.next_pairs
+    settled = [f"{pair.name} from {pair.rival}" for pair in pairs if pair.settled]
+    weak = [f"{pair.name} from {pair.rival}" for pair in pairs if not pair.settled]
+    open_ = {
+        (finding.effect.id, name) for finding in answer.findings for name in finding.others
+    } - {(pair.name, pair.rival) for pair in pairs}
+    if not pairs or not (weak or open_):
+        return "they tell the open names apart"
+    said = [f"they tell {listed(settled)}"] if settled else []
+    if weak:
+        said.append(f"they are too few to be sure of {listed(weak)}")
+    if open_:
+        pairs_left = "another pair" if len(open_) == 1 else f"{len(open_)} further pairs"
+        said.append(f"for {pairs_left} of names run it again afterwards")
+    return "; ".join(said)
 
 
 def _outside(answer: Explanation) -> list[str]:

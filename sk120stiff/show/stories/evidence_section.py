@@ -65,13 +65,21 @@ def _finding(answer: Explanation, finding: Finding) -> list[Block]:
         blocks.append(
             Note(
                 f"These readings cannot tell it from {_or(rivals)}: "
-                f"{_sentences(answer, rivals)} The readings proposed below would.",
+                f"{_sentences(answer, rivals)}{_would(answer, finding)}",
                 "caution",
                 "Not settled",
             )
         )
     blocks += [_scores(finding), _evidence(finding)]
     return blocks
+
+
+def _would(answer: Explanation, finding: Finding) -> str:
+    if answer.next_poses is None:
+        return ""
+    if answer.told_next(finding) or not answer.next_pairs:
+        return " The readings proposed below would."
+    return " The section on what to measure next says what the proposed readings would tell."
 
 
 def _scores(finding: Finding) -> Picture:

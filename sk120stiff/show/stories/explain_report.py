@@ -22,6 +22,7 @@ from sk120stiff.show.report import (
 from sk120stiff.show.stories.evidence_section import evidence_section, sizes_of
 from sk120stiff.show.stories.gap_section import gap_section, steps_table
 from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
+from sk120stiff.show.stories.probability_section import probability_section
 from sk120stiff.show.stories.sizes_sections import budget_section, gear_section, parameters_section
 from sk120stiff.show.stories.verdicts import FEW, lead_of, title_of
 from sk120stiff.show.stories.where_section import where_section
@@ -60,6 +61,7 @@ def explain_report(
         ),
         "Where it lives": lambda: where_section(answer),
         "The evidence": lambda: evidence_section(answer),
+        "How probable it is": lambda: probability_section(answer),
         "The curve of the gear": lambda: gear_section(answer),
         "Parameters": lambda: parameters_section(answer),
         "What moves the point": lambda: budget_section(answer),
