@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
 
@@ -10,6 +11,8 @@ import numpy as np
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
+from sk120stiff.explain.answer.sizes import whole_size
+from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import Finding
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
@@ -79,7 +82,7 @@ def verdict_document(
             "source": answer.yardstick.source,
             "sigma_um": micrometres(answer.yardstick.sigma),
             "degrees_of_freedom": answer.yardstick.freedom,
-            "decided": list(answer.noise_reasons),
+            "decided": list(noise_words(answer)),
             "set_aside": [
                 {"pose": readings.pose[row], "line": int(readings.line[row])}
                 for row in answer.set_aside
@@ -148,7 +151,7 @@ def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
 
 def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
     found = [p for p in answer.final.model.parameters if p.effect == finding.effect]
-    evidence = finding.evidence
+    evidence, whole = finding.evidence, whole_size(answer, finding)
     unseen = unseen_reasons(answer.final)
     return {
         "name": finding.effect.name,
@@ -158,6 +161,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "probability": finding.probability,
         "share_um": micrometres(share_of(answer, finding)),
         "parameters": [parameter_entry(p, unseen.get(p.name)) for p in found],
+        "size": None if whole is None else asdict(whole),
         "sentence": finding.effect.sentence(),
         "equation": finding.effect.equation,
         "axes": finding.effect.axes,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff.errors import listed
+from sk120stiff.explain.answer.words import accounted
 from sk120stiff.explain.localise.words import microns
 
 if TYPE_CHECKING:
@@ -27,20 +28,16 @@ def _none(answer: Explanation) -> list[str]:
     if left.chance is None:
         return [f"Before anything is concluded, state the noise or {REPEATS}, and run this again."]
     if left.understated is not None:
-        sigma = (answer.yardstick.sigma or 0.0) * left.understated
-        return [
-            f"Correct the stated σ to about {microns(sigma)}, or look for what disturbs single "
-            "readings; the model itself may be used as it is."
-        ]
+        return [*_of_the_noise(answer), "The model itself may be used as it is."]
     return [
         "Use model.yaml as it is.",
-        "What could still hide, and how large it would have to be, is listed below; poses farther "
-        "apart and larger loads show smaller effects.",
+        "What could still hide, and how large it would have to be, stands in the report and in "
+        "verdict.json; poses farther apart and larger loads show smaller effects.",
     ]
 
 
 def _named(answer: Explanation) -> list[str]:
-    said = [_gain(answer), *_largest(answer)]
+    said = [_gain(answer), *_largest(answer), *_of_the_noise(answer)]
     if answer.remainder.significant:
         said.append(_of_the_remainder(answer))
     return said
@@ -48,12 +45,14 @@ def _named(answer: Explanation) -> list[str]:
 
 def _ambiguous(answer: Explanation) -> list[str]:
     if answer.next_poses is None:
-        return [_gain(answer)]
+        said = [_gain(answer), *_of_the_noise(answer)]
+        return [*said, _of_the_remainder(answer)] if answer.remainder.significant else said
     count = len(answer.next_poses[0])
     said = [
         f"Measure the {count} readings of next_poses.csv, append them to the file and run this "
         f"again: {told_apart(answer)}.",
         "Until then the model foretells such poses alike under either name.",
+        *_of_the_noise(answer),
     ]
     if answer.remainder.significant:
         said.append(_of_the_remainder(answer))
@@ -101,6 +100,17 @@ def _of_the_weight(answer: Explanation) -> list[str]:
     ]
 
 
+def _of_the_noise(answer: Explanation) -> list[str]:
+    """That a stated σ looks too small, whatever else was found."""
+    if answer.adequacy.understated is None:
+        return []
+    sigma = (answer.yardstick.sigma or 0.0) * answer.adequacy.understated
+    return [
+        f"Correct the stated σ to about {microns(sigma)}, or look for what disturbs single "
+        "readings."
+    ]
+
+
 def _gain(answer: Explanation) -> str:
     first, last = (answer.steps[k].heldout_rms for k in (0, -1))
     if not (np.isfinite(first) and np.isfinite(last) and last < first):
@@ -124,6 +134,12 @@ def _largest(answer: Explanation) -> list[str]:
 
 def _of_the_remainder(answer: Explanation) -> str:
     """What would tell more of what is left."""
+    place = accounted(answer)
+    if place is not None:
+        return (
+            f"The rest goes with {place}, and beside that only noise is left: look there, and read "
+            "at more poses and loads that change it, so that its law shows."
+        )
     readings = answer.final.problem.measurements
     wishes = []
     if readings.repeat is None:

@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.effects import comment_lines
 from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
+from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.judge.posterior import NONE
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
@@ -49,7 +50,9 @@ def evidence_section(answer: Explanation) -> Section:
 
 def _finding(answer: Explanation, finding: Finding) -> list[Block]:
     blocks: list[Block] = [f"**{finding.effect.sentence()}** (`{finding.effect.id}`)"]
-    blocks += [sizes_of(answer, finding), Items(list(comment_lines(finding.effect)))]
+    whole = whole_size(answer, finding)
+    blocks += [sizes_of(answer, finding), *([] if whole is None else [whole.sentence])]
+    blocks += [Items(list(comment_lines(finding.effect)))]
     if finding.exact:
         blocks.append(
             Note(

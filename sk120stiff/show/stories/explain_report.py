@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import (
     Block,
@@ -102,7 +103,7 @@ def _answer(answer: Explanation) -> Section:
     elif answer.where:
         blocks.append(answer.where[0])
     blocks.append(Note(next_step(answer), "note", "What to do now"))
-    blocks += [Note(reason, "note", "About the noise") for reason in answer.noise_reasons]
+    blocks += [Note(reason, "note", "About the noise") for reason in noise_words(answer)]
     return Section("The answer", blocks)
 
 

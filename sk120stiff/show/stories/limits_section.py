@@ -9,6 +9,7 @@ import numpy as np
 
 from sk120stiff.effects import all_effects
 from sk120stiff.explain import Detectable, Explanation
+from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import ENOUGH
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -39,7 +40,7 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
     else:
         blocks.append("The noise is unknown, so no test of what is left is possible.")
     blocks += [*answer.unnamed, *answer.limits]
-    blocks += [noise_sentence(answer.final), *answer.noise_reasons]
+    blocks += [noise_sentence(answer.final), *noise_words(answer)]
     if answer.set_aside:
         blocks.append(_set_aside(answer, readings))
     return Section("What is left, and the noise", blocks)
