@@ -16,11 +16,15 @@ from sk120stiff.cli.tables import table
 from sk120stiff.explain import Explained, Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
+from sk120stiff.explain.answer.sizes import whole_size
+from sk120stiff.explain.answer.words import held_out_words, noise_words
+from sk120stiff.explain.findings import Contender, Finding, likely
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
-from sk120stiff.show.wording import with_error
+from sk120stiff.show.wording import um, with_error
 
 STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
@@ -116,24 +120,26 @@ def parts(
     shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
+    shown += held_out_words(answer)
     shown.append(_budget(answer))
     shown += answer.where[:TOLD]
     if answer.suspects:
         lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
-        shown.append(f"{lead}: {', '.join(suspect.id for suspect in answer.suspects)}.")
+        shown.append(f"{lead}: {', '.join(map(_gain, answer.suspects))}.")
     shown += answer.unnamed
     shown += [
         f"{name} cannot be seen: {why}." for name, why in unseen_reasons(answer.final).items()
     ]
     if answer.findings and answer.adequacy.lacking:
         shown.append("That is not all: more is left than the noise makes.")
-    shown += [answer.remainder.sentence(), *answer.remainder.where]
+    told = [sentence for sentence in answer.remainder.where if sentence not in shown]
+    shown += [answer.remainder.sentence(), *told, *_odds(answer)]
     if answer.guess is not None:
         shown.append(f"The best guess stands in {out / BEST_GUESS}; it is not confirmed.")
     shown.append(noise_sentence(answer.final))
     if answer.adequacy.whole is not None:
         shown.append(answer.adequacy.whole.sentence())
-    shown += answer.noise_reasons
+    shown += noise_words(answer)
     shown += [
         f"Set aside as no smooth cause can have made it: pose {readings.pose[row]}, "
         f"line {readings.line[row]}."
@@ -162,6 +168,11 @@ def _budget(answer: Explanation) -> object:
 def said(answer: Explanation) -> str:
     """The verdict in the words of the report; what is named follows."""
     if answer.verdict == "named":
+        if answer.remainder.significant:
+            return (
+                "Something was missing. Part of it has a name; "
+                f"{um(answer.remainder.rms)} µm rms per axis have none."
+            )
         return "Something was missing, and it has a name."
     from sk120stiff.show.stories.verdicts import lead_of  # slow to import
 
@@ -173,11 +184,11 @@ def findings(answer: Explanation) -> list[str]:
     lines = []
     unseen = unseen_reasons(answer.final) if answer.findings else {}
     for finding in answer.findings:
-        sure = f"P = {finding.probability:.2f}"
-        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}] ({sure})")
+        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}] ({_sure(finding)})")
         for other in finding.alternatives:
+            share = finding.evidence.odds.get(other)
             kind = "always the same" if other in finding.exact else "not told apart here"
-            lines.append(f"  or {other} ({kind})")
+            lines.append(f"  or {other} ({kind}{'' if share is None else f'; {likely(share)}'})")
         own = [p for p in answer.final.model.parameters if p.effect == finding.effect]
         if len(own) > MANY:
             largest = max(own, key=lambda p: abs(p.value))
@@ -187,11 +198,40 @@ def findings(answer: Explanation) -> list[str]:
             hidden = p.name in unseen
             value = "cannot be seen" if hidden else with_error(p.value, p.std, p.spec.unit)
             lines.append(f"  {p.spec.name} {value} ({p.spec.meaning})")
+        whole = whole_size(answer, finding)
+        if whole is not None:
+            lines.append(f"  {whole.sentence}")
         evidence = finding.evidence
         if evidence.runner_up is not None:
             worse = f"worse by {evidence.runner_up_gap:.0f} (BIC; {STRONG} is strong)"
             lines.append(f"  next best: {evidence.runner_up}, {worse}")
     return lines
+
+
+def _gain(suspect: Contender) -> str:
+    """A suspect with what poses that were left out say of it."""
+    if not np.isfinite(suspect.heldout_gain):
+        return f"{suspect.id} (poses left out do not hold it)"
+    way = "falls" if suspect.heldout_gain >= 0.0 else "grows"
+    return f"{suspect.id} (the held-out gap {way} by {um(abs(suspect.heldout_gain))} µm)"
+
+
+def _sure(finding: Finding) -> str:
+    """How probable a name is, and where others stand beside it, they and it together."""
+    together = likely(finding.probability)
+    if not finding.alternatives:
+        return together
+    own = likely(finding.evidence.odds.get(finding.effect.id, 0.0))
+    return f"{own}; it or one of those below: {together}"
+
+
+def _odds(answer: Explanation) -> list[str]:
+    """Of nothing and of something else."""
+    left = {each.kind: each.probability for each in probabilities(answer)}
+    return [
+        f"{likely(left['none'], 'Probability that nothing is missing')}, "
+        f"{likely(left['something_else'], 'that something without a name is at work')}."
+    ]
 
 
 def warn_of_known_poses(readings: Measurements, others: Measurements) -> None:

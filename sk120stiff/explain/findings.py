@@ -9,6 +9,7 @@ import numpy as np
 
 from sk120stiff.effects import Effect
 
+ENOUGH = 3.3  # standard deviations from which on readings settle which of two names it is
 NAMED = 0.95  # probability from which on a name stands alone
 
 
@@ -137,6 +138,26 @@ class Finding:
 
 
 @dataclass(frozen=True)
+class Apart:
+    """How far the proposed readings tell two names apart.
+
+    Attributes:
+        name, rival: What stands in one place, ``name:where``.
+        apart: What the rival cannot imitate of the name, by the proposed readings alone, in
+            standard deviations of the noise (√λ).
+    """
+
+    name: str
+    rival: str
+    apart: float
+
+    @property
+    def settled(self) -> bool:
+        """They tell which of the two it is, whatever the noise."""
+        return self.apart >= ENOUGH
+
+
+@dataclass(frozen=True)
 class Step:
     """The gap with one more effect in the model, rms per axis [m].
 
@@ -176,3 +197,17 @@ class Detectable:
     name: str
     value: float | None
     unit: str
+
+
+def likely(probability: float, of: str = "P") -> str:
+    """A probability of a name: none is told as certain.
+
+    Examples:
+        >>> likely(0.62), likely(0.9993), likely(0.002)
+        ('P = 0.62', 'P > 0.99', 'P < 0.01')
+    """
+    if probability > 0.99:
+        return f"{of} > 0.99"
+    if probability < 0.01:
+        return f"{of} < 0.01"
+    return f"{of} = {probability:.2f}"

@@ -6,6 +6,7 @@ from sk120stiff.plan.discriminate import (
     Choice,
     Rivalry,
     discriminating_readings,
+    readings_for_all,
     rivalry,
     signature_columns,
 )
@@ -59,6 +60,7 @@ __all__ = [
     "random_pool",
     "random_poses",
     "read_cell",
+    "readings_for_all",
     "rivalry",
     "route",
     "scheduled",

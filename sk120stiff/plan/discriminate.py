@@ -82,6 +82,35 @@ class Rivalry:
         return Choice(tuple(rows), self.evidence_of([]), self.evidence_of(rows))
 
 
+def readings_for_all(columns: Sequence[Array], *, count: int) -> tuple[tuple[int, ...], Array]:
+    """Readings that tell several pairs of effects apart at once, and how far each.
+
+    They share the readings: Σ ln(1 + λ) over the pairs is largest, so that none is left behind for
+    the sake of another that is told already.
+
+    Args:
+        columns: For each of P pairs (M, 3, k), see `signature_columns`, in units of the noise.
+        count: How many to choose.
+
+    Returns:
+        tuple: Rows of the pool, and (P,) √λ of each pair with them.
+    """
+    size = max(block.shape[-1] for block in columns)
+    blocks = [
+        _padded(np.einsum("mik,mil->mkl", block, block, optimize=True), size) for block in columns
+    ]
+    gains, start = np.concatenate(blocks, axis=1), np.tile(prior(size), (len(blocks), 1))
+
+    def apart(total: Array) -> Array:
+        return _evidence(total.reshape(len(total), len(blocks), size, size))
+
+    def worth(total: Array) -> Array:
+        return np.asarray(np.log1p(apart(total)).sum(axis=-1))
+
+    rows = best_choice(worth, gains, start, min(count, len(gains)))
+    return tuple(rows), np.sqrt(apart((start + gains[rows].sum(axis=0))[None])[0])
+
+
 def discriminating_readings(
     model: Model,
     effect: Effect,

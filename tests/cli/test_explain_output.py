@@ -108,7 +108,7 @@ def test_what_no_reading_shows_is_not_called_rigid(answer, monkeypatch) -> None:
     first = answer.final.model.parameters[0]
     one = SimpleNamespace(
         effect=first.effect, probability=1.0, alternatives=(), exact=(),
-        evidence=SimpleNamespace(runner_up=None),
+        evidence=SimpleNamespace(runner_up=None, odds={}),
     )  # fmt: skip
     told = SimpleNamespace(findings=(one,), final=answer.final)
     assert "cannot be seen" not in findings(told)[1]

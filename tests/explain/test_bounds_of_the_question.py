@@ -166,18 +166,18 @@ def test_loads_that_the_found_curve_does_not_hold_are_taken_smaller(springs, mon
     (finding,) = answer.findings
     open_question = replace(finding, alternatives=("joint_tilt:joint_1_s",), exact=())
     asked = []
-    choose = consequences.discriminating_readings
+    choose = consequences.signature_columns
 
-    def choosy(model, effect, rival, pool, **more):
+    def choosy(model, effect, rival, pool):
         asked.append(np.abs(pool.load_cases.wrench).max())
         if len(asked) < 3:
             raise Refusal("the arm gives way")
-        return choose(model, effect, rival, pool, **more)
+        return choose(model, effect, rival, pool)
 
-    monkeypatch.setattr(consequences, "discriminating_readings", choosy)
+    monkeypatch.setattr(consequences, "signature_columns", choosy)
     found = consequences.next_poses(replace(answer, findings=(open_question,)), seed=0)
     assert np.array(asked) == pytest.approx(asked[0] * np.array([1.0, 0.5, 0.25]))
-    assert np.abs(found[1]).max() <= asked[2]
+    assert np.abs(found.wrench).max() <= asked[2]
     asked.clear()
     monkeypatch.setattr(consequences, "SHARES_OF_LOAD", (1.0, 0.5))
     with pytest.raises(Refusal, match=r"tells base_rocking:base_link from joint_tilt:joint_1_s"):

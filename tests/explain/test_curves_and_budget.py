@@ -1,14 +1,16 @@
 """One curve of a gear has one name; what it does is told in micrometres, and what to do next."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from sk120stiff import InputError, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.explain import Options, explain
+from sk120stiff.explain import Options, explain, verdict_document
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.judge.budget import error_budget
 from sk120stiff.explain.judge.gear_curve import STEPS, gear_curves
 from sk120stiff.explain.priors import PRIORS, USUAL, price, priors_from
@@ -109,6 +111,35 @@ def test_the_error_of_a_share_is_that_of_drawn_readings(springs):
         sizes.append(own.rms)
         told.append(own.std)
     assert np.std(sizes) == pytest.approx(np.median(told), rel=0.5)
+
+
+def test_play_is_told_as_one_size_and_jumps_only_where_it_does(skewed):
+    """200 µrad from flank to flank, gone over 20 and 60 N·m: nowhere at once."""
+    (finding,) = skewed.findings
+    whole = whole_size(skewed, finding)
+    assert (whole.name, whole.unit) == ("lost_motion", "rad")
+    assert abs(whole.value - 2e-4) < max(3.0 * whole.std, 1.5e-5)
+    assert 0.0 < whole.std < 0.2 * whole.value
+    assert f"{1e6 * whole.value:.0f} ± " in whole.sentence
+    assert ("no jump was found" in whole.sentence) or ("nowhere at once" in whole.sentence)
+    assert "jumps" not in finding.effect.sentence()
+    assert verdict_document(skewed, skewed.readings)["effects"][0]["size"]["std"] == whole.std
+
+
+def test_a_gear_that_stiffens_is_told_by_its_stiffness_not_by_signs(springs):
+    hardening = effect(springs.robot, "gear_hardening", "joint_1_s")
+    found = fit(springs + hardening, hidden(poses=8, loads=3), noise=NOISE)
+    k2, k3 = 4e-10, -2e-13
+    spring = found.model.parameter("joint_springs:joint_1_s.stiffness").name
+    values = {f"{hardening.id}.quadratic": k2, f"{hardening.id}.cubic": k3, spring: 1e6}
+    bent = SimpleNamespace(model=found.model.with_public(values), problem=found.problem,
+                           covariance=found.covariance, reach=found.reach)  # fmt: skip
+    whole = whole_size(SimpleNamespace(final=bent), SimpleNamespace(effect=hardening))
+    torque = hardening.largest_torque(found.problem.load_cases)
+    slope = 1e-6 - 2.0 * k2 * torque - 3.0 * k3 * torque**2
+    assert whole.value == pytest.approx(1e-6 / slope, rel=0.03)
+    assert "kN·m/rad about no torque" in whole.sentence
+    assert not any("positive: stiffer" in spec.meaning for spec in hardening.parameters)
 
 
 def test_what_to_do_now_says_what_the_model_is_worth(skewed):

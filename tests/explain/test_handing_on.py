@@ -46,6 +46,7 @@ def test_what_is_measured_next_is_added_to_what_was() -> None:
     assert answer.verdict == "ambiguous"
     following = answer.next_readings()
     assert following is not None and answer.next_poses is not None
+    assert (following.zero, following.noise) == (first.zero, first.noise)
     np.testing.assert_array_equal(following.wrench, answer.next_poses[1])
     more = sk.simulate(truth, following, noise=noise, schedule=steps, seed=2).measurements
     both = first + more

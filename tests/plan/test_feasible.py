@@ -140,7 +140,8 @@ def test_the_next_poses_of_an_explanation_are_feasible_too() -> None:
     )
     found = next_poses(answer, seed=0)  # type: ignore[arg-type]
     assert found is not None
-    a, wrench, remarks = found
+    a, wrench, remarks, pairs = found
+    assert [pair.rival for pair in pairs] == [f"joint_tilt:{robot.actuated[2]}"]
     assert any("the motors hold" in said for said in remarks)
     assert lowest_points(robot, a, POINT).min() > 0.02
     at = robot.screws(a, point=POINT)
@@ -150,7 +151,7 @@ def test_the_next_poses_of_an_explanation_are_feasible_too() -> None:
     up = Rig("a cable", anchors=np.array([[0.8, 0.0, 3.0]]))
     cell = Cell(low=np.array([0.2, -2.0, 0.0]), rig=up)
     assert not feasible(robot, cell, a, wrench, point=POINT).ok.all()
-    a, wrench, _ = next_poses(answer, seed=0, cell=cell)  # type: ignore[arg-type, misc]
+    a, wrench, _, _ = next_poses(answer, seed=0, cell=cell)  # type: ignore[arg-type, misc]
     assert feasible(robot, cell, a, wrench, point=POINT).ok.all()
 
 

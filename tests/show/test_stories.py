@@ -134,6 +134,16 @@ def test_a_named_cause_is_told_with_its_size_and_evidence() -> None:
         assert sentence in text
 
 
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_the_page_tells_how_probable_every_name_is(verdict: str) -> None:
+    found, text = answer(verdict), plain(page(verdict))
+    told = text[text.rindex("How probable it is") :]
+    for finding in found.findings:
+        assert f"{finding.effect.id} {finding.effect.id}" in told  # its place, its name
+        assert "none of them" in told
+    assert "nothing is missing" in told and "something without a name" in told
+
+
 def test_springs_before_and_after_are_told() -> None:
     found, text = named(), plain(page("named"))
     before = {p.name: p for p in found.base.parameters}

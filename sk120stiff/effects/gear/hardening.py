@@ -78,11 +78,11 @@ class GearHardening(GearEffect):
         return (
             ParameterSpec(
                 "quadratic", square, square, plausible=1e-8 * size**2, typical=3e-10 * size**2,
-                lower=0.0, meaning="k2; positive: stiffer as the torque grows",
+                lower=0.0, meaning="k2; alone it makes the gear stiffer as the torque grows",
             ),
             ParameterSpec(
                 "cubic", cube, cube, plausible=1e-11 * size**3, typical=3e-13 * size**3,
-                meaning="k3; positive: stiffer as the torque grows",
+                meaning="k3; with k2 it makes the curve, and may have either sign",
             ),
         )  # fmt: skip
 

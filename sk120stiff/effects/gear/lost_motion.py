@@ -42,7 +42,7 @@ class LostMotion(GearEffect, Switching):
         "where flanks close gradually"
     )
     says: ClassVar[str] = (
-        "The gear of {where} has lost motion: it jumps when its torque turns round."
+        "The gear of {where} has lost motion: it gives way when its torque turns round."
     )
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
     also: ClassVar[str] = (

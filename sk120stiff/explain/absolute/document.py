@@ -63,7 +63,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
             "where": list(answer.where),
         },
         "probabilities": [
-            {"name": name, "probability": min(p, SURE)}
+            {"name": name, "probability": min(p, SURE), "kind": "marginal", "place": None}
             for name, p in sorted(answer.probabilities.items(), key=lambda item: -item[1])
         ],
         "where": list(answer.where),

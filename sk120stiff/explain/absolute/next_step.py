@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sk120stiff.explain.findings import likely
+
 if TYPE_CHECKING:
     from sk120stiff.explain.absolute.explained import Explained
 
@@ -27,7 +29,7 @@ def headline(answer: Explained) -> str:
         what = "its name is" if count == 1 else f"its {count} names are"
         return f"Something was missing, and {what} settled{more}."
     told = "; ".join(
-        " or ".join((item.effect.id, *item.alternatives)) + f" (P = {item.probability:.2f})"
+        " or ".join((item.effect.id, *item.alternatives)) + f" ({likely(item.probability)})"
         for item in open_ones
     )
     settled = f"{count - len(open_ones)} of {count} names" if count > 1 else "its name"

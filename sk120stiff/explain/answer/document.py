@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
 
@@ -9,8 +10,10 @@ import numpy as np
 
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.probabilities import probabilities
+from sk120stiff.explain.answer.sizes import whole_size
+from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import Finding
-from sk120stiff.explain.judge.posterior import LISTED, NONE
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -37,7 +40,15 @@ def verdict_document(
     return {
         "verdict": answer.verdict,
         "remainder": remainder_document(answer),
-        "probabilities": probabilities(answer),
+        "probabilities": [
+            {
+                "name": each.name,
+                "probability": each.probability,
+                "kind": each.kind,
+                "place": each.place,
+            }
+            for each in probabilities(answer)
+        ],
         "effects": [_effect(answer, finding) for finding in answer.findings],
         "parameters": parameters_before_and_after(answer),
         "gap": {
@@ -71,7 +82,7 @@ def verdict_document(
             "source": answer.yardstick.source,
             "sigma_um": micrometres(answer.yardstick.sigma),
             "degrees_of_freedom": answer.yardstick.freedom,
-            "decided": list(answer.noise_reasons),
+            "decided": list(noise_words(answer)),
             "set_aside": [
                 {"pose": readings.pose[row], "line": int(readings.line[row])}
                 for row in answer.set_aside
@@ -90,6 +101,10 @@ def verdict_document(
             for item in answer.smallest_detectable
         ],
         "next_poses": next_poses,
+        "next_pairs": [
+            {"name": pair.name, "rival": pair.rival, "apart": pair.apart, "settled": pair.settled}
+            for pair in answer.next_pairs
+        ],
     }
 
 
@@ -105,24 +120,6 @@ def remainder_document(answer: Explanation) -> dict[str, Any]:
         "constant_um": micrometres(left.form.constant),
         "where": list(left.where),
     }
-
-
-def probabilities(answer: Explanation) -> list[dict[str, Any]]:
-    """Every candidate above a hundredth, the likeliest first, with ``none`` and ``something_else``.
-
-    None: no effect of the catalogue is at work, and nothing else is.
-    """
-    found: dict[str, float] = dict(answer.odds)
-    something_else = answer.remainder.something_else
-    found[NONE] = found.get(NONE, 1.0) * (1.0 - something_else)
-    for finding in answer.findings:
-        found[NONE] *= 1.0 - finding.probability
-    found["something_else"] = something_else
-    for finding in answer.findings:
-        for name, share in finding.evidence.odds.items():
-            found[name] = max(share, found.get(name, 0.0))
-    ranked = sorted(found.items(), key=lambda item: -item[1])
-    return [{"name": name, "probability": share} for name, share in ranked if share > LISTED]
 
 
 def share_of(answer: Explanation, finding: Finding) -> float | None:
@@ -154,7 +151,7 @@ def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
 
 def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
     found = [p for p in answer.final.model.parameters if p.effect == finding.effect]
-    evidence = finding.evidence
+    evidence, whole = finding.evidence, whole_size(answer, finding)
     unseen = unseen_reasons(answer.final)
     return {
         "name": finding.effect.name,
@@ -164,6 +161,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "probability": finding.probability,
         "share_um": micrometres(share_of(answer, finding)),
         "parameters": [parameter_entry(p, unseen.get(p.name)) for p in found],
+        "size": None if whole is None else asdict(whole),
         "sentence": finding.effect.sentence(),
         "equation": finding.effect.equation,
         "axes": finding.effect.axes,

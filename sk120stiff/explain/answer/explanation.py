@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
-from sk120stiff.explain.findings import Contender, Detectable, Finding, Step
+from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.budget import error_budget
 from sk120stiff.explain.judge.remainder import Remainder
@@ -49,6 +49,7 @@ class Explanation:
         not_observable: Effects that these readings cannot show at any plausible size.
         smallest_detectable: For every parameter of the catalogue what would have shown.
         next_poses: (K, n) coordinates and (K, 6) wrenches to measure next, or None.
+        next_pairs: Which names these tell apart, and how far.
         catalogue: The effects that were considered.
         details: Further figures for reports.
 
@@ -81,6 +82,7 @@ class Explanation:
     not_observable: tuple[str, ...] = ()
     smallest_detectable: tuple[Detectable, ...] = ()
     next_poses: tuple[Array, Array] | None = None
+    next_pairs: tuple[Apart, ...] = ()
     catalogue: Catalogue = CATALOGUE
     details: Mapping[str, Any] = field(default_factory=dict)
 
@@ -98,6 +100,11 @@ class Explanation:
     def budget(self) -> tuple[Share, ...]:
         """What each effect moves the point by at the measured loads, the largest first."""
         return error_budget(self.final)
+
+    def told_next(self, finding: Finding) -> bool:
+        """Do the proposed readings tell this finding from all that stand beside it?"""
+        own = [pair for pair in self.next_pairs if pair.name == finding.effect.id]
+        return bool(finding.others) and finding.others <= {p.rival for p in own if p.settled}
 
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered.

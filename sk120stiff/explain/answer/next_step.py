@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sk120stiff.errors import listed
+from sk120stiff.explain.answer.words import accounted
 from sk120stiff.explain.localise.words import microns
 
 if TYPE_CHECKING:
@@ -26,20 +28,16 @@ def _none(answer: Explanation) -> list[str]:
     if left.chance is None:
         return [f"Before anything is concluded, state the noise or {REPEATS}, and run this again."]
     if left.understated is not None:
-        sigma = (answer.yardstick.sigma or 0.0) * left.understated
-        return [
-            f"Correct the stated σ to about {microns(sigma)}, or look for what disturbs single "
-            "readings; the model itself may be used as it is."
-        ]
+        return [*_of_the_noise(answer), "The model itself may be used as it is."]
     return [
         "Use model.yaml as it is.",
-        "What could still hide, and how large it would have to be, is listed below; poses farther "
-        "apart and larger loads show smaller effects.",
+        "What could still hide, and how large it would have to be, stands in the report and in "
+        "verdict.json; poses farther apart and larger loads show smaller effects.",
     ]
 
 
 def _named(answer: Explanation) -> list[str]:
-    said = [_gain(answer), *_largest(answer)]
+    said = [_gain(answer), *_largest(answer), *_of_the_noise(answer)]
     if answer.remainder.significant:
         said.append(_of_the_remainder(answer))
     return said
@@ -47,16 +45,37 @@ def _named(answer: Explanation) -> list[str]:
 
 def _ambiguous(answer: Explanation) -> list[str]:
     if answer.next_poses is None:
-        return [_gain(answer)]
+        said = [_gain(answer), *_of_the_noise(answer)]
+        return [*said, _of_the_remainder(answer)] if answer.remainder.significant else said
     count = len(answer.next_poses[0])
     said = [
         f"Measure the {count} readings of next_poses.csv, append them to the file and run this "
-        "again: they tell the open names apart.",
+        f"again: {told_apart(answer)}.",
         "Until then the model foretells such poses alike under either name.",
+        *_of_the_noise(answer),
     ]
     if answer.remainder.significant:
         said.append(_of_the_remainder(answer))
     return said
+
+
+def told_apart(answer: Explanation) -> str:
+    """Which names the proposed readings tell apart, and which they hardly do."""
+    pairs = answer.next_pairs
+    settled = [f"{pair.name} from {pair.rival}" for pair in pairs if pair.settled]
+    weak = [f"{pair.name} from {pair.rival}" for pair in pairs if not pair.settled]
+    open_ = {
+        (finding.effect.id, name) for finding in answer.findings for name in finding.others
+    } - {(pair.name, pair.rival) for pair in pairs}
+    if not pairs or not (weak or open_):
+        return "they tell the open names apart"
+    said = [f"they tell {listed(settled)}"] if settled else []
+    if weak:
+        said.append(f"they are too few to be sure of {listed(weak)}")
+    if open_:
+        pairs_left = "another pair" if len(open_) == 1 else f"{len(open_)} further pairs"
+        said.append(f"for {pairs_left} of names run it again afterwards")
+    return "; ".join(said)
 
 
 def _outside(answer: Explanation) -> list[str]:
@@ -78,6 +97,17 @@ def _of_the_weight(answer: Explanation) -> list[str]:
         f"What is not in proportion to the load was sought about the preload by the arm's own "
         f"weight, {robot.total_mass:.3g} kg by the URDF: where these masses are not the arm's, "
         "write gravity: 0 into the YAML file and run this again."
+    ]
+
+
+def _of_the_noise(answer: Explanation) -> list[str]:
+    """That a stated σ looks too small, whatever else was found."""
+    if answer.adequacy.understated is None:
+        return []
+    sigma = (answer.yardstick.sigma or 0.0) * answer.adequacy.understated
+    return [
+        f"Correct the stated σ to about {microns(sigma)}, or look for what disturbs single "
+        "readings."
     ]
 
 
@@ -104,6 +134,12 @@ def _largest(answer: Explanation) -> list[str]:
 
 def _of_the_remainder(answer: Explanation) -> str:
     """What would tell more of what is left."""
+    place = accounted(answer)
+    if place is not None:
+        return (
+            f"The rest goes with {place}, and beside that only noise is left: look there, and read "
+            "at more poses and loads that change it, so that its law shows."
+        )
     readings = answer.final.problem.measurements
     wishes = []
     if readings.repeat is None:

@@ -107,6 +107,8 @@ def plan_of(answer: Explanation, readings: Measurements) -> Measurements:
         tool_frame=readings.tool_frame,
         point=readings.point,
         force_point=readings.force_point,
+        zero=readings.zero,
+        noise=readings.noise,
         source=" ".join(
             [
                 "Poses and loads that tell the named alternatives apart.",

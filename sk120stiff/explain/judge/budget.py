@@ -25,7 +25,12 @@ def error_budget(fit: Fit, load_cases: LoadCases | None = None) -> tuple[Share, 
     """
     at = fit.problem.load_cases if load_cases is None else load_cases
     _, derivative = fit.model.predict_with_sensitivities(at)
+    return shares(fit.model, derivative, internal_covariance(fit))
+
+
+def internal_covariance(fit: Fit) -> Array:
+    """(P, P) covariance of the internal values of a fitted model; zero where they were given."""
     covariance = np.zeros((len(fit.model.values),) * 2)
     free = np.ix_(fit.problem.free, fit.problem.free)
     covariance[free] = fit.covariance * np.outer(fit.problem.scale, fit.problem.scale)
-    return shares(fit.model, derivative, covariance)
+    return covariance

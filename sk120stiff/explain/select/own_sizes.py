@@ -50,7 +50,7 @@ def with_settled_sizes(found: Fit) -> Fit:
     whitener = problem.whitener
     if not isinstance(whitener, FormWhitener):
         return found
-    rows = found.gap.size
+    rows = len(found.residual)
     free = np.sqrt(max(rows - found.estimated, 1) / rows)  # share that the parameters leave
     for _ in range(ROUNDS):
         form = _with_factors(problem, whitener, whitener.apply(found.gap) / free)

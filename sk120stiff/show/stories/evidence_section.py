@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.effects import comment_lines
 from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
+from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.judge.posterior import NONE
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
@@ -49,7 +50,9 @@ def evidence_section(answer: Explanation) -> Section:
 
 def _finding(answer: Explanation, finding: Finding) -> list[Block]:
     blocks: list[Block] = [f"**{finding.effect.sentence()}** (`{finding.effect.id}`)"]
-    blocks += [sizes_of(answer, finding), Items(list(comment_lines(finding.effect)))]
+    whole = whole_size(answer, finding)
+    blocks += [sizes_of(answer, finding), *([] if whole is None else [whole.sentence])]
+    blocks += [Items(list(comment_lines(finding.effect)))]
     if finding.exact:
         blocks.append(
             Note(
@@ -65,13 +68,21 @@ def _finding(answer: Explanation, finding: Finding) -> list[Block]:
         blocks.append(
             Note(
                 f"These readings cannot tell it from {_or(rivals)}: "
-                f"{_sentences(answer, rivals)} The readings proposed below would.",
+                f"{_sentences(answer, rivals)}{_would(answer, finding)}",
                 "caution",
                 "Not settled",
             )
         )
     blocks += [_scores(finding), _evidence(finding)]
     return blocks
+
+
+def _would(answer: Explanation, finding: Finding) -> str:
+    if answer.next_poses is None:
+        return ""
+    if answer.told_next(finding) or not answer.next_pairs:
+        return " The readings proposed below would."
+    return " The section on what to measure next says what the proposed readings would tell."
 
 
 def _scores(finding: Finding) -> Picture:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import (
     Block,
@@ -22,6 +23,7 @@ from sk120stiff.show.report import (
 from sk120stiff.show.stories.evidence_section import evidence_section, sizes_of
 from sk120stiff.show.stories.gap_section import gap_section, steps_table
 from sk120stiff.show.stories.limits_section import blind_section, left_section, next_section
+from sk120stiff.show.stories.probability_section import probability_section
 from sk120stiff.show.stories.sizes_sections import budget_section, gear_section, parameters_section
 from sk120stiff.show.stories.verdicts import FEW, lead_of, title_of
 from sk120stiff.show.stories.where_section import where_section
@@ -60,6 +62,7 @@ def explain_report(
         ),
         "Where it lives": lambda: where_section(answer),
         "The evidence": lambda: evidence_section(answer),
+        "How probable it is": lambda: probability_section(answer),
         "The curve of the gear": lambda: gear_section(answer),
         "Parameters": lambda: parameters_section(answer),
         "What moves the point": lambda: budget_section(answer),
@@ -100,7 +103,7 @@ def _answer(answer: Explanation) -> Section:
     elif answer.where:
         blocks.append(answer.where[0])
     blocks.append(Note(next_step(answer), "note", "What to do now"))
-    blocks += [Note(reason, "note", "About the noise") for reason in answer.noise_reasons]
+    blocks += [Note(reason, "note", "About the noise") for reason in noise_words(answer)]
     return Section("The answer", blocks)
 
 

@@ -9,6 +9,8 @@ import numpy as np
 
 from sk120stiff.effects import all_effects
 from sk120stiff.explain import Detectable, Explanation
+from sk120stiff.explain.answer.words import noise_words
+from sk120stiff.explain.findings import ENOUGH
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import Block, Items, Note, Section, Table
@@ -38,7 +40,7 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
     else:
         blocks.append("The noise is unknown, so no test of what is left is possible.")
     blocks += [*answer.unnamed, *answer.limits]
-    blocks += [noise_sentence(answer.final), *answer.noise_reasons]
+    blocks += [noise_sentence(answer.final), *noise_words(answer)]
     if answer.set_aside:
         blocks.append(_set_aside(answer, readings))
     return Section("What is left, and the noise", blocks)
@@ -135,6 +137,7 @@ def next_section(answer: Explanation, link: str) -> Section | None:
         [
             f"These {counted(len(a), 'reading')} tell the open names apart best, chosen one after "
             f"the other from 400 poses within the joint limits.{where}",
+            *_pairs(answer),
             Table(
                 ["reading", *robot.actuated, "fx", "fy", "fz"],
                 rows,
@@ -143,3 +146,23 @@ def next_section(answer: Explanation, link: str) -> Section | None:
             ),
         ],
     )
+
+
+def _pairs(answer: Explanation) -> list[Block]:
+    """What the proposed readings tell, pair by pair."""
+    if not answer.next_pairs:
+        return []
+    rows = [
+        (pair.name, pair.rival, pair.apart, "yes" if pair.settled else "not for sure")
+        for pair in answer.next_pairs
+    ]
+    return [
+        Table(
+            ["name", "or", "apart by", "told"],
+            rows,
+            "What one cannot imitate of the other at these readings, in standard deviations of "
+            f"the noise; from {ENOUGH:g} on it is told which of the two it is.",
+            units=["", "", "σ", ""],
+            digits=2,
+        )
+    ]

@@ -17,9 +17,9 @@ from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.figures import Estimate, parameter_forest
 from sk120stiff.show.figures.budget import budget_bars
-from sk120stiff.show.figures.gear_curve import gear_curve
+from sk120stiff.show.figures.gear_curve import gear_curve, left_out
 from sk120stiff.show.report import Block, Note, Picture, Section, Table
-from sk120stiff.show.wording import number, percent, said_in, um, unit_of, with_error
+from sk120stiff.show.wording import counted, number, percent, said_in, um, unit_of, with_error
 
 WORTH_TELLING = 0.01
 UNSEEN = "cannot be seen"
@@ -179,9 +179,16 @@ def gear_section(answer: Explanation) -> Section | None:
 def _picture(curve: GearCurve) -> Picture:
     largest = 1e6 * abs(curve.twist).max()
     names = listed([f"`{name}`" for name in curve.names])
+    hidden = max(left_out(curve, spring) for spring in (0.0, curve.compliance))
+    outside = (
+        f" {hidden} of {counted(len(curve.measured), 'reading')} lie outside what is drawn."
+        if hidden
+        else ""
+    )
     return Picture(
         lambda: gear_curve(curve),
         alt=f"Twist of {curve.where} up to {largest:.3g} µrad over its torque up to "
         f"{abs(curve.torque).max():.3g} N·m, found curve and plain law.",
-        caption=f"{curve.where}: {names}. Points: readings whose point the joint moves well.",
+        caption=f"{curve.where}: {names}. Points: readings whose point the joint moves well."
+        f"{outside}",
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
+from sk120stiff.explain.findings import likely
 from sk120stiff.show.wording import chance, counted, um
 
 FEW_POSES = 8  # below this other poses confirm little
@@ -61,7 +62,7 @@ def _ambiguous(answer: Explanation) -> str:
         rivals = [sentence_of(answer, name) for name in near(finding)]
         said += f" {finding.effect.sentence()}"
         if not rivals:
-            said += f" That is not sure (probability {finding.probability:.2f})."
+            said += f" That is not sure ({likely(finding.probability, 'probability')})."
             continue
         said += f" Or: {' Or: '.join(rivals[:FEW])}"
         if len(rivals) > FEW:
@@ -69,7 +70,9 @@ def _ambiguous(answer: Explanation) -> str:
     several = any(near(finding) for finding in open_)
     tail = " These readings cannot tell which." if several else " More readings would tell."
     if answer.next_poses is not None:
-        tail += f" {counted(len(answer.next_poses[0]), 'further reading')} would."
+        told = all(pair.settled for pair in answer.next_pairs)
+        would = "would" if told else "would tell part of it"
+        tail += f" {counted(len(answer.next_poses[0]), 'further reading')} {would}."
     return f"{said.strip()}{tail} {shrinks(answer)}"
 
 

@@ -1,0 +1,51 @@
+"""Sentences about an answer that the terminal, the report and verdict.json share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from sk120stiff.explain.answer.explanation import Explanation
+
+GOES, ALL_OF_IT = "It goes with ", "nothing is left beyond the noise"
+WORSE = 1.5  # times as large held out as fitted: worth a sentence
+
+
+def accounted(answer: Explanation) -> str | None:
+    """What all of the remainder goes with; None where nothing leaves no more than noise."""
+    for sentence in answer.remainder.where:
+        if sentence.startswith(GOES) and ALL_OF_IT in sentence:
+            return sentence.removeprefix(GOES).partition(":")[0]
+    return None
+
+
+def noise_words(answer: Explanation) -> tuple[str, ...]:
+    """What was decided about the noise; what has a place is not called noise."""
+    statement, left = answer.adequacy.of_the_statement(), answer.adequacy
+    place = accounted(answer)
+    if left.whole is None or left.understated is not None or place is None:
+        return answer.noise_reasons
+    said = (
+        f"What is left is {left.whole.factor:.3g} times the stated uncertainty, and it is no "
+        f"noise: it goes with {place}. The standard errors account for it."
+    )
+    wrong = set(statement) if left.lacking else set()
+    return tuple(said if reason in wrong else reason for reason in answer.noise_reasons)
+
+
+def held_out_words(answer: Explanation) -> tuple[str, ...]:
+    """Why readings that were left out are foretold so much worse than others are fitted."""
+    worse = [
+        step
+        for step in answer.steps[1:]
+        if np.isfinite(step.heldout_rms) and step.heldout_rms > WORSE * step.fit_rms
+    ]
+    if not worse:
+        return ()
+    return (
+        f"{worse[-1].label.removeprefix('+ ')}: poses that are left out are foretold worse than "
+        "others are fitted. Names, laws and values are learned anew without them, and where few "
+        "poses show a cause, the rest may miss it: trust the held-out number.",
+    )

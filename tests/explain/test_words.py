@@ -1,0 +1,110 @@
+"""Sentences of an answer do not contradict one another, and say what their numbers mean."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sk120stiff.cli.explain_output import _gain, said
+from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.words import accounted, held_out_words, noise_words
+from sk120stiff.explain.findings import Contender, Step
+from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.identify import LackOfFit
+
+PLACE = "the force that link_3 carries"
+ACCOUNT = f"It goes with {PLACE}: with that beside the names, nothing is left beyond the noise."
+CLOSE = f"It goes most closely with {PLACE}: that takes away 93 % of what exceeds the noise."
+BEYOND = LackOfFit("stated", 681.0, (292, None), 1e-30, 1.53)
+
+
+def adequacy(understated: float | None = None) -> Adequacy:
+    return Adequacy(1e-9, 30.0, 80.0, {"whole misfit": 1e-9}, BEYOND, understated, PLACE)
+
+
+@dataclass
+class Answered:
+    """What `next_step` and the sentences ask of an answer."""
+
+    where: tuple[str, ...] = (ACCOUNT,)
+    understated: float | None = None
+    verdict: str = "named"
+    significant: bool = True
+    steps: tuple[Step, ...] = (Step("joint_springs", 9e-5, 9.5e-5), Step("+ a:b", 3e-5, 3.2e-5))
+    findings: tuple[Any, ...] = ()
+    budget: tuple[Any, ...] = ()
+    next_poses: Any = None
+    next_pairs: tuple[Any, ...] = ()
+    guess: Any = None
+    yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))
+
+    @property
+    def adequacy(self) -> Adequacy:
+        return adequacy(self.understated)
+
+    @property
+    def remainder(self) -> Any:
+        return SimpleNamespace(where=self.where, significant=self.significant, rms=2e-5)
+
+    @property
+    def noise_reasons(self) -> tuple[str, ...]:
+        return ("Rows share a zero.", *self.adequacy.of_the_statement())
+
+    @property
+    def final(self) -> Any:
+        readings = SimpleNamespace(repeat=None, branch=None, n_readings=100, poses=list("abcdefg"))
+        robot = SimpleNamespace(total_mass=0.0, gravity=np.zeros(3))
+        return SimpleNamespace(
+            problem=SimpleNamespace(measurements=readings), model=SimpleNamespace(robot=robot)
+        )
+
+
+def test_what_has_a_place_is_not_called_noise() -> None:
+    known, unknown = Answered(), Answered(where=(CLOSE,))
+    assert accounted(known) == PLACE and accounted(unknown) is None
+    first, second = noise_words(known)
+    assert first == "Rows share a zero."
+    assert "it is no noise" in second and PLACE in second and "repeats" not in second
+    assert noise_words(unknown) == unknown.noise_reasons
+    assert "repeats" in noise_words(unknown)[1]
+
+
+def test_what_to_do_now_sends_to_the_place_where_one_is_known() -> None:
+    assert f"The rest goes with {PLACE}" in next_step(Answered())
+    assert "repeat a few readings" not in next_step(Answered())
+    assert "repeat a few readings" in next_step(Answered(where=(CLOSE,)))
+
+
+@pytest.mark.parametrize("verdict", ["named", "ambiguous", "none"])
+def test_what_to_do_now_says_that_sigma_looks_too_small(verdict: str) -> None:
+    told = Answered(understated=2.9, verdict=verdict, significant=False)
+    assert "Correct the stated σ to about 29.0 µm" in next_step(told)
+    if verdict != "none":
+        fine = Answered(verdict=verdict, significant=False)
+        assert "Correct the stated σ" not in next_step(fine)
+
+
+def test_an_open_answer_without_poses_says_what_to_do_about_the_rest() -> None:
+    assert f"The rest goes with {PLACE}" in next_step(Answered(verdict="ambiguous"))
+
+
+def test_readings_left_out_that_are_foretold_far_worse_are_explained() -> None:
+    far = (Step("joint_springs", 9e-5, 9.5e-5), Step("+ a:b", 5.5e-5, 13e-5))
+    (sentence,) = held_out_words(Answered(steps=far))
+    assert sentence.startswith("a:b: poses that are left out are foretold worse")
+    assert held_out_words(Answered()) == ()
+
+
+def test_suspects_are_told_with_what_they_gain() -> None:
+    assert _gain(Contender("joint_tilt:j1", 9.38e-6)) == (
+        "joint_tilt:j1 (the held-out gap falls by 9.38 µm)"
+    )
+    assert "grows by 1.00 µm" in _gain(Contender("a:b", -1e-6))
+    assert "do not hold it" in _gain(Contender("a:b", np.nan))
+
+
+def test_the_first_line_says_that_part_has_no_name() -> None:
+    assert "20.0 µm rms per axis have none" in said(Answered())
+    assert said(Answered(significant=False)) == "Something was missing, and it has a name."
