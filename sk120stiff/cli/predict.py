@@ -52,7 +52,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     gap = predicted.gap(readings)
     per_pose: list[dict[str, object]] = []
     left: float | None = None
-    told = np.isfinite(gap) & readings.use[:, None]
+    told = np.asarray(np.isfinite(gap) & readings.use[:, None])
     used = told.any(axis=1)
     if used.any():
         left = 1e6 * rms(gap[told])
