@@ -87,6 +87,19 @@ def test_a_cell_without_information_is_a_blank_cell(springs) -> None:
     np.testing.assert_allclose(blank.covariance, vague.covariance, rtol=1e-8)
 
 
+def test_masked_rows_that_are_blank_change_nothing(springs) -> None:
+    full = readings_with("shared", springs)
+    more = full + full.select([0, 5, 9])
+    use = np.arange(more.n_readings) < full.n_readings
+    empty = np.where(use[:, None], more.displacement, np.nan)
+    noise = NoiseModel(10e-6, 0.02)
+    plain = fit(springs, full, noise=noise)
+    beside = fit(springs, replace(more, use=use, displacement=empty), noise=noise)
+    np.testing.assert_array_equal(beside.x, plain.x)
+    np.testing.assert_array_equal(beside.residual, plain.residual)
+    assert beside.log_likelihood == plain.log_likelihood
+
+
 def test_an_axis_that_nobody_read_is_no_axis_of_the_zero_reading(springs) -> None:
     """Rows of one axis each: those of different axes share nothing but the pose."""
     full = readings_with("shared", springs)
