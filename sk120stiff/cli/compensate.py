@@ -264,9 +264,11 @@ def command(
         "measured": came_back or None,
         "out": str(out),
         "sheet": sheet,
+        "budget": judged.budget_keys(),
     }
     held = bool(found.before.exists.any())
     shown = [
-        said, *parts(document, given, found), *about, *measured_words(came_back), *facts, *assumed,
+        said, *parts(document, given, found), *about, *judged.budget_parts(),
+        *measured_words(came_back), *facts, *assumed,
     ]  # fmt: skip
     return Answer(document, parts=shown, exit_code=0 if held else 1)

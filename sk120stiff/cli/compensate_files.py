@@ -21,9 +21,11 @@ from sk120stiff import __version__
 from sk120stiff.arrays import Array
 from sk120stiff.cli.compensate_words import root_mean_square
 from sk120stiff.cli.opening import model_file
+from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.errors import InputError, warn
+from sk120stiff.explain.answer.document import share_entries
 from sk120stiff.files import read_bytes, write_atomically
-from sk120stiff.model import Model, typical_parameters
+from sk120stiff.model import Model, Share, typical_parameters
 from sk120stiff.programs import Language
 from sk120stiff.programs.bad_targets import refuse_bad_targets
 from sk120stiff.programs.building import build
@@ -36,9 +38,10 @@ from sk120stiff.workspace import (
     Standing,
     StandingUncertainty,
     read_returned,
-    standing_budget,
+    standing_budgets,
 )
 
+DISTANCE = float(np.sqrt(3.0))  # from rms per axis to rms distance
 PLACE = 6  # numbers of a place: more joints than these are not determined by it
 
 
@@ -215,6 +218,20 @@ class Judged:
         left = self.uncertainty.std_remainder
         return np.asarray(np.hypot(self.uncertainty.std_parameters, 0.0 if left is None else left))
 
+    @cached_property
+    def budgets(self) -> tuple[tuple[Share, ...], tuple[Share, ...]]:
+        """What each effect moves the uncorrected tool by, and all that yields at each joint."""
+        return standing_budgets(self.model, self.nominal, self.path.wrench, frame=self.frame)
+
+    def budget_keys(self) -> dict[str, object]:
+        """The key `budget`: rms distances along the path."""
+        effects, joints = (share_entries(shares, DISTANCE) for shares in self.budgets)
+        return {"effects": effects, "joints": joints}
+
+    def budget_parts(self) -> list[object]:
+        """The same for people."""
+        return budget_tables_of("Uncorrected, along the path", "µm rms", *self.budgets, DISTANCE)
+
     def write(
         self,
         sheet: Path,
@@ -239,7 +256,7 @@ class Judged:
             after=self.in_path(self.after.away),
             std=self.std(),
             uncertainty=uncertainty,
-            shares=standing_budget(self.model, self.nominal, self.path.wrench, frame=self.frame),
+            shares=self.budgets[0],
             measured=self.returned,
             facts=facts,
             reproducibility=reproducibility(command, inputs),
