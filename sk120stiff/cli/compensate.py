@@ -12,6 +12,8 @@ import typer
 from sk120stiff.arrays import largest, rms
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
 from sk120stiff.cli.compensate_files import (
+    budget_keys,
+    budget_parts,
     check_sheet,
     measured_keys,
     measured_words,
@@ -266,9 +268,11 @@ def command(
         "measured": came_back or None,
         "out": str(out),
         "sheet": sheet,
+        "budget": budget_keys(judged),
     }
     held = bool(found.before.exists.any())
     shown = [
-        said, *parts(document, given, found), *about, *measured_words(came_back), *facts, *assumed,
+        said, *parts(document, given, found), *about, *budget_parts(judged),
+        *measured_words(came_back), *facts, *assumed,
     ]  # fmt: skip
     return Answer(document, parts=shown, exit_code=0 if held else 1)

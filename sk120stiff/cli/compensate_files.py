@@ -18,7 +18,9 @@ import numpy as np
 from sk120stiff import __version__
 from sk120stiff.arrays import Array
 from sk120stiff.cli.opening import model_file
+from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.errors import InputError, warn
+from sk120stiff.explain.answer.document import share_entries
 from sk120stiff.files import read_bytes, write_atomically
 from sk120stiff.model import Model, typical_parameters
 from sk120stiff.programs import Language
@@ -28,6 +30,7 @@ from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.robot import Robot, find_robot
 from sk120stiff.workspace import Compensation, Judged, LoadedPath
 
+DISTANCE = float(np.sqrt(3.0))  # from rms per axis to rms distance
 PLACE = 6  # numbers of a place: more joints than these are not determined by it
 
 
@@ -158,6 +161,17 @@ def measured_keys(judged: Judged) -> dict[str, dict[str, Any]]:
     }
 
 
+def budget_keys(judged: Judged) -> dict[str, object]:
+    """The key `budget`: rms distances along the path."""
+    effects, joints = (share_entries(shares, DISTANCE) for shares in judged.budgets)
+    return {"effects": effects, "joints": joints}
+
+
+def budget_parts(judged: Judged) -> list[object]:
+    """The same for people."""
+    return budget_tables_of("Uncorrected, along the path", "µm rms", *judged.budgets, DISTANCE)
+
+
 def write_sheet(
     judged: Judged,
     sheet: Path,
@@ -182,7 +196,7 @@ def write_sheet(
         after=judged.in_path(judged.after.away),
         std=None if judged.uncertainty is None else judged.uncertainty.std,
         uncertainty=uncertainty,
-        shares=judged.shares(),
+        shares=judged.budgets[0],
         measured=judged.returned,
         facts=facts,
         reproducibility=reproducibility(command, inputs),

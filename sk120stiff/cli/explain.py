@@ -20,11 +20,13 @@ from sk120stiff.cli.opening import open_data, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, SeedOption
 from sk120stiff.cli.positions import positions_answer
 from sk120stiff.cli.tables import progress_bar
-from sk120stiff.explain import Explained, Options, explain
+from sk120stiff.cli.task_budget import opened_task, with_task
+from sk120stiff.explain import Explained, Explanation, Options, explain
 from sk120stiff.explain.options import MOST_EFFECTS
 from sk120stiff.explain.priors import priors_from
 from sk120stiff.identify import refuse_for_positions
 from sk120stiff.model import Model
+from sk120stiff.plan import Cell
 
 
 def command(
@@ -38,6 +40,7 @@ def command(
     max_effects: Annotated[int, typer.Option(min=0, max=20)] = MOST_EFFECTS,
     alpha: Annotated[float, typer.Option(min=1e-06, max=0.5)] = Options.alpha,
     prior: list[str] | None = None,
+    task: Path | None = None,
     cell: CellOption = None,
     seed: SeedOption = 0,
     no_report: bool = False,
@@ -49,7 +52,7 @@ def command(
     cannot be told apart, next_poses.csv, which keeps to the cell. Slips of the pen in the readings
     are looked for first and stop it, with what mends them.
 
-    Example: sk120stiff explain readings.csv --holdout others.csv --out explained
+    Example: sk120stiff explain readings.csv --holdout others.csv --task path.csv --out explained
 
     Args:
         out (DIR): Folder for the results.
@@ -61,6 +64,8 @@ def command(
         alpha: Largest chance of a name where nothing is missing.
         prior (EFFECT=P): How probable an effect is before measuring, e.g. base_rocking=0.5 (the
             usual is 0.1; may be repeated).
+        task (CSV): A loaded path that has to be driven, as 'compensate' takes it: its error budget
+            stands beside that of the readings.
         no_report: Write no report.html and no scene.html.
     """
     check_folder(out)
@@ -82,10 +87,11 @@ def command(
     if positions:
         refuse_for_positions(readings, **{
             "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,
-            "--alpha": alpha != Options.alpha, "--prior": prior,
+            "--alpha": alpha != Options.alpha, "--prior": prior, "--task": task,
         })  # fmt: skip
     start = Model(robot) if positions and model is None else start_model(robot, model)
-    inputs = [data, data.with_suffix(".yaml"), *(file for file in (holdout, model) if file)]
+    inputs = [data, data.with_suffix(".yaml"), *(each for each in (holdout, model, task) if each)]
+    driven = None if task is None else opened_task(task, robot, options.cell or Cell())
     with progress_bar("explain") as report:
         answer = explain(
             start,
@@ -94,8 +100,10 @@ def command(
             options=options,
             progress=lambda _, share: report(round(85 * share), 100),
         )
-        task = Task(readings, data, inputs, holdout, seed)
-        document = write_answer(answer, task, out, report=not no_report, progress=report)
+        if isinstance(answer, Explanation) and task is not None and driven is not None:
+            answer = with_task(answer, task, *driven)
+        asked = Task(readings, data, inputs, holdout, seed)
+        document = write_answer(answer, asked, out, report=not no_report, progress=report)
     if isinstance(answer, Explained):
         return positions_answer(answer, document, out)
     return Answer(document, parts(answer, readings, out, report=document.get("report")))

@@ -12,6 +12,7 @@ from sk120stiff.cli.frame import note
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.outputs import refuse_foreign, will_write_into, write_pages
 from sk120stiff.cli.positions import yielding
+from sk120stiff.cli.shares import budget_tables
 from sk120stiff.cli.tables import table
 from sk120stiff.explain import Explained, Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
@@ -28,7 +29,6 @@ from sk120stiff.show.wording import um, with_error
 
 STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
-LISTED = 8  # effects whose share is printed; verdict.json has all
 TOLD = 3  # sentences on where the gap lives that are printed; the report has all
 
 
@@ -121,7 +121,7 @@ def parts(
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
     shown += held_out_words(answer)
-    shown.append(_budget(answer))
+    shown += budget_tables(answer)
     shown += answer.where[:TOLD]
     if answer.suspects:
         lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
@@ -153,16 +153,6 @@ def parts(
         shown.append(f"Report: {report}")
     shown.append(f"Results are in {out}.")
     return shown
-
-
-def _budget(answer: Explanation) -> object:
-    """What moves the point at the measured loads, the largest part first."""
-    rows = [
-        (share.name, share.rms * 1e6, "?" if share.std is None else share.std * 1e6)
-        for share in answer.budget[:LISTED]
-        if share.rms > 0.0
-    ]
-    return table("At the measured loads [µm rms per axis]", ["what yields", "moves", "±"], rows)
 
 
 def said(answer: Explanation) -> str:

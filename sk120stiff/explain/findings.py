@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sk120stiff.effects import Effect
+from sk120stiff.model import Share
 
 ENOUGH = 3.3  # standard deviations from which on readings settle which of two names it is
 NAMED = 0.95  # probability from which on a name stands alone
@@ -184,6 +185,22 @@ class Contender:
 
     id: str
     heldout_gain: float
+
+
+@dataclass(frozen=True)
+class TaskBudget:
+    """What moves the loaded tool on a task that someone has to do, by the final model.
+
+    Attributes:
+        path: Name of the task's file.
+        points: How many it has.
+        effects, joints: Shares of every effect, and of all that yields at each joint.
+    """
+
+    path: str
+    points: int
+    effects: tuple[Share, ...]
+    joints: tuple[Share, ...]
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Robot + effects with values: predict, differentiate, read, write."""
 
 from sk120stiff.model.assembly import Assembly, Solution
-from sk120stiff.model.budget import Share, moved_by, shares
+from sk120stiff.model.budget import Share, joint_shares, moved_by, shares, with_own_errors
 from sk120stiff.model.compliance import (
     ModelCompliance,
     model_compliance,
@@ -46,6 +46,7 @@ __all__ = [
     "Uncertainty",
     "base_model",
     "held_loads",
+    "joint_shares",
     "joint_spring_model",
     "loaded_stiffness",
     "loaded_uncertainty",
@@ -64,5 +65,6 @@ __all__ = [
     "typical_model",
     "typical_parameters",
     "warn_of_far_bend",
+    "with_own_errors",
     "write_model",
 ]

@@ -39,6 +39,7 @@ from sk120stiff.workspace.returned import Returned, read_returned
 from sk120stiff.workspace.standing_uncertainty import (
     StandingUncertainty,
     standing_budget,
+    standing_budgets,
     standing_uncertainty,
 )
 
@@ -87,6 +88,7 @@ __all__ = [
     "solve_inverse",
     "standing",
     "standing_budget",
+    "standing_budgets",
     "standing_uncertainty",
     "starting_poses",
     "stays_above",

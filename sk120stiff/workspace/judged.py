@@ -13,7 +13,7 @@ from sk120stiff.model import Model, Share
 from sk120stiff.workspace.compensate import Standing
 from sk120stiff.workspace.path import LoadedPath
 from sk120stiff.workspace.returned import Returned, read_returned
-from sk120stiff.workspace.standing_uncertainty import StandingUncertainty, standing_budget
+from sk120stiff.workspace.standing_uncertainty import StandingUncertainty, standing_budgets
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +58,7 @@ class Judged:
         """How far measured points lie off where they were foretold, rms [m]."""
         return each.apart(self.in_path(getattr(self, each.run).away))
 
-    def shares(self) -> tuple[Share, ...]:
-        """What each effect moves the uncorrected tool by along the path."""
-        return standing_budget(self.model, self.nominal, self.path.wrench, frame=self.frame)
+    @cached_property
+    def budgets(self) -> tuple[tuple[Share, ...], tuple[Share, ...]]:
+        """What each effect moves the uncorrected tool by, and all that yields at each joint."""
+        return standing_budgets(self.model, self.nominal, self.path.wrench, frame=self.frame)

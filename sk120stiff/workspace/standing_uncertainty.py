@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import load_case
 from sk120stiff.errors import Refusal
-from sk120stiff.model import Model, Share, held_loads, seen_from, shares
+from sk120stiff.model import Model, Share, held_loads, joint_shares, seen_from, shares
 from sk120stiff.model.predicted import blamed
 from sk120stiff.model.uncertainty import spread
 
@@ -102,18 +102,43 @@ def standing_budget(
     Weight and wrong geometry count too. Standard errors where the model stores its uncertainty, and
     the readings of its fit show the effect.
     """
+    parts = _parts(model, commanded, wrench, frame, point)
+    return () if parts is None else shares(*parts)
+
+
+def standing_budgets(
+    model: Model,
+    commanded: ArrayLike,
+    wrench: ArrayLike,
+    *,
+    frame: str | None = None,
+    point: ArrayLike | None = None,
+) -> tuple[tuple[Share, ...], tuple[Share, ...]]:
+    """The same, and the sums of all that yields at each joint: spring, gear and bearing."""
+    parts = _parts(model, commanded, wrench, frame, point)
+    return ((), ()) if parts is None else (shares(*parts), joint_shares(*parts))
+
+
+def _parts(
+    model: Model,
+    commanded: ArrayLike,
+    wrench: ArrayLike,
+    frame: str | None,
+    point: ArrayLike | None,
+) -> tuple[Model, Array, Array | None] | None:
+    """The arm, (N, 3, P) where it stands by its values, their covariance; None: it holds none."""
     physical, a, load, at = _seen(model, commanded, wrench, frame, point)
     found = [derivative for _, derivative in _derivatives(physical, a, load, at)]
     derivative = np.concatenate([np.zeros((0, 3, len(physical.values))), *found])
     if not len(derivative):
-        return ()
+        return None
     covariance = None
     if model.uncertainty is not None:
         L, B = model.uncertainty.factors(physical.names)
         covariance = L @ L.T + B @ B.T
         unknown = np.isinf(spread(L, B, 0.0))
         covariance[unknown, unknown] = np.inf
-    return shares(physical, derivative, covariance)
+    return physical, derivative, covariance
 
 
 def _seen(

@@ -33,7 +33,7 @@ def test_a_path_is_judged_in_its_own_axes(tmp_path: Path) -> None:
     np.testing.assert_allclose(judged.meant @ part[:3, :3].T + part[:3, 3], place)
     (before,) = judged.returned
     assert judged.off_prediction(before) < 1e-9 < found.before.distance[0]
-    assert judged.uncertainty is None and judged.shares()
+    assert judged.uncertainty is None and judged.budgets[0]
 
 
 def test_loads_of_the_tool_are_turned_into_base_axes(tmp_path: Path) -> None:

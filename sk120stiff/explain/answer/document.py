@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
@@ -13,11 +14,11 @@ from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
-from sk120stiff.explain.findings import Finding
+from sk120stiff.explain.findings import Finding, TaskBudget
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Parameter
+from sk120stiff.model import Parameter, Share
 
 BEST_GUESS = "best_guess.yaml"
 RIGID = "it lies on its bound: rigid fits best"
@@ -65,10 +66,9 @@ def verdict_document(
             ],
         },
         "next_step": next_step(answer),
-        "budget": [
-            {"name": share.name, "rms_um": micrometres(share.rms), "std_um": micrometres(share.std)}
-            for share in answer.budget
-        ],
+        "budget": share_entries(answer.budget),
+        "budget_joints": share_entries(answer.joints_budget),
+        "budget_task": task_document(answer.task),
         "where": list(answer.where),
         "suspects": [
             {"name": suspect.id, "heldout_gain_um": micrometres(suspect.heldout_gain)}
@@ -120,6 +120,31 @@ def remainder_document(answer: Explanation) -> dict[str, Any]:
         "constant_um": micrometres(left.form.constant),
         "where": list(left.where),
     }
+
+
+def task_document(task: TaskBudget | None) -> dict[str, Any] | None:
+    """The budget of a task; None where none was asked for."""
+    if task is None:
+        return None
+    return {
+        "path": task.path,
+        "points": task.points,
+        "effects": share_entries(task.effects),
+        "joints": share_entries(task.joints),
+    }
+
+
+def share_entries(shares: Iterable[Share], size: float = 1.0) -> list[dict[str, Any]]:
+    """Shares of a budget in µm, `size` times their rms per axis; of sums with their members."""
+    return [
+        {
+            "name": share.name,
+            **({"members": list(share.members)} if share.members else {}),
+            "rms_um": micrometres(size * share.rms),
+            "std_um": None if share.std is None else micrometres(size * share.std),
+        }
+        for share in shares
+    ]
 
 
 def share_of(answer: Explanation, finding: Finding) -> float | None:

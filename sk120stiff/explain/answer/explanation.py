@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
-from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, Step
+from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, Step, TaskBudget
 from sk120stiff.explain.judge.adequacy import Adequacy
-from sk120stiff.explain.judge.budget import error_budget
+from sk120stiff.explain.judge.budget import error_budget, joint_budget
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.identify import Fit, Yardstick, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -51,6 +51,7 @@ class Explanation:
         next_poses: (K, n) coordinates and (K, 6) wrenches to measure next, or None.
         next_pairs: Which names these tell apart, and how far.
         catalogue: The effects that were considered.
+        task: What moves the tool on a given task, where one was asked for.
         details: Further figures for reports.
 
     Examples:
@@ -84,6 +85,7 @@ class Explanation:
     next_poses: tuple[Array, Array] | None = None
     next_pairs: tuple[Apart, ...] = ()
     catalogue: Catalogue = CATALOGUE
+    task: TaskBudget | None = None
     details: Mapping[str, Any] = field(default_factory=dict)
 
     @cached_property
@@ -100,6 +102,11 @@ class Explanation:
     def budget(self) -> tuple[Share, ...]:
         """What each effect moves the point by at the measured loads, the largest first."""
         return error_budget(self.final)
+
+    @cached_property
+    def joints_budget(self) -> tuple[Share, ...]:
+        """What spring, gear and bearing of each joint move the point by together."""
+        return joint_budget(self.final, self.remainder.rms)
 
     def told_next(self, finding: Finding) -> bool:
         """Do the proposed readings tell this finding from all that stand beside it?"""

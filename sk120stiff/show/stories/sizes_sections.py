@@ -6,15 +6,16 @@ the point at the measured loads, joint by joint; people recognise a gear by its 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
+from sk120stiff.explain.findings import TaskBudget
 from sk120stiff.explain.judge.gear_curve import GearCurve, gear_curves
 from sk120stiff.identify import Fit, unseen_reasons
-from sk120stiff.model import Parameter
+from sk120stiff.model import Parameter, Share
 from sk120stiff.show.figures import Estimate, parameter_forest
 from sk120stiff.show.figures.budget import budget_bars
 from sk120stiff.show.figures.gear_curve import gear_curve, left_out
@@ -154,13 +155,61 @@ def budget_section(answer: Explanation) -> Section | None:
             ),
             Table(
                 ["what yields", "moves", "±"],
-                [(s.name, 1e6 * s.rms, "" if s.std is None else 1e6 * s.std) for s in shares],
+                _rows(shares),
                 "Rms per axis at the measured loads, with its standard error.",
                 units=["", "µm", "µm"],
                 digits=3,
             ),
+            *_joint_by_joint(answer.joints_budget, "at the measured loads"),
+            *_task(answer.task),
         ],
     )
+
+
+def _task(task: TaskBudget | None) -> list[Block]:
+    """The same of a task, where one was asked for."""
+    if task is None:
+        return []
+    named = f"`{task.path}` ({counted(task.points, 'point')})"
+    if not any(share.rms for share in task.effects):
+        return [f"On the task {named} nothing of the model moves the tool, or no point holds."]
+    rows = _rows([share for share in task.effects if share.rms > 0.0])
+    return [
+        f"On the task {named} the loaded tool is moved by the arm's weight too; sizes of the "
+        "uncorrected path.",
+        Table(
+            ["what yields", "moves", "±"],
+            rows,
+            "Rms per axis along the task, with its standard error.",
+            units=["", "µm", "µm"],
+            digits=3,
+        ),
+        *_joint_by_joint(task.joints, "along the task"),
+    ]
+
+
+def _joint_by_joint(joints: Sequence[Share], where: str) -> list[Block]:
+    """Sums of what yields at each joint; nothing where each has its spring alone."""
+    if not any(len(share.members) > 1 for share in joints):
+        return []
+    return [
+        "Spring, gear and bearing of one joint trade with one another: where the parts are not "
+        "known, their sum may be.",
+        Table(
+            ["all that yields at", "moves", "±", "together"],
+            [
+                (*row, " + ".join(name.partition(":")[0] for name in share.members))
+                for row, share in zip(_rows(joints), joints, strict=True)
+            ],
+            f"Joint by joint, rms per axis {where}, with the standard error of the sum.",
+            units=["", "µm", "µm", ""],
+            digits=3,
+        ),
+    ]
+
+
+def _rows(shares: Sequence[Share]) -> list[tuple[object, ...]]:
+    return [(s.name, 1e6 * s.rms, "" if s.std is None else 1e6 * s.std) for s in shares]
 
 
 def gear_section(answer: Explanation) -> Section | None:
