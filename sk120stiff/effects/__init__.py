@@ -16,13 +16,12 @@ from sk120stiff.effects.base import (
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.words import EffectWords, catalogue_words, comment_lines, words_of
+from sk120stiff.effects.words import catalogue_words, comment_lines, words_of
 
 __all__ = [
     "CATALOGUE",
     "Catalogue",
     "Effect",
-    "EffectWords",
     "Elastic",
     "Elongation",
     "Geometric",
