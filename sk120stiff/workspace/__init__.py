@@ -13,14 +13,13 @@ from sk120stiff.workspace.compensate import Compensation, Standing, compensate, 
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
 from sk120stiff.workspace.finished import (
     LoadSummary,
-    MapCheck,
     damaged_map,
     open_map,
     summarise_map,
     verify_map,
 )
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
-from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 from sk120stiff.workspace.judge import PathTask, Placement
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
 from sk120stiff.workspace.mapping import MapReport, write_map
@@ -51,13 +50,11 @@ __all__ = [
     "Landscape",
     "LoadSummary",
     "LoadedPath",
-    "MapCheck",
     "MapJob",
     "MapReport",
     "PathTask",
     "Placement",
     "PositionGrid",
-    "Reached",
     "Returned",
     "Standing",
     "StandingUncertainty",
