@@ -13,6 +13,7 @@ from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.rotations import homogeneous
 
 CROSS = "cross_stiffness"
 
@@ -83,11 +84,9 @@ class BaseRocking(StraightPart):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Two joints before all others."""
-        placement = np.eye(4)
-        placement[:3, 3] = robot.foundation
+        at = homogeneous(robot.foundation)
         return tuple(
-            VirtualJoint(f"{self.id}.{label}", -1, placement, np.eye(3)[k])
-            for k, label in enumerate("xy")
+            VirtualJoint(f"{self.id}.{label}", -1, at, np.eye(3)[k]) for k, label in enumerate("xy")
         )
 
     def patterns(self, load_cases: LoadCases) -> Array:

@@ -21,6 +21,7 @@ from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on
+from sk120stiff.robot.rotations import homogeneous
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
 TAPERS = (-0.5, 0.0, 0.3, 0.6)  # that are tried; below zero: stouter towards the far end
@@ -178,7 +179,7 @@ class LinkBending(LinearElastic):
             VirtualJoint(
                 f"{self.id}{line}[{k}].{label}",
                 link.index,
-                _moved(member.start + place * member.span),
+                homogeneous(member.start + place * member.span),
                 axis,
                 followers=tied if tied and label == "in_plane" else (),
             )
@@ -282,9 +283,3 @@ def _split(link: ArmJoint) -> tuple[Array, Array]:
     in_plane = link.axis - along * (along @ link.axis)
     in_plane = in_plane / np.linalg.norm(in_plane)
     return np.cross(in_plane, along), in_plane
-
-
-def _moved(offset: Array) -> Array:
-    placement = np.eye(4)
-    placement[:3, 3] = offset
-    return placement
