@@ -12,7 +12,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.outputs import write_pages
-from sk120stiff.cli.tables import progress_bar, table
+from sk120stiff.cli.tables import progress_bar, shown
 from sk120stiff.effects import all_effects, load_cases_of
 from sk120stiff.explain import verdict_document
 from sk120stiff.explain.answer.saving import plan_of, replacing_results
@@ -90,22 +90,23 @@ def _of_hidden(cause: HiddenCause) -> dict[str, object]:
         "parameters": [
             {"name": p.name, "value": p.value, "std": p.std, "truth": cause.values[p.name],
              "unit": p.spec.unit}
-            for p in cause.answer.final.parameters if p.name in cause.values
+            for p in cause.parameters
         ],
     }  # fmt: skip
 
 
 def _told(cause: HiddenCause) -> list[object]:
+    from sk120stiff.show.stories.gap_section import steps_table
+
     answer = cause.answer
-    steps = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     poses = len(answer.base.problem.load_cases.poses)
     return [
-        f"4. A campaign of {poses} poses, simulated by other code, with a hidden cause",
+        f"A campaign of {poses} poses, simulated by other code, with a hidden cause:",
         said(answer),
         *findings(answer),
-        table("Gap [µm rms per axis]", ["model", "fitted", "held out"], steps),
+        shown(steps_table(answer)),
         cause.opened(),
-        table("Found and hidden", ["parameter", "found", "hidden"], cause.rows),
+        shown(cause.table()),
     ]
 
 
@@ -191,22 +192,14 @@ def _document(made: Demo) -> dict[str, object]:
         },
         "per_pose": [
             {"pose": pose, "paper_um": before, "identified_um": after}
-            for pose, before, after in _per_pose(made)
+            for pose, before, after in made.per_pose
         ],
         "one_force_gain": [
-            {"gain": found.gain, "rms_um": 1e6 * found.rms, "three_springs_um": 1e6 * springs}
-            for found, springs in made.gains
+            {"gain": gain, "rms_um": 1e6 * left, "three_springs_um": 1e6 * springs}
+            for gain, left, springs in made.gains
         ],
         "parameters": parameter_rows(made.found),
     }
-
-
-def _per_pose(made: Demo) -> list[tuple[str, float, float]]:
-    from sk120stiff.show.stories.gap_section import pose_rms
-
-    before, after = (1e6 * pose_rms(made.found, m) for m in (made.paper, made.found.model))
-    poses = made.found.problem.load_cases.poses
-    return [(p, float(b), float(a)) for p, b, a in zip(poses, before, after, strict=True)]
 
 
 def _files(written: Mapping[str, object]) -> list[object]:
@@ -215,31 +208,19 @@ def _files(written: Mapping[str, object]) -> list[object]:
 
 
 def _parts(made: Demo) -> list[object]:
-    from sk120stiff.show.stories.demo_report import demo_lead
-    from sk120stiff.show.wording import with_error
+    from sk120stiff.show.stories.demo_report import demo_lead, per_pose_table, springs_table
 
-    given = {p.name: p for p in made.paper.parameters}
-    springs = [
-        (p.effect.where, f"{given[p.name].value:.5g}",
-         with_error(p.value, p.std))
-        for p in made.found.parameters
-    ]  # fmt: skip
-    gaps = [(f"pose {pose}", before, after) for pose, before, after in _per_pose(made)]
-    gaps.append(("all", 1e6 * made.rms(made.paper), 1e6 * made.rms(made.found.model)))
     answer = made.answer
-    shown: list[object] = [
+    able = sum(s.visible >= 5.0 for s in made.hidden)
+    return [
         demo_lead(made),
-        table("1. Gap [µm rms per axis]", ["", "paper's springs", "identified"], gaps),
-        table("2. Springs [N·m/rad]", ["", "paper", "identified"], springs),
+        shown(per_pose_table(made)),
+        shown(springs_table(made)),
         made.of_the_gain(),
-        f"3. {said(answer)}",
+        said(answer),
         *findings(answer),
         *answer.where[:2],
         f"Poses left out in turn are predicted to {1e6 * answer.steps[0].heldout_rms:.1f} µm.",
-    ]
-    able = sum(s.visible >= 5.0 for s in made.hidden)
-    shown.append(
         f"At their usual size {able} of {len(made.hidden)} other effects would leave enough beyond "
-        "the springs to be named on these three poses."
-    )
-    return shown
+        "the springs to be named on these three poses.",
+    ]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.tables import table
-from sk120stiff.effects import EffectWords, catalogue_words
+from sk120stiff.effects import catalogue_words
 
 
 def command(
@@ -28,19 +27,19 @@ def command(
     parts: list[object] = []
     for each in found:
         parts += _parts(each)
-    return Answer({"effects": [asdict(each) for each in found]}, parts)
+    return Answer({"effects": found}, parts)
 
 
-def _parts(each: EffectWords) -> list[object]:
-    rows = [(item.name, item.unit, item.meaning) for item in each.parameters]
+def _parts(each: dict[str, Any]) -> list[object]:
+    rows = [tuple(item.values()) for item in each["parameters"]]
     meanings = table("", ["parameter", "unit", "what it means"], rows)
     meanings.title = None
     for column in meanings.columns:
         column.justify = "left"
     return [
-        f"{each.name}, at {each.where}. {each.sentence}",
-        f"    law:  {each.equation}",
-        f"    axes: {each.axes}",
-        *([f"    also: {each.also}"] if each.also else []),
+        f"{each['name']}, at {each['where']}. {each['sentence']}",
+        f"    law:  {each['equation']}",
+        f"    axes: {each['axes']}",
+        *([f"    also: {each['also']}"] if each["also"] else []),
         meanings,
     ]

@@ -11,18 +11,19 @@ import functools
 import inspect
 import logging
 import os
+import re
 import sys
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from copy import copy
 from dataclasses import dataclass
-from typing import Annotated, NoReturn, TextIO
+from typing import Annotated, Any, NoReturn, TextIO
 
 import typer
 
 from sk120stiff.cli.environment import visible
-from sk120stiff.cli.signature import declared
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
 from sk120stiff.errors import InputError, Refusal, ToolkitError
 from sk120stiff.files import running
@@ -34,6 +35,7 @@ Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks and every 
 INTERNAL = 3
 INTERRUPTED = 130
 NOBODY_READS = 141  # as a shell reports a process whose reader has gone
+_ENTRY = re.compile(r"(\w+)(?: \(([^)]+)\))?: (.+?)(?: \[default: (.+)\])?")
 
 
 @dataclass(frozen=True)
@@ -260,3 +262,31 @@ def hush(*streams: TextIO | None) -> None:
         if stream is not None:  # closed from the beginning
             os.dup2(nowhere, stream.fileno())
     os.close(nowhere)
+
+
+def declared(body: Callable[..., Any]) -> tuple[str, list[inspect.Parameter]]:
+    """The help of a command, and its parameters as typer takes them.
+
+    The section `Args` of the docstring has an entry ``name (METAVAR): help [default: words]`` for
+    every parameter that is none of `options`. One without a default is an argument, a flag has no
+    ``--no-...``; other names and bounds stand in the signature, as `typer.Option`.
+    """
+    told, _, section = (inspect.getdoc(body) or "").partition("\n\nArgs:\n")
+    entries = [" ".join(text.split()) for text in re.split(r"\n    (?=\w)", f"\n{section}")]
+    words = {match[1]: match for match in map(_ENTRY.fullmatch, entries) if match}
+    given = inspect.signature(body, eval_str=True).parameters.values()
+    return told, [_declared(p, words.get(p.name)) for p in given]
+
+
+def _declared(p: inspect.Parameter, said: re.Match[str] | None) -> inspect.Parameter:
+    kind, info = p.annotation, None
+    if hasattr(kind, "__metadata__"):
+        kind, info = kind.__origin__, copy(kind.__metadata__[0])
+    elif p.default is p.empty:
+        info = typer.Argument()
+    else:
+        info = typer.Option(*([f"--{p.name.replace('_', '-')}"] if kind is bool else []))
+    if said is not None:
+        info.metavar, info.help = said[2], said[3]
+        info.show_default = said[4] or info.show_default
+    return p.replace(kind=p.KEYWORD_ONLY, annotation=Annotated[kind, info])

@@ -26,6 +26,7 @@ from sk120stiff.cli.environment import visible
 if TYPE_CHECKING:
     from sk120stiff.arrays import Array
     from sk120stiff.measurements import Measurements
+    from sk120stiff.show import report
 
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Table:
@@ -36,6 +37,17 @@ def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) 
     for row in rows:
         made.add_row(*(cell(value) for value in row))
     return made
+
+
+def shown(block: report.Table) -> Table:
+    """A table of a report."""
+    units = block.units or [""] * len(block.header)
+    heads = [f"{name}\n{unit}".strip() for name, unit in zip(block.header, units, strict=True)]
+    rows = [
+        [f"{each:.{block.digits}g}" if isinstance(each, float) else each for each in row]
+        for row in block.rows
+    ]
+    return table(block.caption, heads, rows)
 
 
 def cell(value: object) -> str:

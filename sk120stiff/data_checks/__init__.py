@@ -1,12 +1,10 @@
 """Slips of the pen in measurements: looked for before physics is blamed."""
 
 from sk120stiff.data_checks.copies import repeated_rows, without_copies
-from sk120stiff.data_checks.look import DataChecks, look, refuse_unbelievable
-from sk120stiff.data_checks.search import Slip, find_slip
+from sk120stiff.data_checks.look import look, refuse_unbelievable
+from sk120stiff.data_checks.search import find_slip
 
 __all__ = [
-    "DataChecks",
-    "Slip",
     "find_slip",
     "look",
     "refuse_unbelievable",

@@ -1,7 +1,6 @@
 """Physical causes by name: each says how it enters, what it is described by, where it can act."""
 
 from sk120stiff.effects.base import (
-    Alias,
     Effect,
     Elastic,
     Elongation,
@@ -15,17 +14,14 @@ from sk120stiff.effects.base import (
     Viewpoint,
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
-from sk120stiff.effects.declared import declared_aliases
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.effects.words import EffectWords, catalogue_words, comment_lines, words_of
+from sk120stiff.effects.words import catalogue_words, comment_lines, words_of
 
 __all__ = [
     "CATALOGUE",
-    "Alias",
     "Catalogue",
     "Effect",
-    "EffectWords",
     "Elastic",
     "Elongation",
     "Geometric",
@@ -41,7 +37,6 @@ __all__ = [
     "all_effects",
     "catalogue_words",
     "comment_lines",
-    "declared_aliases",
     "effect",
     "load_case",
     "load_cases_of",

@@ -59,25 +59,7 @@ class Options:
     shape: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class Alias:
-    """Two names for one thing.
-
-    Attributes:
-        name: ``effect:where.parameter``, with ``[part]`` behind it where only a part is meant.
-        other: Another parameter, or `SPRINGS` for all joint springs together.
-        when: The kind of readings that it holds for; empty where it holds for all.
-    """
-
-    name: str
-    other: str
-    when: str = ""
-
-
 SPRINGS = "joint_springs"
-PURE_FORCES = "all loads are pure forces"
-LOADS_GROW = "all loads only grow"
-ONE_WAY = "all loads point one way and grow with the order of the readings"
 
 
 @dataclass(frozen=True)
@@ -196,13 +178,6 @@ class Effect(ABC):
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
         """Groups of parameters that are equal where the part is as stiff one way as the other."""
-        return ()
-
-    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
-        """What no reading of positions can tell from this effect, for reasons of its own.
-
-        Compliances about one and the same axis need no mention: `declared_aliases` finds them.
-        """
         return ()
 
     def applies_to(self, load_cases: LoadCases) -> bool:

@@ -17,11 +17,10 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import PURE_FORCES, SPRINGS, Alias, LoadError, Options, scale_of
+from sk120stiff.effects.base import LoadError, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot
-from sk120stiff.robot.anatomy import sample_poses
 from sk120stiff.robot.rotations import crossed
 
 AXES = "xyz"
@@ -106,26 +105,6 @@ class ForceScale(_RigError):
             meaning=f"(reported - true) / reported force along {{}} of the {self._frame}; positive:"
             " the sensor reads too much",
         )  # fmt: skip
-
-    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
-        """All gains together are what all compliances together are.
-
-        A single one is, too, where its axis always lies along a slide and no other joint yields
-        that way: the lift of a SCARA.
-        """
-        every = "+".join(spec.name for spec in self.parameters)
-        found = [Alias(f"{self.id}[{every}]", SPRINGS, PURE_FORCES)]
-        if self.of_rig:
-            return tuple(found)
-        screws = robot.screws(sample_poses(robot, 12))
-        columns = screws.linear_jacobian  # (12, 3, n)
-        for k, spec in enumerate(self.parameters):
-            along = np.abs(np.einsum("nij,ni->nj", columns, screws.rotation[:, :, k]))
-            for j in np.flatnonzero(robot.prismatic):
-                if (along[:, j] > 1.0 - 1e-9).all() and np.delete(along, j, axis=1).max() < 1e-9:
-                    spring = f"{SPRINGS}:{robot.actuated[j]}.stiffness"
-                    found.append(Alias(f"{self.id}.{spec.name}", spring))
-        return tuple(found)
 
     @cached_property
     def generators(self) -> Array:

@@ -8,11 +8,12 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import ONE_WAY, Alias, Effect, LinearElastic, Options
+from sk120stiff.effects.base import Effect, LinearElastic, Options
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.rotations import homogeneous
 
 CROSS = "cross_stiffness"
 
@@ -83,11 +84,9 @@ class BaseRocking(StraightPart):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Two joints before all others."""
-        placement = np.eye(4)
-        placement[:3, 3] = robot.foundation
+        at = homogeneous(robot.foundation)
         return tuple(
-            VirtualJoint(f"{self.id}.{label}", -1, placement, np.eye(3)[k])
-            for k, label in enumerate("xy")
+            VirtualJoint(f"{self.id}.{label}", -1, at, np.eye(3)[k]) for k, label in enumerate("xy")
         )
 
     def patterns(self, load_cases: LoadCases) -> Array:
@@ -139,13 +138,6 @@ class BaseSliding(LinearElastic):
         return tuple(
             VirtualJoint(f"{self.id}.{label}", -1, np.eye(4), np.eye(3)[k], revolute=False)
             for k, label in enumerate("xyz")
-        )
-
-    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
-        """A shift that grows with the load grows with the order where the load does."""
-        return tuple(
-            Alias(f"{self.id}.stiffness_{k}", f"reading_drift:tracker.rate_{k}", ONE_WAY)
-            for k in "xyz"
         )
 
     def patterns(self, load_cases: LoadCases) -> Array:

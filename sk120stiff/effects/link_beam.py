@@ -16,11 +16,12 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import SPRINGS, Alias, LinearElastic, Options, scale_of
+from sk120stiff.effects.base import LinearElastic, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on, sample_poses
+from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on
+from sk120stiff.robot.rotations import homogeneous
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
 TAPERS = (-0.5, 0.0, 0.3, 0.6)  # that are tried; below zero: stouter towards the far end
@@ -178,30 +179,12 @@ class LinkBending(LinearElastic):
             VirtualJoint(
                 f"{self.id}{line}[{k}].{label}",
                 link.index,
-                _moved(member.start + place * member.span),
+                homogeneous(member.start + place * member.span),
                 axis,
                 followers=tied if tied and label == "in_plane" else (),
             )
             for k, place in enumerate(STATIONS)
             for label, axis in zip(PLANES, (member.in_plane, member.across), strict=True)
-        )
-
-    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
-        """A link of a parallelogram that bends in its plane shifts what the rod holds upright.
-
-        So does the drive of that link: the direction is the same wherever the beam bends.
-        """
-        joints = self.virtual_joints(robot)
-        bends = [robot.n + k for k, joint in enumerate(joints) if joint.name.endswith(".in_plane")]
-        z = np.zeros((12, robot.n + len(joints)))
-        z[:, : robot.n] = sample_poses(robot, 12)
-        twists = robot.mechanism().with_virtual_joints(joints).screws(z).jacobian  # (12, 6, n_z)
-        columns = twists.reshape(-1, z.shape[1])
-        columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-        alike = np.abs(columns[:, bends].T @ columns[:, : robot.n]) > 1.0 - 1e-12
-        return tuple(
-            Alias(f"{self.id}.EI[in_plane]", f"{SPRINGS}:{robot.actuated[j]}.stiffness")
-            for j in np.flatnonzero(alike.all(axis=0))
         )
 
     def patterns(self, load_cases: LoadCases) -> Array:
@@ -300,9 +283,3 @@ def _split(link: ArmJoint) -> tuple[Array, Array]:
     in_plane = link.axis - along * (along @ link.axis)
     in_plane = in_plane / np.linalg.norm(in_plane)
     return np.cross(in_plane, along), in_plane
-
-
-def _moved(offset: Array) -> Array:
-    placement = np.eye(4)
-    placement[:3, 3] = offset
-    return placement

@@ -24,7 +24,6 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import (
-    Alias,
     Effect,
     Elastic,
     Elongation,
@@ -139,11 +138,6 @@ class Nonlinear(Elastic):
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Those of the straight law."""
         return self._part.virtual_joints(robot)
-
-    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
-        """Those of the straight law, of its first kind of parameters."""
-        end = f"{AT}0" if self.full else POSITIVE
-        return tuple(replace(each, name=each.name + end) for each in self._part.aliases(robot))
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """The straight law, and all others that it leads to."""

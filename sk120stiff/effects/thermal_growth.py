@@ -14,6 +14,7 @@ from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint
+from sk120stiff.robot.rotations import homogeneous
 
 
 @dataclass(frozen=True)
@@ -67,10 +68,9 @@ class ThermalGrowth(Imposed):
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """A rigid slide along the link, at its far end."""
         link = arm_joint(robot, self.where)
-        placement = np.eye(4)
-        placement[:3, 3] = link.along
+        end = homogeneous(link.along)
         axis = link.directions()[0]
-        return (VirtualJoint(f"{self.id}.length", link.index, placement, axis, revolute=False),)
+        return (VirtualJoint(f"{self.id}.length", link.index, end, axis, revolute=False),)
 
     def shifts(self, load_cases: LoadCases) -> Array:
         """Temperature or time of each reading."""

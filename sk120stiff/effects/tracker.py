@@ -10,7 +10,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import SPRINGS, Alias, Options, ReadingError, scale_of
+from sk120stiff.effects.base import Options, ReadingError, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot
@@ -66,10 +66,6 @@ class ReadingScale(ReadingError):
     def generators(self) -> Array:
         """The identity."""
         return np.eye(3)[None]
-
-    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
-        """A scale is what all compliances together are."""
-        return (Alias(f"{self.id}.scale", SPRINGS),)
 
 
 @dataclass(frozen=True)

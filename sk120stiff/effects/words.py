@@ -3,70 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import Any
 
 from sk120stiff.effects.base import Effect
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue
 
 
-@dataclass(frozen=True)
-class ParameterWords:
-    """One parameter: its name, its unit, and what its value means, sign included."""
+def words_of(effect: Effect) -> dict[str, Any]:
+    """An effect in words, as `sk120stiff effects` prints them.
 
-    name: str
-    unit: str
-    meaning: str
-
-
-@dataclass(frozen=True)
-class EffectWords:
-    """One effect of the catalogue.
-
-    Attributes:
-        name: Public identifier.
-        where: What it acts at, in words.
-        sentence: What happens.
-        equation: The law, in the symbols that `axes` and `parameters` explain.
-        axes: The frame of its parameters.
-        also: Its other laws, by the names of their parameters; empty where it has none.
-        parameters: What is to be known about it.
+    `name`, `where` it acts, the `sentence` of what happens, the law as `equation` in the symbols
+    that `axes` and `parameters` explain, and by which names `also` its other laws are told; of
+    every parameter its `name`, `unit` and `meaning`, sign included.
     """
-
-    name: str
-    where: str
-    sentence: str
-    equation: str
-    axes: str
-    also: str
-    parameters: tuple[ParameterWords, ...]
-
-
-def words_of(effect: Effect) -> EffectWords:
-    """An effect in words."""
-    return EffectWords(
-        name=effect.name,
-        where=effect.where,
-        sentence=effect.sentence(),
-        equation=effect.equation,
-        axes=effect.axes,
-        also=effect.also,
-        parameters=tuple(
-            ParameterWords(spec.name, spec.unit, spec.meaning) for spec in effect.parameters
-        ),
-    )
+    return {
+        "name": effect.name,
+        "where": effect.where,
+        "sentence": effect.sentence(),
+        "equation": effect.equation,
+        "axes": effect.axes,
+        "also": effect.also,
+        "parameters": [
+            {"name": spec.name, "unit": spec.unit, "meaning": spec.meaning}
+            for spec in effect.parameters
+        ],
+    }
 
 
 def catalogue_words(
     name: str | None = None, catalogue: Catalogue = CATALOGUE
-) -> tuple[EffectWords, ...]:
+) -> list[dict[str, Any]]:
     """Every effect of the catalogue in words, or the one of that name.
 
     Raises:
         InputError: There is no such effect.
     """
     if name is None:
-        return tuple(words_of(kind.sample()) for kind in catalogue)
-    return (words_of(catalogue[name].sample()),)
+        return [words_of(kind.sample()) for kind in catalogue]
+    return [words_of(catalogue[name].sample())]
 
 
 def comment_lines(effect: Effect, *, most: int = 6) -> Iterator[str]:

@@ -15,7 +15,7 @@ from sk120stiff.exports.geometry import MEASURED, Geometry, geometry_of
 from sk120stiff.exports.moving import RIGID, SERVO, Body, Joint, MovingArm, Tied
 from sk120stiff.model import Model, ModelCompliance, model_compliance, probing_poses
 from sk120stiff.robot import LinearCoupling
-from sk120stiff.robot.rotations import joint_motion
+from sk120stiff.robot.rotations import homogeneous, joint_motion
 from sk120stiff.robot.visuals import visuals
 from sk120stiff.stiffness.elastic import are_springs, stiffness_of
 
@@ -141,9 +141,7 @@ class _Builder:
 
     @staticmethod
     def _shifted(place: Place, point: Array) -> Place:
-        T = np.eye(4)
-        T[:3, 3] = point
-        return place[0], place[1] @ T
+        return place[0], place[1] @ homogeneous(point)
 
     def _chain(self) -> Place:
         """Bodies of the chain with their masses; where its end frame is."""

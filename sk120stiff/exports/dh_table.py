@@ -21,6 +21,7 @@ from sk120stiff.exports.dh import (
 )
 from sk120stiff.exports.geometry import MEASURED, Geometry, folded, geometry_of, measured
 from sk120stiff.exports.kinematics_params import yielding
+from sk120stiff.files import csv_text
 from sk120stiff.model import Model
 from sk120stiff.model.uncertainty import spread
 from sk120stiff.robot import LinearCoupling, Robot
@@ -136,16 +137,16 @@ def make(model: Model, request: Request) -> Exported:  # noqa: ARG001
     geometry = geometry_of(model)
     table = table_of(model, geometry)
     reach = None if model.uncertainty is None else model.uncertainty.reach()
-    lines = [",".join(_header(table.std is not None))]
+    rows: list[list[object]] = []
     details: dict[str, object] = {"coverage_factor_95": reach}
     for convention in ("standard", "modified"):
         forms, values, std = table.written(modified=convention == "modified")
-        lines += _csv(convention, table, forms, values, std)
+        rows += _rows(convention, table, forms, values, std)
         details[convention] = _document(table, forms, values, std)
     pairs = near_parallel(table.layout, geometry.joints)
     _, values, std = table.written(modified=False)
     return Exported(
-        "\n".join(lines) + "\n",
+        csv_text(zip(_header(table.std is not None), zip(*rows, strict=True), strict=True)),
         geometry.carried,
         (*geometry.left_out, *yielding(model, "a table holds no springs")),
         notes=_notes(model, pairs),
@@ -175,19 +176,13 @@ def _header(known: bool) -> list[str]:
     ]  # fmt: skip
 
 
-def _csv(
+def _rows(
     convention: str, table: Table, forms: tuple[str, ...], values: Array, std: Array | None
-) -> list[str]:
-    from sk120stiff.files import guarded_cell
-
-    lines = []
-    for r, name in enumerate(table.names):
-        cells = [convention, guarded_cell(name), table.moves[r], guarded_cell(table.drivers[r])]
-        cells += [repr(table.factors[r]), forms[r], *(repr(float(x)) for x in values[r] * PUBLIC)]
-        if std is not None:
-            cells += [repr(float(x)) if np.isfinite(x) else "" for x in std[r] * PUBLIC]
-        lines.append(",".join(cells))
-    return lines
+) -> list[list[object]]:
+    told = [] if std is None else [np.where(np.isfinite(std), std, np.nan)]
+    numbers = np.concatenate([part * PUBLIC for part in (values, *told)], axis=1)
+    before = zip(table.names, table.moves, table.drivers, table.factors, forms, strict=True)
+    return [[convention, *cells, *row] for cells, row in zip(before, numbers.tolist(), strict=True)]
 
 
 def _document(

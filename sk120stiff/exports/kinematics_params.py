@@ -23,8 +23,7 @@ from sk120stiff.exports.contract import Exported, Format, Request, Told
 from sk120stiff.exports.geometry import Geometry, geometry_of
 from sk120stiff.model import Model
 from sk120stiff.robot import Chain, Robot
-from sk120stiff.robot.rotations import rotation_from_rpy
-from sk120stiff.robot.urdf.clean import rpy_from_rotation
+from sk120stiff.robot.rotations import rotation_from_rpy, rpy_from_rotation
 
 NAMES = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
 _NEAR = 1e-3  # rad or m by which a nominal URDF may miss the structure: they round π/2 at times

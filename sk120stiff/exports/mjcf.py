@@ -19,6 +19,7 @@ from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers
 from sk120stiff.exports.meshes import mesh_files
 from sk120stiff.exports.moving import Body, Joint, MovingArm
 from sk120stiff.model import Model
+from sk120stiff.robot.rotations import homogeneous
 from sk120stiff.robot.visuals import Visual, visuals
 
 STEP = 1e-3  # s
@@ -168,8 +169,7 @@ def _inertial(body: Body) -> dict[str, object]:
         return {"pos": "0 0 0", "mass": TINY, "diaginertia": numbers(np.full(3, TINY_INERTIA))}
     values, axes = np.linalg.eigh(body.inertia)
     values = np.maximum(values, TINY_INERTIA)  # real files state tensors that no body has
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = axes * np.sign(np.linalg.det(axes)), body.centre
+    T = homogeneous(body.centre, axes * np.sign(np.linalg.det(axes)))
     return {**_place(T), "mass": body.mass, "diaginertia": numbers(values)}
 
 

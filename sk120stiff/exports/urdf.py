@@ -20,9 +20,8 @@ from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers
 from sk120stiff.exports.geometry import MEASURED, Geometry, geometry_of
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot, find_robot
-from sk120stiff.robot.rotations import rotation_vector
+from sk120stiff.robot.rotations import rotation_vector, rpy_from_rotation
 from sk120stiff.robot.urdf import Mimic, document_tree, resolve
-from sk120stiff.robot.urdf.clean import rpy_from_rotation
 
 EXTENSION = "sk120stiff"
 VERSION = "1"  # of the extension

@@ -1,16 +1,15 @@
 """Files: reading with clear complaints, writing so that nothing is lost.
 
 Every reader of the package notes what it reads, and every writer looks there first
-(`ledger`); nobody ever meets half a file (`writing`), nor half a set of files (`file_set`).
+(`ledger`); nobody ever meets half a file, nor half a set of files (`writing`).
 """
 
 from sk120stiff.files.cells import csv_text, guarded_cell, plain_cell
-from sk120stiff.files.file_set import together
 from sk120stiff.files.html_table import html_table
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
 from sk120stiff.files.reading import read_bytes, read_text
 from sk120stiff.files.schema_error import schema_error
-from sk120stiff.files.writing import write_atomically
+from sk120stiff.files.writing import together, write_atomically
 from sk120stiff.files.yaml_text import parse_yaml, read_yaml
 
 __all__ = [

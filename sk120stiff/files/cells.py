@@ -12,18 +12,13 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r")
 def csv_text(columns: Iterable[tuple[str, Iterable[object]]]) -> str:
     """Columns of one length under their headers, as the text of a CSV file.
 
-    Numbers carry all digits of a float, NaN is an empty cell, and labels (under a header without a
-    unit) are guarded.
+    Numbers carry all digits of a float, NaN is an empty cell, and labels are guarded.
     """
     named = list(columns)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([guarded_cell(header) for header, _ in named])
-    guards = ["[" not in header for header, _ in named]
-    for row in zip(*(cells for _, cells in named), strict=True):
-        texts = map(_text, row)
-        cells = zip(texts, guards, strict=True)
-        writer.writerow([guarded_cell(text) if guard else text for text, guard in cells])
+    writer.writerows(map(_text, row) for row in zip(*(cells for _, cells in named), strict=True))
     return stream.getvalue()
 
 
@@ -31,7 +26,7 @@ def _text(cell: object) -> str:
     """The shortest text that reads back as the same float; anything else as it prints."""
     if isinstance(cell, float):
         return "" if cell != cell else repr(float(cell))
-    return str(cell)
+    return guarded_cell(str(cell))
 
 
 def guarded_cell(text: str) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
+from sk120stiff.robot.rotations import rotation_vector
 
 Kind = Literal["position", "rotation", "distance", "shift", "inclination"]
 KINDS: tuple[Kind, ...] = ("position", "rotation", "distance", "shift", "inclination")
@@ -189,23 +190,6 @@ def _turned(measured: Array, predicted: Array, columns: Array) -> tuple[Array, A
 
     log(exp(g) exp(-d)) = g - (1 + [g]/2 + ...) d.
     """
-    gap = small_rotation(measured @ np.swapaxes(predicted, -1, -2))
+    gap = rotation_vector(measured @ np.swapaxes(predicted, -1, -2))
     half = 0.5 * np.cross(gap[:, None], np.swapaxes(columns, 1, 2))
     return gap, columns + np.swapaxes(half, 1, 2)
-
-
-def small_rotation(matrix: Array) -> Array:
-    """(N, 3) rotation vector of rotations (N, 3, 3) up to half a turn; NaN stays NaN."""
-    skew = np.stack(
-        [
-            matrix[:, 2, 1] - matrix[:, 1, 2],
-            matrix[:, 0, 2] - matrix[:, 2, 0],
-            matrix[:, 1, 0] - matrix[:, 0, 1],
-        ],
-        axis=1,
-    )
-    sine = 0.5 * np.linalg.norm(skew, axis=1)
-    cosine = 0.5 * (np.trace(matrix, axis1=1, axis2=2) - 1.0)
-    angle = np.arctan2(sine, cosine)
-    factor = np.where(sine > 1e-12, angle / np.maximum(2.0 * sine, 1e-300), 0.5)
-    return skew * factor[:, None]

@@ -7,16 +7,14 @@ are untouched.
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.files import read_text
+from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot.bundled import bundled_robots
-from sk120stiff.units import split_header, to_si
 
 #: Section VI: ranges of the first three joints, and the step through them [rad].
 LOWER: Array = np.radians([-180.0, -70.0, -115.0])
@@ -75,26 +73,25 @@ def data_folder() -> Path:
 
 def printed_loads(table: int) -> PrintedLoads:
     """Table II or III as printed."""
-    rows = _rows(table)
+    read = _read(table)
     values: dict[str, Array] = {}
-    for header in list(rows[0])[1:]:
-        name, unit = split_header(header)
+    for name in list(read.cells)[1:]:
         kind = _KINDS.get(name.split("_")[0].rstrip("xyz"))
-        numbers = np.array([float(row[header]) for row in rows])
-        values[name] = to_si(numbers, unit, kind) if unit and kind else numbers
+        values[name] = read.quantity(name, kind) if kind else read.numbers(name)
     first = list(values.values())  # six joints and three forces stand before the others
-    pose = tuple(row["pose"] for row in rows)
-    return PrintedLoads(pose, np.stack(first[:6], axis=1), np.stack(first[6:9], axis=1), values)
+    joints, force = np.stack(first[:6], axis=1), np.stack(first[6:9], axis=1)
+    return PrintedLoads(read.cells["pose"], joints, force, values)
 
 
 def printed_counts() -> tuple[Array, Index]:
     """Table IV: signs of the force components (8, 3), and counts (8, 5) PD, PSD, ND, NSD, ID."""
-    rows = _rows(4)
-    signs = [[1.0 if sign == "+" else -1.0 for sign in row["force_signs_xyz"]] for row in rows]
-    counts = [[int(row[name]) for name in ("PD", "PSD", "ND", "NSD", "ID")] for row in rows]
-    return np.array(signs), np.array(counts, dtype=np.intp)
+    read = _read(4)
+    signs = [
+        [1.0 if sign == "+" else -1.0 for sign in row] for row in read.cells["force_signs_xyz"]
+    ]
+    counts = np.stack([read.numbers(name) for name in ("PD", "PSD", "ND", "NSD", "ID")], axis=1)
+    return np.array(signs), counts.astype(np.intp)
 
 
-def _rows(table: int) -> list[dict[str, str]]:
-    path = data_folder() / "printed" / f"table{table}.csv"
-    return list(csv.DictReader(read_text(path).splitlines()))
+def _read(table: int) -> Table:
+    return read_table(data_folder() / "printed" / f"table{table}.csv")

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from sk120stiff.identify import Fit
 from sk120stiff.model.predicted import rows_of
 from sk120stiff.paper.identified import springs_of
 from sk120stiff.paper.printed import CLAIMED_CRITICAL_FORCE
-from sk120stiff.paper.recomputed import FORMULAS, Table3, Table4
+from sk120stiff.paper.recomputed import FORMULAS
 from sk120stiff.paper.reproduction import Reproduction
 from sk120stiff.stiffness import CLASSES
 
@@ -41,22 +42,25 @@ class Column:
         """The unit as people write it."""
         return self.unit.replace("*", "·").replace("um", "µm").replace("uJ", "µJ")
 
-    def cells(self, *, more: int = 0) -> dict[str, list[str]]:
-        """Header with axis and unit → its numbers as text, `more` decimals than people need."""
+    @property
+    def parts(self) -> dict[str, list[Any]]:
+        """Header with axis and unit → its cells."""
         unit = f"[{self.unit}]" if self.unit else ""
-        form = "" if self.decimals is None else f"z.{self.decimals + more}f"
         axes = (" x", " y", " z") if np.ndim(self.values) == 2 else ("",)
-        parts = zip(axes, np.atleast_2d(np.transpose(self.values)), strict=True)
-        return {f"{self.name}{axis}{unit}": [format(v, form) for v in part] for axis, part in parts}
+        cells = np.atleast_2d(np.transpose(self.values)).tolist()
+        return {f"{self.name}{axis}{unit}": part for axis, part in zip(axes, cells, strict=True)}
+
+    def written(self, cells: Sequence[Any], *, more: int = 0) -> list[str]:
+        """Cells as text, with `more` decimals than people need."""
+        form = "" if self.decimals is None else f"z.{self.decimals + more}f"
+        return [format(cell, form) for cell in cells]
 
     @cached_property
     def texts(self) -> list[str]:
         """A text per row; three numbers side by side, each as wide as the widest of its kind."""
-        single, *others = self.cells().values()
-        if not others:
-            return single
-        wide = ([cell.rjust(max(map(len, of))) for cell in of] for of in (single, *others))
-        return [" ".join(row) for row in zip(*wide, strict=True)]
+        parts = [self.written(cells) for cells in self.parts.values()]
+        wide = ([cell.rjust(max(map(len, of))) for cell in of] for of in parts)
+        return [" ".join(row) for row in zip(*wide, strict=True)] if len(parts) > 1 else parts[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +79,16 @@ class SideBySide:
 
     def csv(self) -> str:
         """The table as CSV text, three decimals more than shown elsewhere."""
-        return csv_text(pair for column in self.columns for pair in column.cells(more=3).items())
+        return csv_text(
+            (header, column.written(cells, more=3))
+            for column in self.columns
+            for header, cells in column.parts.items()
+        )
+
+    def rows(self) -> list[dict[str, object]]:
+        """The rows by the headers of the CSV file, all digits."""
+        parts = [column.parts for column in self.columns]
+        return rows_of({header: cells for part in parts for header, cells in part.items()})
 
 
 def side_by_side(found: Reproduction) -> tuple[SideBySide, ...]:
@@ -186,7 +199,7 @@ def _classes(found: Reproduction) -> SideBySide:
     counted = zip(("det > 0", "ND", "rest"), table.determinant_counts.T, strict=True)
     true = zip(CLASSES, table.counts.T, strict=True)
     columns = (
-        Column("case", [str(k + 1) for k in range(len(table.signs))]),
+        Column("case", np.arange(1, len(table.signs) + 1)),
         Column("force", ["".join("+" if x > 0 else "-" for x in row) for row in table.signs]),
         *(Column(f"paper {name}", table.printed[:, k]) for name, k in theirs.items()),
         *(Column(name, column, brief=name != "ND") for name, column in counted),
@@ -245,12 +258,25 @@ def _forces(found: Reproduction) -> tuple[SideBySide, ...]:
 
 
 def as_document(found: Reproduction) -> dict[str, object]:
-    """Keys ``table2 table3 table4 identified critical appendix formulation parts claims``."""
-    fitted = found.identified
+    """The keys that docs/FILES.md names; rows have the headers of the table's CSV file."""
+    rows = {table.name: table.rows() for table in side_by_side(found)}
+    second, fitted, third, fourth = found.table2, found.identified, found.table3, found.table4
     return {
         "robot": found.setting.robot.name,
         "paper_springs": found.setting.arm_springs,
-        "table2": _table2(found),
+        "table2": {
+            "negated_in_print": second.negated,
+            "calculated_rms_um": {
+                name: _micrometres(second.calculated_rms(name)) for name in FORMULAS
+            },
+            "K_C_effect_rms_um": _micrometres(second.effect_of_K_C),
+            "measured_rms_um": {
+                "paper_springs": _micrometres(second.measured_rms()),
+                "identified": _micrometres(second.per_pose(fitted.fit.gap)),
+            },
+            "variants": second.variants,
+            "rows": rows["table2"],
+        },
         "identified": {
             **_fit(fitted.fit),
             "equal_weights": _fit(fitted.equal_weights),
@@ -259,38 +285,25 @@ def as_document(found: Reproduction) -> dict[str, object]:
             "by_pose": {pose: {"springs": k, "std": e} for pose, (k, e) in fitted.by_pose.items()},
             "common_springs": {"F": fitted.F, "probability": fitted.probability},
         },
-        "table3": _table3(found.table3),
-        "table4": _table4(found.table4),
+        "table3": {
+            "unit_printed": "joule",
+            "unit_found": "N*mm",
+            "repeated_rows": [[i + 1, k + 1] for i, k in third.repeated],
+            "identity_error": third.identity_error,
+            "balance_error": third.balance_error,
+            "rows": rows["table3"],
+        },
+        "table4": {
+            "configurations": fourth.configurations,
+            "cases_reproduced_by_determinant": fourth.reproduced,
+            "cases": rows["table4"],
+        },
         "critical": vars(found.critical),
         "appendix": vars(found.appendix),
         "formulation": vars(found.formulation),
         "posture": vars(found.posture),
         "parts": {"lowest": found.parts.lowest, "highest": found.parts.highest},
         "claims": found.claims,
-    }
-
-
-def _table2(found: Reproduction) -> dict[str, object]:
-    table = found.table2
-    return {
-        "negated_in_print": table.negated,
-        "calculated_rms_um": {name: _micrometres(table.calculated_rms(name)) for name in FORMULAS},
-        "K_C_effect_rms_um": _micrometres(table.effect_of_K_C),
-        "variants": table.variants,
-        "rows": rows_of(
-            {
-                "pose": table.printed.pose,
-                "joints": table.measured.joints,
-                "force": table.measured.wrench[:, :3],
-                "calculated_theirs": table.calculated,
-                **{f"calculated_{name}": table.ours[name] for name in FORMULAS},
-                "measured": table.displacement,
-            }
-        ),
-        "measured_rms_um": {
-            "paper_springs": _micrometres(table.measured_rms()),
-            "identified": _micrometres(table.per_pose(found.identified.fit.gap)),
-        },
     }
 
 
@@ -301,58 +314,7 @@ def _fit(fitted: Fit) -> dict[str, object]:
             for p in fitted.parameters
         ],
         "rms_um": 1e6 * fitted.rms,
-        "sigma_um": 1e6 * fitted.problem.noise.sigma * fitted.noise_factor,
         "condition": fitted.condition,
-        "iterations": fitted.iterations,
-    }
-
-
-def _table3(table: Table3) -> dict[str, object]:
-    return {
-        "unit_printed": "joule",
-        "unit_found": "N*mm",
-        "repeated_rows": [[i + 1, k + 1] for i, k in table.repeated],
-        "identity_error": table.identity_error,
-        "balance_error": table.balance_error,
-        "overcount": [table.overcount.min(), table.overcount.max()],
-        "rows": rows_of(
-            {
-                "pose": table.printed.pose,
-                "force": table.printed.force,
-                "cartesian_theirs": table.printed_cartesian,
-                "joint_conventional_theirs": table.printed_conventional,
-                **vars(table.works),
-                "work_along_path": table.work,
-                "energy": table.energy,
-                "largest_in_any_direction": table.largest,
-            }
-        ),
-    }
-
-
-def _table4(table: Table4) -> dict[str, object]:
-    def mirrored(counts: Index) -> dict[str, bool]:
-        return {f"{i}/{k}": holds for (i, k), holds in table.mirrored(counts).items()}
-
-    classes = [c.short for c in CLASSES]
-    return {
-        "configurations": table.configurations,
-        "cases_reproduced_by_determinant": table.reproduced,
-        "pd_columns_reproduced_by_determinant": table.reproduced_determinant,
-        "printed_opposites_mirror": mirrored(table.printed),
-        "opposites_mirror": mirrored(table.counts),
-        "cases": rows_of(
-            {
-                "case": range(1, len(table.signs) + 1),
-                "signs": table.signs,
-                "theirs": rows_of(dict(zip(classes, table.printed.T, strict=True))),
-                "counts": rows_of(dict(zip(classes, table.counts.T, strict=True))),
-                "determinant": rows_of(
-                    dict(zip(("positive", "ND", "rest"), table.determinant_counts.T, strict=True))
-                ),
-                "K_theta_minus_K_C_PD": table.difference_positive,
-            }
-        ),
     }
 
 

@@ -7,7 +7,6 @@ holds what comes next; everything else follows from these.
 from __future__ import annotations
 
 import csv
-import io
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -21,7 +20,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.files import read_text, read_yaml, running, schema_error, write_atomically
+from sk120stiff.files import (
+    csv_text,
+    read_text,
+    read_yaml,
+    running,
+    schema_error,
+    write_atomically,
+)
 from sk120stiff.measurements import Measurements, read_measurements, write_measurements
 from sk120stiff.measurements.data import NoiseStatement
 from sk120stiff.model import Model
@@ -226,21 +232,20 @@ class Folder:
     def _row(self, header: str, cells: Mapping[str, tuple[float, str]], label: str) -> str:
         where = str(self.readings_file)
         names = next(csv.reader([header]))
-        out: list[str] = []
+        out: list[tuple[str, list[object]]] = []
+        known = set()
         for name in names:
             key, unit = units.split_header(name, where=where)
+            known.add(key)
+            cell: object = label if key == "pose" else ""
             if key in cells:
                 value, kind = cells[key]
-                out.append(repr(float(units.from_si(value, unit, kind, where=where))))
-            else:
-                out.append(label if key == "pose" else "")
-        known = {units.split_header(name)[0] for name in names}
+                cell = float(units.from_si(value, unit, kind, where=where))
+            out.append((name, [cell]))
         lacking = [key for key in cells if key not in known and not key.startswith("m")]
         if lacking:
             raise InputError(f"the column {lacking[0]!r} is missing", where=where)
-        made = io.StringIO()
-        csv.writer(made, lineterminator="").writerow(out)
-        return made.getvalue()
+        return csv_text(out).splitlines()[1]
 
     def _rows(self) -> int:
         lines = read_text(self.readings_file).splitlines()

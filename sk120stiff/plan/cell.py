@@ -16,7 +16,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.files import read_yaml, schema_error
 from sk120stiff.plan.rig import Rig, unit
 from sk120stiff.robot import Robot
-from sk120stiff.robot.rotations import rotation_from_rpy
+from sk120stiff.robot.rotations import frame_about, homogeneous, rotation_from_rpy
 from sk120stiff.robot.solids import Solid, mesh_solid
 
 CLEARANCE = 0.01  # m
@@ -236,9 +236,8 @@ def _solids(path: Path) -> Callable[[str, str, _Placed], Solid]:
             )  # fmt: skip
         (kind,) = stated
         metre = 1e-3 if entry.unit == "mm" else 1.0
-        T = np.eye(4)
-        T[:3, :3] = rotation_from_rpy(np.deg2rad(np.array(entry.rpy)))
-        T[:3, 3] = metre * np.array(entry.xyz)
+        turn = rotation_from_rpy(np.deg2rad(np.array(entry.rpy)))
+        T = homogeneous(metre * np.array(entry.xyz), turn)
         name = entry.name or kind
         if entry.mesh is not None:
             found = mesh_solid(name, frame, T, path.parent / entry.mesh, metre * entry.scale)
@@ -252,8 +251,7 @@ def _solids(path: Path) -> Callable[[str, str, _Placed], Solid]:
                     f"the plane {name!r} has no direction, or hangs on the tool", where=where,
                     remedy="Give the direction that points away from it: plane: [0, 1, 0].",
                 )  # fmt: skip
-            x = unit([np.cross(np.eye(3)[np.argmin(np.abs(z))], z)])[0]
-            T[:3, :3] = np.column_stack([x, np.cross(z, x), z])
+            T[:3, :3] = frame_about(z)
             return Solid(name, frame, T, "plane")
         size = metre * np.atleast_1d(np.array(getattr(entry, kind), dtype=float))
         if not (size > 0.0).all():

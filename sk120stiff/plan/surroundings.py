@@ -17,6 +17,7 @@ from sk120stiff.plan.rig import like
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_joints, arm_length
 from sk120stiff.robot.collision import Scene, turret
+from sk120stiff.robot.rotations import homogeneous
 from sk120stiff.robot.solids import Solid, capsule_between
 
 # Of the stretched arm: the base a UR10 stands on has 0.06 of it, that of a Panda 0.08.
@@ -102,8 +103,7 @@ def _scene(robot: Robot, cell: Cell, point: tuple[float, ...]) -> Scene:
     if pedestal is not None:
         fixed.append(pedestal)
     if np.isfinite(cell.floor):
-        T = np.eye(4)
-        T[2, 3] = cell.floor
+        T = homogeneous((0.0, 0.0, cell.floor))
         spares = turret(robot, UP)
         fixed.append(Solid("floor", robot.base_frame, T, "plane", spares=spares))
     carried = cell.tool or ()

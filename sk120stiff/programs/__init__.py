@@ -4,16 +4,13 @@ from sk120stiff.programs.apt import read_apt
 from sk120stiff.programs.catalogue import LANGUAGES, READERS, language_of
 from sk120stiff.programs.gcode import read_gcode
 from sk120stiff.programs.language import Language
-from sk120stiff.programs.program import Program, Targets
-from sk120stiff.programs.toolpath import ToolPath
+from sk120stiff.programs.program import Program
 
 __all__ = [
     "LANGUAGES",
     "READERS",
     "Language",
     "Program",
-    "Targets",
-    "ToolPath",
     "language_of",
     "read_apt",
     "read_gcode",

@@ -9,7 +9,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.table import table_of
 from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.programs.toolpath import ToolPath
-from sk120stiff.robot.rotations import rotation_from_rpy, rotation_of
+from sk120stiff.robot.rotations import homogeneous, rotation_from_rpy, rotation_of
 from sk120stiff.units import from_si, parse_values
 from sk120stiff.workspace import LoadedPath, parse_axes
 
@@ -34,10 +34,8 @@ def part_frame(text: str) -> Array:
                 remedy="Say where the part lies: 'x=1200 mm; yaw=90 deg'.",
             )
         values[axis.name] = float(axis.values[0])
-    T = np.eye(4)
-    T[:3, :3] = rotation_from_rpy(np.array([values[name] for name in _PLACES[3:]]))
-    T[:3, 3] = [values[name] for name in _PLACES[:3]]
-    return T
+    *xyz, roll, pitch, yaw = (values[name] for name in _PLACES)
+    return homogeneous(xyz, rotation_from_rpy(np.array([roll, pitch, yaw])))
 
 
 def tool_rotation(text: str) -> Array | None:

@@ -11,6 +11,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.robot.loops.coupling import LoopCoupling
 from sk120stiff.robot.robot import Robot
+from sk120stiff.robot.rotations import frame_about
 
 _JOINTS: WeakKeyDictionary[Robot, tuple[ArmJoint, ...]] = WeakKeyDictionary()
 _SAMPLES: WeakKeyDictionary[Robot, dict[tuple[int, int], Array]] = WeakKeyDictionary()
@@ -54,7 +55,7 @@ class ArmJoint:
         along = self.along / self.length if self.length > SHORTEST_LINK else self.axis
         across = np.cross(self.axis, along)
         if np.linalg.norm(across) < 1e-6:
-            across = np.cross(np.eye(3)[np.argmin(np.abs(along))], along)
+            across = frame_about(along)[:, 0]
         across = across / np.linalg.norm(across)
         return along, across, np.cross(along, across)
 

@@ -62,6 +62,34 @@ def rotation_from_rpy(rpy: Array) -> Array:
     )
 
 
+def rpy_from_rotation(R: Array) -> Array:
+    """(3,) roll, pitch, yaw [rad] with R = R_z(yaw) R_y(pitch) R_x(roll).
+
+    Any yaw is followed by the roll and pitch that complete it, so gimbal lock costs no accuracy.
+    """
+    yaw = np.arctan2(R[1, 0], R[0, 0])
+    s, c = np.sin(yaw), np.cos(yaw)
+    roll = np.arctan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
+    pitch = np.arctan2(-R[2, 0], c * R[0, 0] + s * R[1, 0])
+    return np.array([roll, pitch, yaw])
+
+
+def frame_about(axis: Array) -> Array:
+    """(3, 3) a rotation whose third column is the unit vector `axis` (3,)."""
+    x = np.cross(np.eye(3)[np.argmin(np.abs(axis))], axis)
+    x = x / np.linalg.norm(x)
+    return np.column_stack([x, np.cross(axis, x), axis])
+
+
+def homogeneous(position: ArrayLike, rotation: ArrayLike | None = None) -> Array:
+    """(4, 4) of a position (3,) and a rotation (3, 3)."""
+    T = np.eye(4)
+    T[:3, 3] = position
+    if rotation is not None:
+        T[:3, :3] = rotation
+    return T
+
+
 def joint_motion(axis: Array, revolute: bool, value: float) -> Array:
     """(4, 4) motion of a joint by `value` [rad or m] about or along `axis` (3,)."""
     T = np.eye(4)

@@ -19,6 +19,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import listed
 from sk120stiff.robot.anatomy import SHORTEST_LINK, arm_joints, arm_length
 from sk120stiff.robot.robot import Robot
+from sk120stiff.robot.rotations import frame_about, homogeneous
 from sk120stiff.robot.urdf import Finding
 from sk120stiff.robot.visuals import Visual, read_mesh, shapes_of
 
@@ -74,13 +75,8 @@ def capsule_between(
     """A capsule from one point of a frame to another [m]."""
     along = np.asarray(end, dtype=float) - start
     length = float(np.linalg.norm(along))
-    T = np.eye(4)
-    T[:3, 3] = 0.5 * (np.asarray(start) + end)
-    if length > 0.0:
-        z = along / length
-        x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
-        x /= np.linalg.norm(x)
-        T[:3, :3] = np.column_stack([x, np.cross(z, x), z])
+    turn = frame_about(along / length) if length > 0.0 else None
+    T = homogeneous(0.5 * (np.asarray(start) + end), turn)
     return Solid(name, frame, T, "capsule", (radius, length), spares=spares)
 
 

@@ -13,14 +13,13 @@ from sk120stiff.workspace.compensate import Compensation, Standing, compensate, 
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
 from sk120stiff.workspace.finished import (
     LoadSummary,
-    MapCheck,
     damaged_map,
     open_map,
     summarise_map,
     verify_map,
 )
 from sk120stiff.workspace.grid import Axis, Grid, parse_axes
-from sk120stiff.workspace.inverse import Reached, Task, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
 from sk120stiff.workspace.judge import PathTask, Placement
 from sk120stiff.workspace.judged import Judged
 from sk120stiff.workspace.landscape import Landscape, posture_landscape
@@ -56,14 +55,12 @@ __all__ = [
     "Landscape",
     "LoadSummary",
     "LoadedPath",
-    "MapCheck",
     "MapJob",
     "MapPostures",
     "MapReport",
     "PathTask",
     "Placement",
     "PositionGrid",
-    "Reached",
     "Returned",
     "Standing",
     "StandingUncertainty",

@@ -14,7 +14,6 @@ they are.
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +23,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.files import guarded_cell, write_atomically
+from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy, rotation_vector
@@ -338,20 +337,12 @@ def write_joints(
     # labels first, then joints, then what the file has besides, then the notes
     labels = [header for header in order if header == "point"]
     merged = {**{header: kept.pop(header) for header in labels}, **columns, **kept, **notes}
-    rows = [",".join(_cell(text) for text in row) for row in zip(*merged.values(), strict=True)]
-    text = "\n".join([",".join(_cell(header) for header in merged), *rows]) + "\n"
-    written = list(csv.DictReader(text.splitlines()))
     for k, (header, kind) in enumerate(zip(columns, robot.kinds, strict=True)):
         unit = header.partition("[")[2].rstrip("]")
-        read = to_si([float(row[header]) for row in written], unit, kind)
+        read = to_si([float(cell) for cell in merged[header]], unit, kind)
         if not np.allclose(read, joints[:, k], rtol=1e-9, atol=1e-9):
             raise RuntimeError(f"{header} is written otherwise than it was meant")
-    return write_atomically(target, text)
-
-
-def _cell(text: str) -> str:
-    text = guarded_cell(text)
-    return f'"{text.replace(chr(34), chr(34) * 2)}"' if set(text) & set(',"\n') else text
+    return write_atomically(target, csv_text(merged.items()))
 
 
 def _columns(table: Table, names: tuple[str, ...], kind: str) -> Array:

@@ -126,7 +126,7 @@ def test_interrupted_writing_leaves_the_old_results(data, tmp_path, run, monkeyp
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("sk120stiff.files.file_set.FileSet.swap", interrupted)
+    monkeypatch.setattr("sk120stiff.files.writing.FileSet.swap", interrupted)
     outcome = run("explain", str(data), "--out", str(tmp_path), "--no-report")
     assert outcome.code == 130
     assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == old

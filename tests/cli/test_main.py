@@ -12,8 +12,8 @@ import pytest
 import typer
 
 import sk120stiff.cli
+from sk120stiff.cli.frame import declared
 from sk120stiff.cli.main import COMMANDS
-from sk120stiff.cli.signature import declared
 
 HEAVY = {
     "jinja2",

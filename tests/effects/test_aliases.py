@@ -13,20 +13,15 @@ import pytest
 from sk120stiff.effects import (
     LinearElastic,
     all_effects,
-    declared_aliases,
     effect,
 )
-from sk120stiff.effects.base import (
-    LOADS_GROW,
-    ONE_WAY,
-    PURE_FORCES,
-    SPRINGS,
-)
+from sk120stiff.effects.base import SPRINGS
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import Robot, VirtualJoint, load_robot
 from tests.effects.alias_classes import AliasClasses, alias_classes, generic_readings
 from tests.effects.arms import FOLDER, arm
+from tests.effects.declared import LOADS_GROW, ONE_WAY, PURE_FORCES, declared_aliases
 from tests.effects.signatures import FirstOrder
 from tests.robot.loop_arms import sk120_loop
 

@@ -24,8 +24,8 @@ def test_every_parameter_of_every_effect_has_a_meaning() -> None:
     effects.append(effect(robot, "gear_hardening", "joint_2_l", breaks=(150.0, 300.0)))
     for each in effects:
         words = words_of(each)
-        assert words.equation and words.axes and words.where
-        meanings = [item.meaning for item in words.parameters]
+        assert words["equation"] and words["axes"] and words["where"]
+        meanings = [item["meaning"] for item in words["parameters"]]
         assert all(meanings), each.id
         assert len(set(meanings)) == len(meanings), f"{each.id}: two values that mean the same"
 
@@ -44,7 +44,7 @@ def test_the_names_of_every_other_law_are_told(kind) -> None:
 
 
 def test_the_words_list_the_catalogue() -> None:
-    assert [words.name for words in catalogue_words()] == [kind.name for kind in CATALOGUE]
+    assert [words["name"] for words in catalogue_words()] == [kind.name for kind in CATALOGUE]
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,8 @@ import pytest
 from scipy import stats
 
 from sk120stiff.identify import fit
-from sk120stiff.identify.uncertainty.effects_left import LeftByPoses, left_by_all
 from sk120stiff.identify.uncertainty.laid_out import LaidOut
-from sk120stiff.identify.uncertainty.left_over import left_over
+from sk120stiff.identify.uncertainty.left_over import LeftByPoses, left_by_all, left_over
 from sk120stiff.measurements import ModelForm, NoiseModel
 from tests.identify.conftest import readings_of
 from tests.identify.test_variance_components import SIGMA, fits

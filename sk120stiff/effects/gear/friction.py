@@ -10,8 +10,6 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import (
-    LOADS_GROW,
-    Alias,
     Elongation,
     Options,
     Switching,
@@ -99,16 +97,6 @@ class FrictionHysteresis(GearEffect, Switching):
         single = [replace(self, reaches=(r,)) for r in reaches]
         laws = (*single, replace(self, reaches=reaches), replace(self, reaches=(0.0,)))
         return tuple(law for law in laws if law != self)
-
-    def aliases(self, robot: Robot) -> tuple[Alias, ...]:
-        """Of an arm without weight: lost motion with the other sign, until a load is taken off.
-
-        What the weight presses against a gear's flank never crosses the play at small loads.
-        """
-        if robot.total_mass > 0.0:
-            return ()
-        own = f"{self.id}.half_width"
-        return (Alias(own, own.replace(self.name, LostMotion.name), LOADS_GROW),)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""

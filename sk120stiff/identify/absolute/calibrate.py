@@ -18,9 +18,8 @@ from sk120stiff.identify.absolute.gauss_newton import gauss_newton
 from sk120stiff.identify.absolute.left_out import doubted
 from sk120stiff.identify.absolute.model_form import ModelForm, model_form, widened
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.absolute.selection import waves_that_show
 from sk120stiff.identify.absolute.start import loaded, started
-from sk120stiff.identify.absolute.waves_left_out import beside_waves
+from sk120stiff.identify.absolute.waves import beside_waves, waves_that_show
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel

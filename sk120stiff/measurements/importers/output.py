@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import Any
 
@@ -157,17 +155,8 @@ def write_files(columns: Written, settings: dict[str, Any], out: Path) -> None:
         InputError: As `measurements.writing.check_name`, or the folder cannot be written to.
     """
     check_name(out)
-    stream = io.StringIO()
-    table = csv.writer(stream, lineterminator="\n")
-    table.writerow([header for header, _ in columns])
-    table.writerows(
-        zip(
-            *(c if "[" in h else map(files.guarded_cell, c) for h, c in columns),
-            strict=True,
-        )
-    )
     keys = {**settings, "robot": robot_seen_from(settings["robot"], out.parent)}
     text = yaml.safe_dump(keys, sort_keys=False, allow_unicode=True)
     with files.together():
         files.write_atomically(out.with_suffix(".yaml"), text)
-        files.write_atomically(out, stream.getvalue())
+        files.write_atomically(out, files.csv_text(columns))

@@ -5,17 +5,13 @@ from sk120stiff.robot.urdf.document import (
     BALLS,
     HARMLESS,
     Finding,
-    GeometrySpec,
-    Inertial,
-    JointSpec,
-    LinkSpec,
     Mimic,
     UrdfDocument,
     VisualSpec,
 )
 from sk120stiff.robot.urdf.frames import FrameChoice, default_frames, fingers_on_way
 from sk120stiff.robot.urdf.mimics import refuse_orphans
-from sk120stiff.robot.urdf.native import CapturedText, captured_stderr
+from sk120stiff.robot.urdf.native import captured_stderr
 from sk120stiff.robot.urdf.packages import resolve
 from sk120stiff.robot.urdf.reading import document_tree, read_urdf
 from sk120stiff.robot.urdf.reduced import with_arm_only
@@ -24,13 +20,8 @@ from sk120stiff.robot.urdf.suspicions import locked_on_way, suspicions
 __all__ = [
     "BALLS",
     "HARMLESS",
-    "CapturedText",
     "Finding",
     "FrameChoice",
-    "GeometrySpec",
-    "Inertial",
-    "JointSpec",
-    "LinkSpec",
     "Mimic",
     "UrdfDocument",
     "VisualSpec",

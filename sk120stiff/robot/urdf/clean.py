@@ -8,6 +8,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.robot.rotations import rpy_from_rotation
 from sk120stiff.robot.urdf.document import JointSpec, LinkSpec
 
 # urdfdom refuses "inf"; nothing here moves this far [rad or m].
@@ -71,18 +72,6 @@ def _origin(T: Array) -> str:
         return ""
     rpy = rpy_from_rotation(T[:3, :3])
     return f'<origin xyz="{_numbers(T[:3, 3])}" rpy="{_numbers(rpy)}"/>'
-
-
-def rpy_from_rotation(R: Array) -> Array:
-    """(3,) roll, pitch, yaw [rad] with R = R_z(yaw) R_y(pitch) R_x(roll).
-
-    Any yaw is followed by the roll and pitch that complete it, so gimbal lock costs no accuracy.
-    """
-    yaw = np.arctan2(R[1, 0], R[0, 0])
-    s, c = np.sin(yaw), np.cos(yaw)
-    roll = np.arctan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
-    pitch = np.arctan2(-R[2, 0], c * R[0, 0] + s * R[1, 0])
-    return np.array([roll, pitch, yaw])
 
 
 def _number(value: float) -> str:

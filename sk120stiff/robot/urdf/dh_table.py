@@ -21,7 +21,7 @@ from lxml import etree
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.robot.rotations import rotation_from_rpy
+from sk120stiff.robot.rotations import homogeneous, rotation_from_rpy
 from sk120stiff.units import split_header, to_si
 
 _ANGLES, _LENGTHS = ("theta", "alpha", "beta"), ("d", "a", "b")
@@ -185,9 +185,7 @@ def _placed(
     roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0, x: float = 0.0, y: float = 0.0,
     z: float = 0.0,
 ) -> Array:  # fmt: skip
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = rotation_from_rpy(np.array([roll, pitch, yaw])), (x, y, z)
-    return T
+    return homogeneous((x, y, z), rotation_from_rpy(np.array([roll, pitch, yaw])))
 
 
 def _rows(text: str, place: str) -> list[Row]:

@@ -12,9 +12,13 @@ from sk120stiff.show.report.blocks import (
     Section,
     Table,
 )
-from sk120stiff.show.report.fallback import failure, section_or_note
-from sk120stiff.show.report.provenance import reproducibility
-from sk120stiff.show.report.rendering import Report, fragment
+from sk120stiff.show.report.rendering import (
+    Report,
+    failure,
+    fragment,
+    reproducibility,
+    section_or_note,
+)
 
 __all__ = [
     "Block",

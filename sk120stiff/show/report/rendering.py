@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+import hashlib
+import logging
 import math
 import os
+import platform
 import re
-from collections.abc import Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from html import escape
+from importlib.metadata import PackageNotFoundError, version
 from numbers import Real
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from sk120stiff.files import write_atomically
+from sk120stiff.errors import InputError, MissingPart, warn
+from sk120stiff.files import read_bytes, write_atomically
 from sk120stiff.show import palette
 from sk120stiff.show.figures.saving import inline_svg
-from sk120stiff.show.report.blocks import Block, Picture, SceneFrame, Section, Table
-from sk120stiff.show.report.fallback import failure
+from sk120stiff.show.report.blocks import Block, Note, Picture, SceneFrame, Section, Table
 
 WHOLE = 1e4  # up to here a number without digits after the point is easier read than a power
+_LOG = logging.getLogger(__name__)
+_LIBRARIES = ("sk120stiff", "numpy", "scipy", "pin", "matplotlib", "meshcat")
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,3 +173,66 @@ def _page(frame: SceneFrame) -> str:
     from sk120stiff.show.scene.static import scene_html
 
     return scene_html(frame.scene)
+
+
+def section_or_note(title: str, build: Callable[[], Section | None]) -> Section | None:
+    """The section, or a section of that title that says what went wrong.
+
+    Warns:
+        ToolkitWarning: It could not be made.
+    """
+    try:
+        return build()
+    except Exception as error:  # noqa: BLE001  (an answer is never lost to its page)
+        return Section(title, [Note(failure(f"the section {title!r}", error), "problem")])
+
+
+def failure(what: str, error: Exception) -> str:
+    """Warn that `what` could not be made, and return the sentence; the traceback goes to the log.
+
+    Warns:
+        ToolkitWarning: Always.
+    """
+    if isinstance(error, MissingPart):
+        warn(str(error), stacklevel=3)  # one sentence for all pictures
+        return f"Left out: {what}. {error}"
+    reason = " ".join(str(error).split()) or "no message"
+    said = f"{what[0].upper()}{what[1:]} could not be made ({type(error).__name__}: {reason})."
+    _LOG.debug("%s", said, exc_info=error)
+    warn(f"{said} Everything else is as it should be.", stacklevel=3)
+    return said
+
+
+def reproducibility(
+    command: str, files: Iterable[str | os.PathLike[str]] = (), *, seed: int | None = None
+) -> dict[str, str]:
+    """Command, versions and SHA-256 of the input files, in the order to show them.
+
+    Args:
+        command: The command line, or the Python call, that made the result.
+        files: Input files; a missing one is named as missing.
+        seed: Seed of random numbers, if any were drawn.
+    """
+    facts = {"Command": command}
+    if seed is not None:
+        facts["Seed"] = str(seed)
+    for file in files:
+        facts[f"SHA-256 of {Path(file).name}"] = _digest(Path(file))
+    found = [f"{name} {_version(name)}" for name in _LIBRARIES]
+    facts["Versions"] = ", ".join([*found, f"Python {platform.python_version()}"])
+    facts["System"] = f"{platform.system()} {platform.machine()} ({sys.implementation.name})"
+    return facts
+
+
+def _digest(path: Path) -> str:
+    try:
+        return hashlib.sha256(read_bytes(path)).hexdigest()
+    except InputError:
+        return "missing"
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "(not installed)"

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array
 from sk120stiff.robot import Robot
+from sk120stiff.robot.rotations import frame_about, homogeneous
 from sk120stiff.robot.visuals import Visual, visuals
 from sk120stiff.show.scene.links import FIXED, LinkTree
 
@@ -129,13 +130,7 @@ def _clustered(mesh: Mesh, low: NDArray[np.float32], size: float) -> Mesh:
 
 def along(direction: Array) -> Array:
     """(4, 4) rotation that turns z into a direction."""
-    z = direction / np.linalg.norm(direction)
-    other = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    x = np.cross(other, z)
-    x /= np.linalg.norm(x)
-    T = np.eye(4)
-    T[:3, 0], T[:3, 1], T[:3, 2] = x, np.cross(z, x), z
-    return T
+    return homogeneous(np.zeros(3), frame_about(direction / np.linalg.norm(direction)))
 
 
 TRIANGLES = 60_000  # for a whole robot; a report stays below 3 MB and its scene turns smoothly

@@ -6,6 +6,7 @@ import numpy as np
 
 from sk120stiff.plan import Cell
 from sk120stiff.robot import Robot
+from sk120stiff.robot.rotations import homogeneous
 from sk120stiff.robot.solids import Solid
 from sk120stiff.show.scene.links import LinkTree
 from sk120stiff.show.scene.shapes import Body, Colour, Mesh, reach_of
@@ -36,12 +37,10 @@ def surroundings_of(cell: Cell, robot: Robot, tree: LinkTree) -> tuple[Body, ...
         for solid in solids
     ]
     if np.isfinite(cell.floor):
-        top = np.eye(4)
-        top[2, 3] = cell.floor
+        top = homogeneous((0.0, 0.0, cell.floor))
         bodies.append(_slab(top, base, FLOOR, reach))
     if cell.tracker is not None:
-        at = np.eye(4)
-        at[:3, 3] = cell.tracker.place
+        at = homogeneous(cell.tracker.place)
         bodies.append(Body(base, at, "sphere", (SEEN * reach,), TRACKER, still=True))
     return tuple(bodies)
 

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
+from sk120stiff.arrays import Array
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.candidates.absorbed import Absorbed
 from sk120stiff.identify import Fit, fit
-from sk120stiff.identify.checks.one_gain import OneGain, one_gain
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import Model
+from sk120stiff.show.stories.gap_section import pose_rms
 from sk120stiff.show.wording import um
 
 PAPER, OURS = "paper's springs", "identified"
+REACH = (0.5, 2.0)  # of a gain; beyond it no sensor is misread, but a unit is wrong
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,23 +52,30 @@ class Demo:
         return {PAPER: self.paper, OURS: self.found.model}
 
     @cached_property
-    def gains(self) -> tuple[tuple[OneGain, float], ...]:
-        """One gain of the force on the paper's springs, and the gap of three new springs [m].
+    def gains(self) -> tuple[tuple[float, float, float], ...]:
+        """Gain of the force, the gap that it leaves on the paper's springs, that of new ones [m].
 
         By the noise with the zero readings that rows share, and by equal weights.
         """
         equal = NoiseModel(self.found.problem.noise.sigma, zero="separate", freedom=0)
         plain = fit(self.paper, self.found.problem.measurements, noise=equal)
-        return tuple((one_gain(self.paper, each), each.rms) for each in (self.found, plain))
+        return tuple((*one_gain(self.paper, each), each.rms) for each in (self.found, plain))
 
     def of_the_gain(self) -> str:
         """What one number does in the place of the new springs, in words."""
-        (gain, springs), (plain, of_plain) = self.gains
+        (gain, left, springs), (plain, left_plain, springs_plain) = self.gains
         return (
-            f"One force gain of {gain.gain:.3f} on the paper's springs explains as much as three "
-            f"new springs: it leaves {um(gain.rms)} µm, they leave {um(springs)} µm (with equal "
-            f"weights {plain.gain:.3f}: {1e6 * plain.rms:.2f} and {1e6 * of_plain:.2f} µm)."
+            f"One force gain of {gain:.3f} on the paper's springs explains as much as three "
+            f"new springs: it leaves {um(left)} µm, they leave {um(springs)} µm (with equal "
+            f"weights {plain:.3f}: {1e6 * left_plain:.2f} and {1e6 * springs_plain:.2f} µm)."
         )
+
+    @cached_property
+    def per_pose(self) -> list[tuple[str, float, float]]:
+        """Every pose, its gap with the paper's springs and with the identified ones [µm rms]."""
+        poses = self.found.problem.load_cases.poses
+        gaps = (1e6 * pose_rms(self.found, model) for model in self.models.values())
+        return [(p, float(b), float(a)) for p, b, a in zip(poses, *gaps, strict=True)]
 
     def rms(self, model: Model) -> float:
         """Gap of a model on the readings, rms per axis [m]."""
@@ -82,3 +92,24 @@ class Demo:
     def chance(self) -> float | None:
         """Probability that noise makes the gap that is left."""
         return self.answer.adequacy.chance
+
+
+def one_gain(model: Model, fitted: Fit) -> tuple[float, float]:
+    """True force over the force as it was read that suits a model best, and the gap left [m rms].
+
+    Force, compliance and displacement enter as one product, so a force that is misread by a
+    constant factor looks like springs that are all softer by it. Springs that explain no more than
+    that factor does are no better founded than it.
+    """
+    problem = fitted.problem
+    load_cases = problem.load_cases
+
+    def gap(gain: float) -> Array:
+        loaded = replace(load_cases, wrench=gain * load_cases.wrench)
+        return np.asarray(problem.measured - model.predict(loaded))
+
+    def misfit(gain: float) -> float:
+        return float(np.sum(problem.whitener.apply(gap(gain)) ** 2))
+
+    gain = float(minimize_scalar(misfit, bounds=REACH, method="bounded").x)
+    return gain, float(np.sqrt(np.nanmean(gap(gain) ** 2)))

@@ -158,15 +158,26 @@ def _first_act(demo: Demo) -> Section:
 
 def per_pose_table(demo: Demo) -> Table:
     """Gap of both models at every pose."""
-    found = demo.found
-    poses = found.problem.load_cases.poses
-    before, after = (pose_rms(found, model) for model in demo.models.values())
-    rows: list[tuple[object, ...]] = [
-        (f"pose {label}", 1e6 * b, 1e6 * a)
-        for label, b, a in zip(poses, before, after, strict=True)
-    ]
-    rows.append(("all", 1e6 * demo.rms(demo.paper), 1e6 * demo.rms(found.model)))
+    rows: list[tuple[object, ...]] = [(f"pose {p}", b, a) for p, b, a in demo.per_pose]
+    rows.append(("all", *(1e6 * demo.rms(model) for model in demo.models.values())))
     return Table(["", PAPER, OURS], rows, "Gap rms per axis.", ["", "µm", "µm"], digits=3)
+
+
+def springs_table(demo: Demo) -> Table:
+    """The paper's springs beside those that its readings give."""
+    paper = {p.name: p.value for p in demo.paper.parameters}
+    rows = []
+    for p, (low, high) in zip(demo.found.parameters, demo.found.intervals(), strict=True):
+        given = paper[p.name]
+        change = percent(p.value / given - 1.0).replace("-", "−")
+        rows.append((p.effect.where, number(1e-3 * given, 5),
+                     with_error(1e-3 * p.value, 1e-3 * (p.std or 0.0)),
+                     number(1e-3 * low), number(1e-3 * high), change))  # fmt: skip
+    return Table(
+        ["spring", "paper", "identified ± standard error", "95 % from", "to", "change"],
+        rows,
+        "Joint springs in kN·m/rad.",
+    )
 
 
 def _curves(demo: Demo) -> list[LoadCurve]:
@@ -192,13 +203,6 @@ def _second_act(demo: Demo) -> Section:
         for a, b in zip(found.parameters, demo.other.parameters, strict=True)
     )
     agree = f"agree to {number(apart, 1)} of the values" if apart > 1e-15 else "agree to all digits"
-    rows = []
-    for p, (low, high) in zip(found.parameters, found.intervals(), strict=True):
-        given = paper[p.name].value
-        change = percent(p.value / given - 1.0).replace("-", "−")
-        rows.append((p.effect.where, number(1e-3 * given, 5),
-                     with_error(1e-3 * p.value, 1e-3 * (p.std or 0.0)),
-                     number(1e-3 * low), number(1e-3 * high), change))  # fmt: skip
     estimates = [
         Estimate(p.effect.where, p.value, p.std, p.spec.unit,
                  paper[p.name].value)
@@ -216,11 +220,7 @@ def _second_act(demo: Demo) -> Section:
             "Least squares at exact equilibrium, with the zero reading that five rows of a pose "
             "share in the covariance. The trust-region and the Levenberg–Marquardt algorithm "
             f"{agree}.",
-            Table(
-                ["spring", "paper", "identified ± standard error", "95 % from", "to", "change"],
-                rows,
-                "Joint springs in kN·m/rad.",
-            ),
+            springs_table(demo),
             Note(alike, "caution", "Springs or force sensor"),
             Picture(
                 lambda: parameter_forest(estimates, reference_name="paper's value"),

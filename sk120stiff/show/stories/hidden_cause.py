@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
+from sk120stiff.model import Parameter
 from sk120stiff.show.report import Note, Section, Table
 from sk120stiff.show.stories.gap_section import steps_table, waterfall
 from sk120stiff.show.stories.verdicts import title_of
@@ -34,13 +35,20 @@ class HiddenCause:
         return tuple(finding.effect.id for finding in self.answer.findings)
 
     @property
-    def rows(self) -> list[tuple[str, str, str]]:
-        """Parameter, found with its standard error, hidden; of all whose truth is known."""
-        return [
-            (p.name, with_error(p.value, p.std, p.spec.unit), number(self.values[p.name], 4))
-            for p in self.answer.final.parameters
-            if p.name in self.values
-        ]
+    def parameters(self) -> list[Parameter]:
+        """Those of the final model whose truth is known."""
+        return [p for p in self.answer.final.parameters if p.name in self.values]
+
+    def table(self) -> Table:
+        """Every value that was hidden, beside what the readings gave."""
+        return Table(
+            ["parameter", "found ± standard error", "hidden"],
+            [
+                (p.name, with_error(p.value, p.std, p.spec.unit), number(self.values[p.name], 4))
+                for p in self.parameters
+            ],
+            "Every value that was hidden, beside what the readings gave.",
+        )
 
     def opened(self) -> str:
         """The truth in a sentence."""
@@ -87,11 +95,7 @@ def hidden_section(cause: HiddenCause, link: str) -> Section:
             steps_table(answer),
             waterfall(answer),
             Note(cause.opened(), "note", "The truth"),
-            Table(
-                ["parameter", "found ± standard error", "hidden"],
-                cause.rows,
-                "Every value that was hidden, beside what the readings gave.",
-            ),
+            cause.table(),
             *([f"The whole answer stands in `{link}`."] if link else []),
         ],
     )

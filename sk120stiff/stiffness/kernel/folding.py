@@ -16,6 +16,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.robot import Coupling, JointMotion, LinearCoupling, Mechanism
+from sk120stiff.robot.rotations import frame_about
 
 VARIABLE, CONSTANT, NONE = 0, 1, 2  # does the turn about a joint's z depend on the pose?
 
@@ -220,7 +221,7 @@ def _frames(mechanism: Mechanism, point: Array) -> _Frames:
     start = np.eye(3)
     before = np.eye(3)  # turns the frame after the previous joint so that its axis is z
     for k in range(m):
-        upright = _rotation_to(chain.axes[k])
+        upright = frame_about(chain.axes[k])
         rotation = before.T @ chain.placements[k, :3, :3] @ upright
         shift[k] = before.T @ chain.placements[k, :3, 3]
         before = upright
@@ -244,15 +245,6 @@ def _turned_back(vector: Array, theta: float) -> Array:
     """Rz(θ)ᵀ v."""
     c, s = np.cos(theta), np.sin(theta)
     return np.array([c * vector[0] + s * vector[1], c * vector[1] - s * vector[0], vector[2]])
-
-
-def _rotation_to(axis: Array) -> Array:
-    """A rotation whose third column is the unit vector `axis`."""
-    helper = np.zeros(3)
-    helper[np.argmin(np.abs(axis))] = 1.0
-    x = np.cross(helper, axis)
-    x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(axis, x), axis], axis=1)
 
 
 def _split(rotation: Array) -> tuple[float, tuple[float, float], float]:
