@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.arrays import rms
+from sk120stiff.arrays import Mask, rms
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
@@ -52,8 +52,8 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     gap = predicted.gap(readings)
     per_pose: list[dict[str, object]] = []
     left: float | None = None
-    told = np.asarray(np.isfinite(gap) & readings.use[:, None])
-    used = told.any(axis=1)
+    told: Mask = np.isfinite(gap) & readings.use[:, None]
+    used: Mask = np.asarray(told.any(axis=1))
     if used.any():
         left = 1e6 * rms(gap[told])
         for label in readings.poses:
