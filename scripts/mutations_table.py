@@ -85,8 +85,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "stiffness/equilibrium.py", *_tests("stiffness", "equilibrium", "deflection", "weight"),
-        Newton_with_the_wrong_sign_of_K_C=("feedback = compliance @ K_C", "feedback = -compliance @ K_C"),
-        weight_without_its_stiffness=("feedback = feedback + sag @ hanging", "feedback = feedback"),
+        Newton_with_the_wrong_sign_of_K_C=("feedback = compliance[own] @ complementary", "feedback = -compliance[own] @ complementary"),
+        weight_without_its_stiffness=("feedback = feedback + sag[own] @ hanging", "feedback = feedback"),
         balance_never_lost=("good = good & _stable(inner) &", "good = good &"),
         equilibrium_that_need_not_settle=("good = good & (largest[..., 0] <= tolerance)",
                                           "good = good & (largest[..., 0] <= 1e9)"),
@@ -212,8 +212,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/select/score.py", *_tests("explain", "regression"),
-        sizes_for_nothing=("        price_of_sizes(gain, count, n)\n", "        0.0\n"),
-        looking_for_nothing=("price = len(parts) * price_of_looking(regression, n) +", "price ="),
+        sizes_for_nothing=("price_of_sizes(gains / variance, mine.sum(axis=1), n).sum", "(0.0 * gains).sum"),
+        looking_for_nothing=("score += price_of_looking(regression, n) *", "score += 0.0 *"),
     ),
     *_of(
         "explain/judge/imitation.py", *_tests("explain", "imitation"),
