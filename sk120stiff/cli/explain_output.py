@@ -178,6 +178,8 @@ def findings(answer: Explanation) -> list[str]:
         for p in own:
             hidden = p.name in unseen
             value = "cannot be seen" if hidden else with_error(p.value, p.std, p.spec.unit)
+            if p.value == 0.0 and p.spec.lower == 0.0 and not p.std and not hidden:
+                value = "none found"
             lines.append(f"  {p.spec.name} {value} ({p.spec.meaning})")
         whole = whole_size(answer, finding)
         if whole is not None:
@@ -200,7 +202,7 @@ def _gain(suspect: Contender) -> str:
 def _sure(finding: Finding) -> str:
     """How probable a name is, and where others stand beside it, they and it together."""
     together = likely(finding.probability)
-    if not finding.alternatives:
+    if not set(finding.alternatives) - set(finding.exact):
         return together
     own = likely(finding.evidence.odds.get(finding.effect.id, 0.0))
     return f"{own}; it or one of those below: {together}"
@@ -209,9 +211,12 @@ def _sure(finding: Finding) -> str:
 def _odds(answer: Explanation) -> list[str]:
     """Of nothing and of something else."""
     left = {each.kind: each.probability for each in probabilities(answer)}
+    none, other = (
+        likely(left[kind], "").strip().removeprefix("= ") for kind in ("none", "something_else")
+    )
     return [
-        f"{likely(left['none'], 'Probability that nothing is missing')}, "
-        f"{likely(left['something_else'], 'that something without a name is at work')}."
+        f"Probability that nothing is missing: {none}; that something without a name is at work: "
+        f"{other}."
     ]
 
 

@@ -13,6 +13,7 @@ from sk120stiff.explain.answer.words import accounted, held_out_words, noise_wor
 from sk120stiff.explain.findings import Contender, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.identify import LackOfFit
+from sk120stiff.model import Share
 
 PLACE = "the force that link_3 carries"
 ACCOUNT = f"It goes with {PLACE}: with that beside the names, nothing is left beyond the noise."
@@ -103,6 +104,12 @@ def test_suspects_are_told_with_what_they_gain() -> None:
     )
     assert "grows by 1.00 µm" in _gain(Contender("a:b", -1e-6))
     assert "do not hold it" in _gain(Contender("a:b", np.nan))
+
+
+def test_the_size_of_what_brings_the_most_has_its_error() -> None:
+    named = (SimpleNamespace(effect=SimpleNamespace(id="a:b")),)
+    told = Answered(findings=named, budget=(Share("a:b", 4.61e-4, 8.35e-4),))
+    assert "461 µm (± 835 µm) rms per axis" in next_step(told)
 
 
 def test_the_first_line_says_that_part_has_no_name() -> None:
