@@ -19,7 +19,7 @@ from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
 from sk120stiff.explain.answer.sizes import whole_size
-from sk120stiff.explain.answer.words import held_out_words, noise_words
+from sk120stiff.explain.answer.words import held_out_words, noise_words, plain_words
 from sk120stiff.explain.findings import Contender, Finding, likely
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
@@ -111,7 +111,7 @@ def parts(
     shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
-    shown += held_out_words(answer)
+    shown += [*plain_words(answer), *held_out_words(answer)]
     shown += budget_tables(answer)
     shown += answer.where[:TOLD]
     if answer.suspects:

@@ -9,9 +9,10 @@ import pytest
 
 from sk120stiff.cli.explain_output import _gain, said
 from sk120stiff.explain.answer.next_step import next_step
-from sk120stiff.explain.answer.words import accounted, held_out_words, noise_words
+from sk120stiff.explain.answer.words import accounted, held_out_words, noise_words, plain_words
 from sk120stiff.explain.findings import Contender, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.identify import LackOfFit
 from sk120stiff.model import Share
 
@@ -96,6 +97,23 @@ def test_readings_left_out_that_are_foretold_far_worse_are_explained() -> None:
     (sentence,) = held_out_words(Answered(steps=far))
     assert sentence.startswith("a:b: poses that are left out are foretold worse")
     assert held_out_words(Answered()) == ()
+
+
+def test_two_figures_of_one_gap_are_explained() -> None:
+    found = SimpleNamespace(
+        steps=(Step("joint_springs", 44.3e-6, 57e-6),),
+        details={"localisation": localised(36.6e-6)},
+    )
+    (sentence,) = plain_words(found)
+    assert "leaves 44.3 µm" in sentence and "leaves 36.6 µm" in sentence
+    found.details = {"localisation": localised(44.2e-6)}
+    assert plain_words(found) == () == plain_words(SimpleNamespace(details={}))
+
+
+def localised(rms: float) -> Localisation:
+    made = Localisation.__new__(Localisation)
+    object.__setattr__(made, "rms", rms)
+    return made
 
 
 def test_suspects_are_told_with_what_they_gain() -> None:
