@@ -9,8 +9,14 @@ import pytest
 
 from sk120stiff.cli.explain_output import _gain, said
 from sk120stiff.explain.answer.next_step import next_step
-from sk120stiff.explain.answer.words import accounted, held_out_words, noise_words, plain_words
-from sk120stiff.explain.findings import Contender, Step
+from sk120stiff.explain.answer.words import (
+    accounted,
+    held_out_words,
+    noise_words,
+    plain_words,
+    told_next,
+)
+from sk120stiff.explain.findings import Apart, Contender, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.identify import LackOfFit
@@ -114,6 +120,14 @@ def localised(rms: float) -> Localisation:
     made = Localisation.__new__(Localisation)
     object.__setattr__(made, "rms", rms)
     return made
+
+
+def test_a_finding_is_told_next_where_all_its_rivals_are() -> None:
+    finding = SimpleNamespace(effect=SimpleNamespace(id="a"), others=frozenset({"b", "c"}))
+    for far, told in ((5.0, True), (1.0, False)):
+        answer = SimpleNamespace(next_pairs=(Apart("a", "b", 9.0), Apart("a", "c", far)))
+        assert told_next(answer, finding) == told
+    assert not told_next(SimpleNamespace(next_pairs=(Apart("x", "b", 9.0),)), finding)
 
 
 def test_suspects_are_told_with_what_they_gain() -> None:

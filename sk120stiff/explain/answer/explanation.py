@@ -108,11 +108,6 @@ class Explanation:
         """What spring, gear and bearing of each joint move the point by together."""
         return joint_budget(self.final, self.remainder.rms)
 
-    def told_next(self, finding: Finding) -> bool:
-        """Do the proposed readings tell this finding from all that stand beside it?"""
-        own = [pair for pair in self.next_pairs if pair.name == finding.effect.id]
-        return bool(finding.others) and finding.others <= {p.rival for p in own if p.settled}
-
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered.
 

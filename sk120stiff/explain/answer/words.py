@@ -11,6 +11,7 @@ from sk120stiff.explain.localise.words import microns
 
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
+    from sk120stiff.explain.findings import Finding
 
 GOES, ALL_OF_IT = "It goes with ", "nothing is left beyond the noise"
 APART = 0.01  # share by which two figures of one gap may differ unexplained
@@ -23,6 +24,12 @@ def accounted(answer: Explanation) -> str | None:
         if sentence.startswith(GOES) and ALL_OF_IT in sentence:
             return sentence.removeprefix(GOES).partition(":")[0]
     return None
+
+
+def told_next(answer: Explanation, finding: Finding) -> bool:
+    """Do the proposed readings tell this finding from all that stand beside it?"""
+    own = [pair for pair in answer.next_pairs if pair.name == finding.effect.id]
+    return bool(finding.others) and finding.others <= {p.rival for p in own if p.settled}
 
 
 def noise_words(answer: Explanation) -> tuple[str, ...]:
