@@ -20,7 +20,7 @@ from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
 from sk120stiff.explain.answer.sizes import whole_size
-from sk120stiff.explain.answer.words import held_out_words, noise_words
+from sk120stiff.explain.answer.words import held_out_words, noise_words, plain_words
 from sk120stiff.explain.findings import Contender, Finding, likely
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence
@@ -120,7 +120,7 @@ def parts(
     shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
-    shown += held_out_words(answer)
+    shown += [*plain_words(answer), *held_out_words(answer)]
     shown += budget_tables(answer)
     shown += answer.where[:TOLD]
     if answer.suspects:
@@ -187,6 +187,8 @@ def findings(answer: Explanation) -> list[str]:
         for p in own:
             hidden = p.name in unseen
             value = "cannot be seen" if hidden else with_error(p.value, p.std, p.spec.unit)
+            if p.value == 0.0 and p.spec.lower == 0.0 and not p.std and not hidden:
+                value = "none found"
             lines.append(f"  {p.spec.name} {value} ({p.spec.meaning})")
         whole = whole_size(answer, finding)
         if whole is not None:
@@ -209,7 +211,7 @@ def _gain(suspect: Contender) -> str:
 def _sure(finding: Finding) -> str:
     """How probable a name is, and where others stand beside it, they and it together."""
     together = likely(finding.probability)
-    if not finding.alternatives:
+    if not set(finding.alternatives) - set(finding.exact):
         return together
     own = likely(finding.evidence.odds.get(finding.effect.id, 0.0))
     return f"{own}; it or one of those below: {together}"
@@ -218,9 +220,12 @@ def _sure(finding: Finding) -> str:
 def _odds(answer: Explanation) -> list[str]:
     """Of nothing and of something else."""
     left = {each.kind: each.probability for each in probabilities(answer)}
+    none, other = (
+        likely(left[kind], "").strip().removeprefix("= ") for kind in ("none", "something_else")
+    )
     return [
-        f"{likely(left['none'], 'Probability that nothing is missing')}, "
-        f"{likely(left['something_else'], 'that something without a name is at work')}."
+        f"Probability that nothing is missing: {none}; that something without a name is at work: "
+        f"{other}."
     ]
 
 

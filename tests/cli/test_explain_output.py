@@ -2,13 +2,14 @@
 
 import json
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from sk120stiff import base_model, load_robot, read_measurements
-from sk120stiff.cli.explain_output import Task, findings, write_answer
+from sk120stiff.cli.explain_output import Task, findings, parts, write_answer
 from sk120stiff.errors import ToolkitWarning
 from sk120stiff.explain import Explanation, explain
 from sk120stiff.robot.bundled import bundled_robots
@@ -102,6 +103,15 @@ def test_an_answer_saves_itself_as_the_command_writes_it(answer, task, tmp_path)
         one, other = (tmp_path / folder / name for folder in ("itself", "command"))
         assert one.read_bytes() == other.read_bytes()
     assert repr(answer).startswith("<Explanation: none; gap ")
+
+
+def test_no_sentence_is_said_twice_on_the_terminal(answer, tmp_path) -> None:
+    """Where nothing is named, what is left lives where the gap of the base model does."""
+    left = replace(answer.remainder, where=answer.where[1:2])
+    assert left.where
+    told = parts(replace(answer, verdict="outside", remainder=left), answer.readings, tmp_path)
+    sentences = [part for part in told if isinstance(part, str)]
+    assert sentences.count(left.where[0]) == 1
 
 
 def test_what_no_reading_shows_is_not_called_rigid(answer, monkeypatch) -> None:

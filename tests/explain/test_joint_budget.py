@@ -1,6 +1,8 @@
 """What yields at one joint is summed: its parts trade with one another, and the sum is known."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -8,8 +10,10 @@ import pytest
 from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect
 from sk120stiff.explain.judge.budget import error_budget, joint_budget
+from sk120stiff.explain.judge.gear_curve import gear_curves
 from sk120stiff.identify import fit
 from sk120stiff.model.budget import at_joints
+from sk120stiff.show.stories import sizes_sections
 from tests.explain.readings import NOISE, hidden
 
 JOINT, GEAR = "joint_1_s", "gear_hardening:joint_1_s"
@@ -44,6 +48,23 @@ def test_the_sum_is_that_of_its_parts_and_surer_than_they_are(bent):
     alone = [share for share in joint_budget(bent) if len(share.members) == 1]
     for share in alone:
         assert share.std == pytest.approx(parts[share.members[0]].std)
+
+
+def test_the_band_of_a_gear_is_that_of_spring_and_gear_together(bent):
+    """What another law makes of the spring alone does not widen the curve of both."""
+    moves = np.full(len(bent.x), 0.5 * np.abs(bent.x).max())
+    wide = replace(bent, selection_uncertainty=moves)
+    answer = SimpleNamespace(
+        final=wide,
+        remainder=SimpleNamespace(rms=0.0),
+        findings=[SimpleNamespace(effect=SimpleNamespace(id=GEAR))],
+    )
+    drawn = []
+    with mock.patch.object(sizes_sections, "_picture", drawn.append):
+        sizes_sections.gear_section(answer)
+    (curve,), (plain,) = drawn, gear_curves(bent, [GEAR])
+    np.testing.assert_allclose(curve.band, plain.band, rtol=1e-6)
+    assert gear_curves(wide, [GEAR])[0].band.max() > 2.0 * plain.band.max()
 
 
 def test_what_another_law_makes_of_the_parts_is_not_in_their_sum(bent):

@@ -1,6 +1,7 @@
 """Every number of `probabilities` says what it is of, and what rivals have is not that of none."""
 
 from types import SimpleNamespace
+from unittest import mock
 
 import pytest
 
@@ -73,17 +74,18 @@ def test_no_name_is_certain(share: float, said: str) -> None:
 
 
 def test_a_set_is_told_as_a_set_on_the_terminal() -> None:
-    effect = SimpleNamespace(id="play:j1", sentence=lambda: "The gear of j1 has play.")
+    effect = SimpleNamespace(name="play", id="play:j1", sentence=lambda: "The gear of j1 has play.")
     one = SimpleNamespace(
         effect=effect, probability=0.9996, alternatives=("bend:j1", "loop:j1"), exact=("loop:j1",),
         evidence=SimpleNamespace(runner_up=None, odds={"play:j1": 0.7, "bend:j1": 0.2996}),
     )  # fmt: skip
     model = SimpleNamespace(parameters=())
     told = SimpleNamespace(findings=(one,), final=SimpleNamespace(model=model))
-    from unittest import mock
-
     with mock.patch("sk120stiff.cli.explain_output.unseen_reasons", return_value={}):
         lines = findings(told)
     assert "(P = 0.70; it or one of those below: P > 0.99)" in lines[0]
     assert "or bend:j1 (not told apart here; P = 0.30)" in lines[1]
     assert "or loop:j1 (always the same)" in lines[2]
+    one.alternatives = ("loop:j1",)
+    with mock.patch("sk120stiff.cli.explain_output.unseen_reasons", return_value={}):
+        assert findings(told)[0].endswith("(P > 0.99)")

@@ -9,10 +9,18 @@ import pytest
 
 from sk120stiff.cli.explain_output import _gain, said
 from sk120stiff.explain.answer.next_step import next_step
-from sk120stiff.explain.answer.words import accounted, held_out_words, noise_words
-from sk120stiff.explain.findings import Contender, Step
+from sk120stiff.explain.answer.words import (
+    accounted,
+    held_out_words,
+    noise_words,
+    plain_words,
+    told_next,
+)
+from sk120stiff.explain.findings import Apart, Contender, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.identify import LackOfFit
+from sk120stiff.model import Share
 
 PLACE = "the force that link_3 carries"
 ACCOUNT = f"It goes with {PLACE}: with that beside the names, nothing is left beyond the noise."
@@ -97,12 +105,43 @@ def test_readings_left_out_that_are_foretold_far_worse_are_explained() -> None:
     assert held_out_words(Answered()) == ()
 
 
+def test_two_figures_of_one_gap_are_explained() -> None:
+    found = SimpleNamespace(
+        steps=(Step("joint_springs", 44.3e-6, 57e-6),),
+        details={"localisation": localised(36.6e-6)},
+    )
+    (sentence,) = plain_words(found)
+    assert "leaves 44.3 µm" in sentence and "leaves 36.6 µm" in sentence
+    found.details = {"localisation": localised(44.2e-6)}
+    assert plain_words(found) == () == plain_words(SimpleNamespace(details={}))
+
+
+def localised(rms: float) -> Localisation:
+    made = Localisation.__new__(Localisation)
+    object.__setattr__(made, "rms", rms)
+    return made
+
+
+def test_a_finding_is_told_next_where_all_its_rivals_are() -> None:
+    finding = SimpleNamespace(effect=SimpleNamespace(id="a"), others=frozenset({"b", "c"}))
+    for far, told in ((5.0, True), (1.0, False)):
+        answer = SimpleNamespace(next_pairs=(Apart("a", "b", 9.0), Apart("a", "c", far)))
+        assert told_next(answer, finding) == told
+    assert not told_next(SimpleNamespace(next_pairs=(Apart("x", "b", 9.0),)), finding)
+
+
 def test_suspects_are_told_with_what_they_gain() -> None:
     assert _gain(Contender("joint_tilt:j1", 9.38e-6)) == (
         "joint_tilt:j1 (the held-out gap falls by 9.38 µm)"
     )
     assert "grows by 1.00 µm" in _gain(Contender("a:b", -1e-6))
     assert "do not hold it" in _gain(Contender("a:b", np.nan))
+
+
+def test_the_size_of_what_brings_the_most_has_its_error() -> None:
+    named = (SimpleNamespace(effect=SimpleNamespace(id="a:b")),)
+    told = Answered(findings=named, budget=(Share("a:b", 4.61e-4, 8.35e-4),))
+    assert "461 µm (± 835 µm) rms per axis" in next_step(told)
 
 
 def test_the_first_line_says_that_part_has_no_name() -> None:

@@ -108,21 +108,6 @@ class Explanation:
         """What spring, gear and bearing of each joint move the point by together."""
         return joint_budget(self.final, self.remainder.rms)
 
-    def told_next(self, finding: Finding) -> bool:
-        """Do the proposed readings tell this finding from all that stand beside it?
-
-        Examples:
-            >>> import sk120stiff as sk
-            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
-            >>> readings = sk.read(data / "table2_measured.csv")
-            >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
-            >>> answer = sk.explain(model, readings, options=sk.Options(only=("joint_tilt",)))
-            >>> [answer.told_next(finding) for finding in answer.findings]  # nothing is missing
-            []
-        """
-        own = [pair for pair in self.next_pairs if pair.name == finding.effect.id]
-        return bool(finding.others) and finding.others <= {p.rival for p in own if p.settled}
-
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered.
 

@@ -126,9 +126,10 @@ def _largest(answer: Explanation) -> list[str]:
     mine = [share for share in answer.budget if share.name in named]
     if not mine:
         return []
+    error = "" if mine[0].std is None else f" (± {microns(mine[0].std)})"
     return [
         f"At the measured loads {mine[0].name} brings the most of what was named, "
-        f"{microns(mine[0].rms)} rms per axis: look there first if the arm is to be mended."
+        f"{microns(mine[0].rms)}{error} rms per axis: look there first if the arm is to be mended."
     ]
 
 

@@ -6,10 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sk120stiff.explain.localise.localisation import Localisation
+from sk120stiff.explain.localise.words import microns
+
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
+    from sk120stiff.explain.findings import Finding
 
 GOES, ALL_OF_IT = "It goes with ", "nothing is left beyond the noise"
+APART = 0.01  # share by which two figures of one gap may differ unexplained
 WORSE = 1.5  # times as large held out as fitted: worth a sentence
 
 
@@ -19,6 +24,12 @@ def accounted(answer: Explanation) -> str | None:
         if sentence.startswith(GOES) and ALL_OF_IT in sentence:
             return sentence.removeprefix(GOES).partition(":")[0]
     return None
+
+
+def told_next(answer: Explanation, finding: Finding) -> bool:
+    """Do the proposed readings tell this finding from all that stand beside it?"""
+    own = [pair for pair in answer.next_pairs if pair.name == finding.effect.id]
+    return bool(finding.others) and finding.others <= {p.rival for p in own if p.settled}
 
 
 def noise_words(answer: Explanation) -> tuple[str, ...]:
@@ -33,6 +44,21 @@ def noise_words(answer: Explanation) -> tuple[str, ...]:
     )
     wrong = set(statement) if left.lacking else set()
     return tuple(said if reason in wrong else reason for reason in answer.noise_reasons)
+
+
+def plain_words(answer: Explanation) -> tuple[str, ...]:
+    """Why the first gap of the steps is not the gap whose place is told."""
+    plain = answer.details.get("localisation")
+    if not isinstance(plain, Localisation):
+        return ()
+    first = answer.steps[0].fit_rms
+    if abs(first - plain.rms) <= APART * plain.rms:
+        return ()
+    return (
+        f"Beside what has no name a model is fitted so that few poses do not pull it, and leaves "
+        f"{microns(first)}; a plain fit of the base model leaves {microns(plain.rms)}, and where "
+        "the gap lives is told of that one.",
+    )
 
 
 def held_out_words(answer: Explanation) -> tuple[str, ...]:

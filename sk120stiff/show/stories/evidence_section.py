@@ -11,6 +11,7 @@ from sk120stiff.effects import comment_lines
 from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.explain.answer.sizes import whole_size
+from sk120stiff.explain.answer.words import told_next
 from sk120stiff.explain.judge.posterior import NONE
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
@@ -80,7 +81,7 @@ def _finding(answer: Explanation, finding: Finding) -> list[Block]:
 def _would(answer: Explanation, finding: Finding) -> str:
     if answer.next_poses is None:
         return ""
-    if answer.told_next(finding) or not answer.next_pairs:
+    if told_next(answer, finding) or not answer.next_pairs:
         return " The readings proposed below would."
     return " The section on what to measure next says what the proposed readings would tell."
 

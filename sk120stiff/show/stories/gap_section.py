@@ -6,7 +6,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.explain import Explanation
-from sk120stiff.explain.answer.words import held_out_words
+from sk120stiff.explain.answer.words import held_out_words, plain_words
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
 from sk120stiff.show.figures import GapStep, gap_per_pose, gap_waterfall
@@ -38,6 +38,7 @@ def gap_section(
             "by chance a little below or above."
         ),
         steps_table(answer),
+        *plain_words(answer),
         *held_out_words(answer),
     ]
     if len(answer.steps) > 1:

@@ -13,6 +13,7 @@ import numpy as np
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.findings import TaskBudget
+from sk120stiff.explain.judge.budget import within_joints
 from sk120stiff.explain.judge.gear_curve import GearCurve, gear_curves
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter, Share
@@ -188,8 +189,9 @@ def _task(task: TaskBudget | None) -> list[Block]:
     ]
 
 
-def _joint_by_joint(joints: Sequence[Share], where: str) -> list[Block]:
+def _joint_by_joint(every: Sequence[Share], where: str) -> list[Block]:
     """Sums of what yields at each joint; nothing where each has its spring alone."""
+    joints = [share for share in every if share.rms > 0.0]
     if not any(len(share.members) > 1 for share in joints):
         return []
     return [
@@ -214,7 +216,9 @@ def _rows(shares: Sequence[Share]) -> list[tuple[object, ...]]:
 
 def gear_section(answer: Explanation) -> Section | None:
     """A picture of every gear at which something was named; None where none was."""
-    curves = gear_curves(answer.final, [finding.effect.id for finding in answer.findings])
+    # Laws of one gear trade with its spring; the curve is of both together.
+    within = within_joints(answer.final, answer.remainder.rms)
+    curves = gear_curves(within, [finding.effect.id for finding in answer.findings])
     if not curves:
         return None
     blocks: list[Block] = [
