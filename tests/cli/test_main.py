@@ -34,7 +34,8 @@ INFRASTRUCTURE = {
     "__init__", "calibration", "cell", "compensate_path", "compensate_files",
     "compensate_words", "environment", "explain_output", "frame",
     "identify_rows", "import_preview", "main", "opening", "options",
-    "outputs", "positions", "signature", "tables", "uncertainty", "xacro_option",
+    "outputs", "positions", "shares", "signature", "tables", "task_budget", "uncertainty",
+    "xacro_option",
 }  # fmt: skip
 
 

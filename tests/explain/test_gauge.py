@@ -8,7 +8,7 @@ import pytest
 from sk120stiff.effects import all_effects
 from sk120stiff.explain import localise
 from sk120stiff.explain.candidates.regression import regression_at
-from sk120stiff.explain.judge.scatter_at_poses import unlike_scatter
+from sk120stiff.explain.judge.adequacy import unlike_scatter
 from sk120stiff.explain.localise.places import line_up, look_at
 from sk120stiff.explain.select.outliers import outlying_rows
 from sk120stiff.identify import Fit, yardstick

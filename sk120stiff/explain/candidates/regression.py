@@ -250,15 +250,16 @@ def regression_at(
 
 
 def softness(fit: Fit) -> float:
-    """How many times softer than others of its length an arm is, by its springs; 1 if it is not.
+    """How many times softer than others of its length every drive of an arm is; 1 if one is not.
 
-    What is plausible of a bearing or a link goes with the whole arm: where every drive is seven
-    times softer than usual, as in arms that work beside people, a bearing may be.
+    What is plausible of a bearing or a link goes with the whole arm: where all drives are softer
+    than usual, as in arms that work beside people, a bearing may be. A cause that is missing makes
+    some springs too soft; the stiffest of them tells how soft the arm is at least.
     """
     springs = [p for p in fit.parameters if p.effect.joint_spring and p.internal > 0.0]
     if not springs:
         return 1.0
-    return max(float(np.exp(np.mean([np.log(p.internal / p.spec.typical) for p in springs]))), 1.0)
+    return max(min(p.internal / p.spec.typical for p in springs), 1.0)
 
 
 def _variants(
