@@ -24,6 +24,8 @@ from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
 
+FAR_SOFTER = 10.0  # times as soft as usual: less than that ranges of plausible values allow for
+
 
 @dataclass(frozen=True, eq=False)
 class Regression:
@@ -250,16 +252,16 @@ def regression_at(
 
 
 def softness(fit: Fit) -> float:
-    """How many times softer than others of its length every drive of an arm is; 1 if one is not.
+    """How many times softer than others of its length an arm is, by its springs; 1 if not by far.
 
-    What is plausible of a bearing or a link goes with the whole arm: where all drives are softer
-    than usual, as in arms that work beside people, a bearing may be. A cause that is missing makes
-    some springs too soft; the stiffest of them tells how soft the arm is at least.
+    What is plausible of a bearing or a link goes with the whole arm: where every drive is a hundred
+    times softer than usual, a bearing may be.
     """
     springs = [p for p in fit.parameters if p.effect.joint_spring and p.internal > 0.0]
     if not springs:
         return 1.0
-    return max(min(p.internal / p.spec.typical for p in springs), 1.0)
+    ratio = float(np.exp(np.mean([np.log(p.internal / p.spec.typical) for p in springs])))
+    return ratio if ratio > FAR_SOFTER else 1.0
 
 
 def _variants(
