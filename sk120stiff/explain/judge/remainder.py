@@ -91,7 +91,7 @@ class Remainder:
         if self.form.proportional:
             parts.append(f"{100.0 * self.form.proportional:.2g} % of a pose's compliance")
         if self.form.constant:
-            parts.append(f"{1e6 * self.form.constant:.3g} µm of its own at every pose")
+            parts.append(f"{1e6 * self.form.constant:.3g} µm of its own")
         as_if = f", as if every pose had {' and '.join(parts)} that no effect explains"
         return (
             f"Left over beyond the noise are {1e6 * self.rms:.3g} µm rms per axis (95 %: {low:.3g} "
