@@ -1,0 +1,33 @@
+"""Standard errors hold what other names make of a spring, if those names fit at all."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.effects import effect
+from sk120stiff.explain.findings import Evidence, Finding
+from sk120stiff.explain.judge.confirm import UNTRIED
+from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
+from sk120stiff.explain.select.stepwise import select, with_effects
+from tests.explain.readings import base_fit, hidden
+from tests.hidden.generator.causes_joint import LostMotion
+
+
+def test_a_name_that_does_not_fit_widens_no_error():
+    """Under growing loads friction is play with the other sign, and neither is ever negative."""
+    joint = "joint_2_l"
+    base = base_fit(hidden(LostMotion(joint, {"half_width": 2e-4}), schedule="ascending"))
+    robot = base.model.robot
+    laws = [effect(robot, name, joint) for name in ("lost_motion", "friction_hysteresis")]
+    settled = select(
+        base.model, base.problem.measurements, base.problem.noise, laws, max_effects=1, alpha=0.01
+    )
+    play, friction = laws
+    found = with_effects(settled, [play])
+    evidence = Evidence(9.0, 9.0, None, np.inf, UNTRIED, {}, {})
+    alone = Finding(play, (), (), evidence)
+    beside = with_selection_uncertainty(found, [replace(alone, alternatives=(friction.id,))])
+    assert (beside.selection_uncertainty == with_selection_uncertainty(
+        found, [alone]).selection_uncertainty).all()  # fmt: skip
+    moved = np.abs(base.x - beside.x[: len(base.x)]).max()  # friction leaves what springs alone do
+    assert beside.selection_uncertainty.max() < 0.1 * moved
