@@ -47,6 +47,9 @@ def regression(seed: int = 0, *, known: bool = True, lower: float = -np.inf) -> 
         usual=(0,) * len(columns),
         lower=np.full(X.shape[1], lower),
         plausible=np.full(X.shape[1], 1e6),
+        softness=1.0,
+        springs=np.array([0, 1]),
+        compliances=np.zeros(X.shape[1], dtype=bool),
         sigma_known=known,
         alpha=0.01,
         prior={},
@@ -153,10 +156,24 @@ def test_an_implausible_value_disqualifies():
     assert not score_set(tight, tight.sums(), [0]).plausible
 
 
+def test_a_soft_arm_may_have_soft_bearings():
+    """Its own springs say how soft an arm is: 1 and 9 times as soft as usual are 3 times."""
+    plain = regression()
+    y = plain.X[:, [0, 1, 2]] @ [1.0, 9.0, 2.5]
+    narrow = np.full(plain.X.shape[1], 1.0)
+    for soft, hard in ((True, False), (False, True)):
+        mine = {"y": y, "plausible": narrow, "compliances": np.full(plain.X.shape[1], soft)}
+        made = Regression(**{**vars_of(plain), **mine})
+        model = score_set(made, made.sums(), [0])
+        limit = made.believed(model.solved)[model.solved.columns == 2]
+        assert limit == pytest.approx(3.0 if soft else 1.0, rel=0.1)
+        assert model.plausible != hard
+
+
 def vars_of(found: Regression) -> dict[str, object]:
     names = (
         "y", "X", "group", "base", "candidates", "columns", "variants", "laws", "tied", "usual",
-        "prior", "lower", "plausible", "sigma_known", "alpha",
+        "prior", "lower", "plausible", "softness", "springs", "compliances", "sigma_known", "alpha",
     )  # fmt: skip
     return {name: getattr(found, name) for name in names}
 

@@ -8,7 +8,7 @@ that thousands of models cost no more than a blink. What wins is refitted at exa
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -19,12 +19,10 @@ from scipy import stats
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
 from sk120stiff.explain.candidates.form_rows import FormRows, form_rows
-from sk120stiff.explain.candidates.sums import Sums
+from sk120stiff.explain.candidates.sums import Solved, Sums, weighted_sums
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
-
-FAR_SOFTER = 10.0  # times as soft as usual: less than that ranges of plausible values allow for
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +43,11 @@ class Regression:
         tied, usual: For each candidate which of its variants has the common column (-1: none), and
             which has the law that the catalogue gives it.
         lower: (P,) physical lower bounds in typical sizes (0 or -inf).
-        plausible: (P,) magnitudes in typical sizes beyond which a value explains nothing.
+        plausible: (P,) magnitudes in typical sizes beyond which a value explains nothing, on an arm
+            as soft as the springs of the base model alone say; see `believed`.
+        softness: How many times softer than usual that is.
+        springs: Columns of the springs of the joints.
+        compliances: (P,) which columns are compliances.
         sigma_known: The noise's size is known; else it is estimated by every model for itself.
         alpha: Probability at which a first effect may be named where nothing is missing.
         prior: Probabilities of effects that the user gave, by ``name`` or ``name:where``.
@@ -64,6 +66,9 @@ class Regression:
     usual: tuple[int, ...]
     lower: Array
     plausible: Array
+    softness: float
+    springs: Index
+    compliances: Mask
     sigma_known: bool
     alpha: float
     prior: Mapping[str, float]
@@ -92,6 +97,34 @@ class Regression:
         """(P,) which columns belong to the base model."""
         out = np.zeros(self.X.shape[1], dtype=bool)
         out[self.base] = True
+        return out
+
+    def believed(self, solved: Solved) -> Array:
+        """Magnitudes beyond which a value of a solution is not believed, of its columns.
+
+        The springs beside which it was found tell how soft the arm is, not those of another model:
+        where a soft base is missing, springs alone look soft as well.
+        """
+        mine = self._is_spring[solved.columns]
+        ratio = softness(solved.values[mine])
+        limits = self.plausible[solved.columns]
+        return np.where(self.compliances[solved.columns], limits * ratio / self.softness, limits)
+
+    def is_believed(self, solved: Solved) -> bool:
+        """Does no value of an added parameter lie beyond what is believed?"""
+        size, added = np.abs(solved.values), ~self.in_base[solved.columns]
+        beyond = added & (size > self._always[solved.columns])
+        return not beyond.any() or not (added & (size > self.believed(solved))).any()
+
+    @cached_property
+    def _always(self) -> Array:
+        """(P,) what is believed of the stiffest arm."""
+        return np.where(self.compliances, self.plausible / self.softness, self.plausible)
+
+    @cached_property
+    def _is_spring(self) -> Mask:
+        out = np.zeros(self.X.shape[1], dtype=bool)
+        out[self.springs] = True
         return out
 
     @cached_property
@@ -123,21 +156,30 @@ class Regression:
 
     def sums(self, weights: Array | None = None) -> Sums:
         """Sums over poses, each counted `weights` (g,) times, or all of them once."""
-        return self._all if weights is None else self._weighted(weights)
+        return self._all if weights is None else self.weighing(self.every_column)(weights)
+
+    @cached_property
+    def every_column(self) -> Index:
+        """(P,)."""
+        return np.arange(self.X.shape[1])
+
+    def weighing(self, columns: Index) -> Callable[[Array], Sums]:
+        """Sums over poses as a function of how often each counts, of some columns; others are zero.
+
+        A model that has only these columns is scored as by all of them, in a fraction of the time.
+        """
+        parts = [(rows.X[:, columns], rows.y, rows.group) for rows in (self, self.form) if rows]
+        size = self.X.shape[1]
+
+        def weighed(weights: Array) -> Sums:
+            whole, *form = (weighted_sums(*part, weights, columns, size) for part in parts)
+            return replace(whole, form=form[0]) if form else whole
+
+        return weighed
 
     @cached_property
     def _all(self) -> Sums:
-        return self._weighted(np.ones(self.poses))
-
-    def _weighted(self, w: Array) -> Sums:
-        form = None if self.form is None else _sums_of(self.form, w)
-        return replace(_sums_of(self, w), form=form)
-
-
-def _sums_of(rows: Regression | FormRows, weights: Array) -> Sums:
-    root = np.sqrt(weights)[rows.group]
-    X, y = rows.X * root[:, None], rows.y * root
-    return Sums(X.T @ X, X.T @ y, float(y @ y), float(root @ root))
+        return self.weighing(self.every_column)(np.ones(self.poses))
 
 
 def price_of_choice(regression: Regression, effect: int, variant: int, tied: bool = True) -> float:
@@ -214,10 +256,11 @@ def regression_at(
     base = [columns_of(effect) for effect in full.effects if effect.id in base_effects]
     columns = tuple(columns_of(effect) for effect in chosen)
     lower = np.array([0.0 if spec.lower == 0.0 else -np.inf for spec in specs])
-    softer = softness(fit)
-    plausible = np.array(
-        [spec.plausible / spec.typical * (softer if spec.reciprocal else 1.0) for spec in specs]
-    )
+    springs = [p.internal / p.spec.typical for p in fit.parameters if p.effect.joint_spring]
+    softer = softness(np.array(springs))
+    compliances = np.array([spec.reciprocal for spec in specs])
+    plausible = np.array([spec.plausible / spec.typical for spec in specs])
+    plausible[compliances] *= softer
     tied, sources, variants = _variants(chosen, columns, X)
     plain = {effect.id: effect for effect in candidates}
     all_laws = tuple(
@@ -244,6 +287,12 @@ def regression_at(
         ),
         lower=np.concatenate([lower, lower[sources]]),
         plausible=np.concatenate([plausible, plausible[sources]]),
+        softness=softer,
+        springs=np.array(
+            [first[k] for k, p in enumerate(full.parameters) if p.effect.joint_spring and p.free],
+            dtype=np.intp,
+        ),
+        compliances=np.concatenate([compliances, compliances[sources]]),
         sigma_known=fit.sigma_known,
         alpha=alpha,
         prior=prior or {},
@@ -251,17 +300,18 @@ def regression_at(
     )
 
 
-def softness(fit: Fit) -> float:
-    """How many times softer than others of its length an arm is, by its springs; 1 if not by far.
+def softness(springs: Array) -> float:
+    """How many times softer than others of its length an arm is, by the median; at least 1.
 
     What is plausible of a bearing or a link goes with the whole arm: where every drive is a hundred
-    times softer than usual, a bearing may be.
+    times softer than usual, a bearing may be. What the readings do not show of a spring is as good
+    as rigid in a solution, and must not speak for the arm.
+
+    Args:
+        springs: Compliances of its joints in typical sizes; what is rigid does not count.
     """
-    springs = [p for p in fit.parameters if p.effect.joint_spring and p.internal > 0.0]
-    if not springs:
-        return 1.0
-    ratio = float(np.exp(np.mean([np.log(p.internal / p.spec.typical) for p in springs])))
-    return ratio if ratio > FAR_SOFTER else 1.0
+    moving = springs[springs > 0.0]
+    return max(float(np.exp(np.median(np.log(moving)))), 1.0) if len(moving) else 1.0
 
 
 def _variants(

@@ -75,6 +75,25 @@ class Sums:
         return self._marginals[key]
 
 
+def weighted_sums(
+    X: Array, y: Array, group: Index, weights: Array, columns: Index, size: int
+) -> Sums:
+    """Sums of rows that count `weights` (g,) times by their pose.
+
+    Args:
+        X, y, group: (R, k) columns, (R,) readings and their poses.
+        weights: How often each pose counts.
+        columns, size: Which of so many columns these are; the sums of the others are zero.
+    """
+    root = np.sqrt(weights)[group]
+    kept = np.flatnonzero(root)
+    X, y = X[kept] * root[kept, None], y[kept] * root[kept]
+    gram, moment = np.zeros((size, size)), np.zeros(size)
+    gram[columns[:, None], columns] = X.T @ X
+    moment[columns] = X.T @ y
+    return Sums(gram, moment, float(y @ y), float(root @ root))
+
+
 @dataclass(frozen=True, eq=False)
 class Marginal:
     """Sums without columns that were integrated out.

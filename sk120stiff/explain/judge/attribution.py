@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,9 +16,9 @@ from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.confirm import UNTRIED, confirm
 from sk120stiff.explain.judge.posterior import posterior
 from sk120stiff.explain.judge.random_effects import is_constant, joint_that_turns
-from sk120stiff.explain.select.beam import gains
+from sk120stiff.explain.select.beam import exchanged, gains
 from sk120stiff.explain.select.score import Scored, score_set
-from sk120stiff.explain.select.stepwise import Selection, with_effects
+from sk120stiff.explain.select.stepwise import Selection, laws_of, with_effects
 from sk120stiff.robot.anatomy import arm_joints
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
@@ -77,7 +78,9 @@ class Named:
         return tuple(each.reason for each in self.fallen)
 
 
-def judged(found: Selection, *, seed: int, least: float = -np.inf) -> tuple[Selection, Named]:
+def judged(
+    found: Selection, *, seed: int, least: float = -np.inf, unless_exceeding: bool = False
+) -> tuple[Selection, Named]:
     """The selection with those effects alone that may be named, and what was said of each.
 
     Where some may not, the weakest of them falls, and the others are judged anew without it: names
@@ -87,15 +90,31 @@ def judged(found: Selection, *, seed: int, least: float = -np.inf) -> tuple[Sele
         found: The selection.
         seed: Of folds and resampling.
         least: Gain of score that an effect has to bring.
+        unless_exceeding: Nothing need be said of names that leave more than the noise.
     """
     fallen: list[Fallen] = []
     while True:
+        if unless_exceeding and found.final.exceeds:
+            return found, Named((), tuple(fallen))
         findings, weakest = findings_of(found, seed=seed, least=least)
         if weakest is None:
             return found, Named(findings, tuple(fallen))
         fallen.append(weakest)
         kept = [e for e in _in_order(found) if e.id != weakest.id]
-        found = with_the_strongest(found, kept)
+        found = _of_better_evidence(with_the_strongest(found, kept), {each.id for each in fallen})
+
+
+def _of_better_evidence(found: Selection, fallen: Collection[str]) -> Selection:
+    """The selection with another name in the place of one, where it explains more now."""
+    regression = found.regression
+    barred = [e for e, each in enumerate(regression.candidates) if each.id in fallen]
+    better = exchanged(regression, found.scored, barred)
+    if better.effects == found.scored.effects:
+        return found
+    try:
+        return with_effects(found, laws_of(regression, better))
+    except Refusal:
+        return found
 
 
 def _in_order(found: Selection) -> list[Effect]:

@@ -197,7 +197,7 @@ def _beside(
     """
     noise = at.problem.noise
     for _ in range(2):
-        tried, said = judged(under(noise, suspect), seed=seed)
+        tried, said = judged(under(noise, suspect), seed=seed, unless_exceeding=True)
         if complete(tried, said, noise):
             return tried, said
         noise = with_model_form(tried.final)

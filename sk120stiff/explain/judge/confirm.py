@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import Sums
 from sk120stiff.explain.findings import Confirmation
@@ -19,7 +19,8 @@ from sk120stiff.identify import drawn_parts
 FOLDS = 5  # parts in which poses are left out, as is usual
 RESAMPLES = 100  # at most
 RIVALS = 8  # for a place in the model, on every drawing
-ENOUGH = 20  # after which the drawings may be decided
+LIKELY = 2 * RIVALS  # rivals by all poses, of which each drawing has its own
+ENOUGH = 10  # after which the drawings may be decided: ten of ten are
 MOSTLY, SELDOM = 0.5, 0.33  # share of the drawings that a name wins, or that is too few
 WANTED = 6.0  # evidence from which on an effect is wanted beside what beats it
 SURE = 1e-3  # probability that more drawings would decide otherwise
@@ -46,14 +47,17 @@ def confirm(
         seed: Of the folds and the resampling.
     """
     rng = np.random.default_rng(seed)
-    per_pose = _held_out_gain(regression, model, effect, rng)
+    same = {effect, *alternatives}
+    weigh = regression.weighing(_in_question(regression, model, effect, same))
+    per_pose = _held_out_gain(regression, weigh, model, effect, rng)
     fold_gain, pose_gain, axes = per_pose
     folds = len(fold_gain)
     error = float(pose_gain.std(ddof=1) * np.sqrt(len(pose_gain))) if len(pose_gain) > 1 else np.inf
-    same = {effect, *alternatives}
     wins: Counter[int | None] = Counter()
+    poses = regression.poses
     for count in range(1, RESAMPLES + 1):
-        wins[_winner(regression, model, effect, same, _resampled(regression, rng))] += 1
+        drawn = np.bincount(rng.integers(0, poses, poses), minlength=poses)
+        wins[_winner(regression, model, effect, same, weigh(drawn.astype(float)))] += 1
         own = sum(times for winner, times in wins.items() if winner in same)
         if count % ENOUGH == 0 and _decided(own, count):
             break
@@ -74,6 +78,19 @@ def confirm(
     )
 
 
+def _in_question(
+    regression: Regression, model: Scored, effect: int, same: Collection[int]
+) -> Index:
+    """Columns of all that may take the place of an effect on some drawing of the poses."""
+    rest = tuple(e for e in model.effects if e != effect)
+    sums = regression.sums()
+    beside = score_set(regression, sums, rest, start=model.by_variant, only=())
+    order = np.argsort(-largest(promises(regression, sums, beside.solved))).tolist()
+    likely = {*same, *model.effects, *[e for e in order if e not in rest][:LIKELY]}
+    parts = [part for e in likely for part in regression.variants[e]]
+    return np.unique(np.concatenate([regression.base, *parts]))
+
+
 def _decided(own: int, count: int) -> bool:
     """Can more drawings hardly change whether the name wins in half of them (Clopper & Pearson)?"""
     low = float(stats.beta.ppf(SURE, own, count - own + 1)) if own else 0.0
@@ -82,14 +99,18 @@ def _decided(own: int, count: int) -> bool:
 
 
 def _held_out_gain(
-    regression: Regression, model: Scored, effect: int, rng: np.random.Generator
+    regression: Regression,
+    weigh: Callable[[Array], Sums],
+    model: Scored,
+    effect: int,
+    rng: np.random.Generator,
 ) -> tuple[Array, Array, float]:
     """Fall of the held-out misfit by fold and by pose, and the number of reading axes."""
     fold = drawn_parts(regression.poses, FOLDS, rng)
     smaller = tuple(e for e in model.effects if e != effect)
     pose_gain = np.zeros(regression.poses)
     for k in range(int(fold.max(initial=0)) + 1):
-        train = regression.sums((fold != k).astype(float))
+        train = weigh((fold != k).astype(float))
         misfit = []
         for effects in (smaller, model.effects):
             solved = score_set(
@@ -102,11 +123,6 @@ def _held_out_gain(
         pose_gain[fold == k] = misfit[0] - misfit[1]
     fold_gain = np.array([pose_gain[fold == k].sum() for k in range(int(fold.max(initial=0)) + 1)])
     return fold_gain, pose_gain, float(regression.rows)
-
-
-def _resampled(regression: Regression, rng: np.random.Generator) -> Sums:
-    draw = rng.integers(0, regression.poses, regression.poses)
-    return regression.sums(np.bincount(draw, minlength=regression.poses).astype(float))
 
 
 def _winner(

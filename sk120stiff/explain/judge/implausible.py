@@ -50,12 +50,14 @@ def _told(regression: Regression, effect: int, model: Scored) -> str:
     """The parameter that is farthest beyond what is believed, with both numbers."""
     variant = model.by_variant[effect]
     law, columns = regression.law(effect, variant), regression.variants[effect][variant]
-    sizes = dict(zip(model.solved.columns.tolist(), model.solved.values, strict=True))
-    ratios = [abs(sizes.get(c, 0.0)) / regression.plausible[c] for c in columns.tolist()]
+    found = model.solved.columns.tolist()
+    sizes = dict(zip(found, model.solved.values, strict=True))
+    limits = dict(zip(found, regression.believed(model.solved), strict=True))
+    ratios = [abs(sizes.get(c, 0.0)) / limits.get(c, np.inf) for c in columns.tolist()]
     k = int(np.argmax(ratios))
     spec, column = law.parameters[k], int(columns[k])
     value = spec.public(sizes[column] * spec.typical)
-    limit = abs(spec.public(regression.plausible[column] * spec.typical))
+    limit = abs(spec.public(limits[column] * spec.typical))
     bound = "softer than" if spec.reciprocal else "beyond"
     return (
         f"{law.id} would explain more than anything believable, but by {spec.name} = "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set, s
 BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
 HOPELESS = 40.0  # score by which larger models lose that have no future
+EXCHANGED = 12  # candidates that are tried in the place of an effect
 WORTH = 4.0  # fall of the misfit that a gear's curve promises, to join in with all others
 
 
@@ -124,7 +125,37 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
                 break
     best = sorted((m for m in seen.values() if m.plausible), key=lambda m: m.score)
     best[:SETTLED] = sorted((settled(m) for m in best[:SETTLED]), key=lambda m: m.score)
-    return best
+    better = exchanged(regression, best[0])
+    return best if better is best[0] else [better, *best]
+
+
+def exchanged(regression: Regression, model: Scored, barred: Collection[int] = ()) -> Scored:
+    """A model after exchanges of one effect for another, for as long as one has better evidence.
+
+    What grows by one effect at a time keeps its first, though beside the later ones, or without one
+    that may not be named, another would explain more.
+
+    Args:
+        regression: Linearised readings.
+        model: What to begin with.
+        barred: Candidates that may not enter.
+    """
+    sums = regression.sums()
+    while True:
+        before = model
+        for e in before.effects:
+            rest = {f: k for f, k in before.by_variant.items() if f != e}
+            without = score_sets(regression, sums, [rest])[0]
+            promised = promises(regression, sums, without.solved)
+            order = np.argsort(-largest(promised)).tolist()
+            others = [f for f in order if f not in (*before.effects, *barred)][:EXCHANGED]
+            likely = {f: likeliest(regression, sums, f, promised[f]) for f in others}
+            sets = [dict(sorted((rest | {f: k}).items())) for f, k in likely.items()]
+            tried = [m for m in score_sets(regression, sums, sets) if m.plausible]
+            model = min([model, *tried], key=lambda m: m.score)
+        if model is before:
+            return model
+        model = score_set(regression, sums, model.effects, start=model.by_variant)
 
 
 def likeliest(regression: Regression, sums: Sums, effect: int, promised: Array) -> int:
