@@ -34,7 +34,8 @@ from sk120stiff.effects import (
     ReadingError,
 )
 from sk120stiff.effects.base import Misreading, Switching
-from sk120stiff.model.misread import Misread, misread, rotate, to_sensor
+from sk120stiff.model.misread import misread, rotate, to_sensor
+from sk120stiff.model.standing import Solution, Standing
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
 
@@ -119,8 +120,30 @@ class Assembly:
             moved[:, index] += effect.shifts(load_cases) @ values[part]
         return moved
 
-    def stand(self, load_cases: LoadCases, values: Array) -> Standing:
+    @cached_property
+    def _parts(self) -> dict[bytes, tuple[Assembly, Array, Index]]:
+        return {}
+
+    def _at_work(self, values: Array) -> tuple[Assembly, Array, Index] | None:
+        """The effects that do anything, their part of the values, and their coordinates here.
+
+        None where most of the coordinates are at work anyway.
+        """
+        works = np.array([values[part].any() for part in self.slices], dtype=bool)
+        key = works.tobytes()
+        if key not in self._parts:
+            effects = tuple(e for e, own in zip(self.effects, works, strict=True) if own)
+            few = Assembly(self.robot, effects)
+            lengths = [part.stop - part.start for part in self.slices]
+            index = self._indices(list(few._coordinate))
+            self._parts[key] = few, np.repeat(works, lengths), index
+        few, chosen, index = self._parts[key]
+        return (few, chosen, index) if 2 * few.mechanism.n < self.mechanism.n else None
+
+    def stand(self, load_cases: LoadCases, values: Array, near: Array | None = None) -> Standing:
         """Equilibrium under load and weight for N readings and parameter values (P,).
+
+        `near` (N, n_z): the coordinates at which the arm is known to come to rest.
 
         Raises:
             Refusal: The springs cannot hold the load.
@@ -128,7 +151,9 @@ class Assembly:
         loads = misread(self.of(LoadError), load_cases, values, to_sensor(load_cases))
         wrench = rotate(load_cases.rotation, loads.value)
         z_0 = self.start(load_cases, values)
-        onset = self.mechanism.screws(z_0, load_cases.force_point).torques(wrench)
+        onset = np.zeros_like(z_0)
+        if any(isinstance(effect, Switching) for effect in self.effects):
+            onset = self.mechanism.screws(z_0, load_cases.force_point).torques(wrench)
         law, springs = self.law(load_cases, values, onset)
         rest = equilibrium(
             self.mechanism,
@@ -139,6 +164,7 @@ class Assembly:
             force_point=load_cases.force_point,
             soft=self.soft(values),
             weight=self._weight(springs),
+            near=near,
         )
         return Standing(load_cases, wrench, loads, onset, rest)
 
@@ -148,17 +174,34 @@ class Assembly:
         Raises:
             Refusal: The springs cannot hold the load.
         """
-        stood = self.stand(load_cases, values)
+        loaded, bare = self._found_by_few(load_cases, values)
+        stood = self.stand(load_cases, values, loaded)
         z_0 = self.start(load_cases, values)
         if load_cases.zero_a is not None:  # encoders read a little otherwise without load
             z_0[:, : self.robot.n] += load_cases.zero_a - load_cases.a
         weight = self._weight(self.law(load_cases, values, stood.onset)[1])
-        unloaded = self._sagging(z_0, load_cases, weight, self.soft(values))
+        unloaded = self._sagging(z_0, load_cases, weight, self.soft(values), bare)
         displacement = stood.rest.screws.position - unloaded.screws.position
         readings = misread(self.of(ReadingError), load_cases, values, displacement)
         return Solution(
             load_cases, stood.wrench, stood.loads, stood.onset, stood.rest, unloaded, readings
         )
+
+    def _found_by_few(
+        self, load_cases: LoadCases, values: Array
+    ) -> tuple[Array, Array] | tuple[None, None]:
+        """(N, n_z) where the arm rests with and without load, by what is at work alone.
+
+        Every virtual joint costs in each of Newton's steps, and most of a catalogue's are rigid.
+        """
+        part = self._at_work(values)
+        if part is None:
+            return None, None
+        few, chosen, index = part
+        found = few.solve(load_cases, values[chosen])
+        loaded, bare = (np.zeros((load_cases.count, self.mechanism.n)) for _ in range(2))
+        loaded[:, index], bare[:, index] = found.rest.z, found.unloaded.z
+        return loaded, bare
 
     def _marker(self, load_cases: LoadCases, values: Array) -> Array:
         """(3,) or (N, 3) measured point in the tool frame [m]."""
@@ -173,7 +216,12 @@ class Assembly:
         return Weight(self.robot.gravity_in_base, springs) if weighs else None
 
     def _sagging(
-        self, z_0: Array, load_cases: LoadCases, weight: Weight | None, soft: Index
+        self,
+        z_0: Array,
+        load_cases: LoadCases,
+        weight: Weight | None,
+        soft: Index,
+        near: Array | None,
     ) -> Equilibrium:
         """The arm before the load comes, bent by its own weight only."""
         return equilibrium(
@@ -184,6 +232,7 @@ class Assembly:
             point=load_cases.point,
             soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
             weight=weight,
+            near=near,
         )
 
     def of(self, kind: type[LoadError] | type[ReadingError]) -> list[tuple[Misreading, slice]]:
@@ -311,45 +360,6 @@ class Assembly:
                 axis=1,
             )
             out[:, :, part] += per_wrench @ turned
-
-
-@dataclass(frozen=True, eq=False)
-class Standing:
-    """Where the loaded arm stands.
-
-    Attributes:
-        load_cases: The readings.
-        wrench: (N, 6) true load, base axes [N, N·m].
-        loads: What the force sensor made of the load.
-        onset: (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or
-            N].
-        rest: Equilibrium under load and weight.
-    """
-
-    load_cases: LoadCases
-    wrench: Array
-    loads: Misread
-    onset: Array
-    rest: Equilibrium
-
-
-@dataclass(frozen=True, eq=False)
-class Solution(Standing):
-    """A solved set of displacements; what `Assembly.sensitivities` builds on.
-
-    Attributes:
-        unloaded: Equilibrium before the load, under the arm's own weight.
-        readings: What the instrument made of the displacement.
-    """
-
-    unloaded: Equilibrium
-    readings: Misread
-
-    @property
-    def displacement(self) -> Array:
-        """(N, 3) predicted readings in the axes of the measurements [m]."""
-        axes = np.swapaxes(self.load_cases.reading_axes, -1, -2)
-        return np.asarray(np.einsum("nij,nj->ni", axes, self.readings.value))
 
 
 def _marks(effect: Geometric, load_cases: LoadCases) -> bool:

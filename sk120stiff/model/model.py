@@ -21,8 +21,9 @@ from sk120stiff.effects import (
     load_case,
 )
 from sk120stiff.errors import InputError, MissingPart
-from sk120stiff.model.assembly import Assembly, Solution
+from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.parameter import Parameter, parameter_frame
+from sk120stiff.model.standing import Solution
 from sk120stiff.model.uncertainty import Uncertainty
 from sk120stiff.robot import Robot
 

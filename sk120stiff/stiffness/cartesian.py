@@ -97,8 +97,7 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
         return np.zeros((*batch, n, n))
     force, moment = load[..., None, :3], load[..., None, 3:]
     v, w = screws.linear, screws.angular
-    upper = np.triu(np.cross(force, w) @ np.swapaxes(v, -1, -2))
-    K_C = upper + np.swapaxes(np.triu(upper, 1), -1, -2)  # (..., m, m)
+    K_C = _mirrored(np.cross(force, w) @ np.swapaxes(v, -1, -2))  # (..., m, m)
     if moment.any():
         turned = np.triu(np.cross(moment, w) @ np.swapaxes(w, -1, -2), 1)
         K_C = K_C + np.swapaxes(turned, -1, -2)
@@ -118,8 +117,7 @@ def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
     if screws.carried is None:
         n = screws.first.shape[-1]
         return np.zeros((*screws.position.shape[:-1], n, n))
-    upper = np.triu(np.cross(gravity, screws.angular) @ np.swapaxes(screws.carried, -1, -2))
-    K_g = upper + np.swapaxes(np.triu(upper, 1), -1, -2)
+    K_g = _mirrored(np.cross(gravity, screws.angular) @ np.swapaxes(screws.carried, -1, -2))
     G = screws.first
     K_gz = _congruent(K_g, G)
     if screws.second is not None:
@@ -130,6 +128,12 @@ def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
 def symmetric_part(matrix: Array) -> Array:
     """(M + Mᵀ)/2, the part of a stiffness that leaves no work over on a closed path."""
     return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+
+
+def _mirrored(matrix: Array) -> Array:
+    """The symmetric matrix (..., m, m) with the upper triangle of another."""
+    row = np.arange(matrix.shape[-1])
+    return np.where(row[:, None] <= row, matrix, np.swapaxes(matrix, -1, -2))
 
 
 def _congruent(K: Array, G: Array) -> Array:

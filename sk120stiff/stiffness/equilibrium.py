@@ -62,11 +62,15 @@ class Equilibrium:
         return complementary_stiffness(self.pulled, self.load)
 
     def feedback(self, rows: Index) -> Array:
-        """(..., r, n) derivative of r elongations by all coordinates: C K_C, the weight's share."""
-        out = self.compliance[..., rows, :] @ self.K_C
+        """(..., r, n) derivative of r elongations by all coordinates: C K_C, the weight's share.
+
+        The r coordinates are those that yield at all.
+        """
+        own = (..., rows[:, None], rows)
+        out = self.compliance[own] @ self.K_C[..., rows, :]
         if self.weight is not None:
-            hanging = gravity_stiffness(self.pulled, self.weight.gravity)
-            out = out + self.weight.compliance[..., rows, :] @ hanging
+            hanging = gravity_stiffness(self.pulled, self.weight.gravity)[..., rows, :]
+            out = out + self.weight.compliance[own] @ hanging
         return out
 
 
@@ -104,6 +108,7 @@ def equilibrium(
     force_point: Array | None = None,
     soft: Index | None = None,
     weight: Weight | None = None,
+    near: Array | None = None,
 ) -> Equilibrium:
     """Exact static equilibrium z = z_0 + e(J(z)ᵀ W) by Newton's method on compliances.
 
@@ -124,6 +129,7 @@ def equilibrium(
         soft: Indices of the coordinates that can yield under `law`; the others are not solved for.
             Default: all.
         weight: Lets the arm sag under its own weight, with and without load.
+        near: (..., n) where it is known to come to rest, up to rounding; found from `z_0` without.
 
     Raises:
         Refusal: On the way from zero load the arm loses its balance, or a joint goes farther than
@@ -137,7 +143,8 @@ def equilibrium(
     loaded_point = point if force_point is None else force_point
     statics = _Statics(mechanism, start, load, law, loaded_point, pick, weight)
     full = np.ones(batch)
-    z, trusted, state, steps = statics.newton(start.copy(), full, full)
+    begin = start if near is None else near
+    z, trusted, state, steps = statics.newton(begin.copy(), full, full)
     if not trusted.all():
         z, trusted, state, steps = statics.newton(_followed(statics, z, trusted), full, full)
     if not trusted.all():

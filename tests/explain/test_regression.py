@@ -11,7 +11,7 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
 from sk120stiff.explain.candidates.sums import solve_columns
-from sk120stiff.explain.select.beam import beam_search, gains
+from sk120stiff.explain.select.beam import beam_search, exchanged, gains
 from sk120stiff.explain.select.score import (
     _deviance,
     price_of_looking,
@@ -211,6 +211,28 @@ def test_what_is_implausible_by_one_law_is_looked_for_by_others():
     found = {"y": y, "X": X, "plausible": narrow, "variants": tuple(variants), "laws": tuple(laws)}
     best = beam_search(Regression(**{**vars_of(plain), **found}))[0]
     assert best.by_variant.get(0) == 1
+
+
+def test_an_effect_gives_way_to_one_of_better_evidence():
+    """What stands in for the cause is exchanged for it, unless that may not be named."""
+    plain = regression()
+    X = plain.X.copy()
+    X[:, 4] = 0.9 * X[:, 2] + 0.3 * np.random.default_rng(8).normal(size=len(X))
+    found = Regression(**{**vars_of(plain), "X": X, "y": 9.0 * X[:, 2]})
+    imitates = score_set(found, found.sums(), [2])
+    assert exchanged(found, imitates).effects == (0,)
+    assert exchanged(found, imitates, barred=[0]).effects == (2,)
+
+
+def test_sums_of_some_columns_score_their_models_as_all_do():
+    found = beside_form(0.5)
+    twice = np.full(found.poses, 2.0)
+    twice[0] = 0.0
+    columns = np.array([0, 1, 3])
+    some, every = found.weighing(columns)(twice), found.sums(twice)
+    assert np.array_equal(np.flatnonzero(some.moment), columns)
+    assert score_set(found, some, [1]).score == pytest.approx(score_set(found, every, [1]).score)
+    assert score_set(found, some, []).score == pytest.approx(score_set(found, every, []).score)
 
 
 def beside_form(share: float) -> Regression:

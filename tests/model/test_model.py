@@ -103,6 +103,25 @@ def test_blocks_are_seamless(robot, model):
     assert model.predict(load_cases.rows(slice(0, 0))).shape == (0, 3)
 
 
+@pytest.mark.parametrize("name", ["motoman_sk120", "ur5e"])
+def test_what_is_rigid_changes_nothing(name):
+    """A catalogue of absent effects beside springs predicts what the springs do, with its slopes."""
+    robot = load_robot(name)
+    few = joint_spring_model(robot, np.full(robot.n, 3e4))
+    many = few
+    for absent in all_effects(robot):
+        if absent.id not in {each.id for each in few.effects}:
+            many = many + absent
+    assert many.assembly.mechanism.n > 2 * few.assembly.mechanism.n
+    rng = np.random.default_rng(3)
+    wrench = 100 * rng.normal(size=(20, 6)) * [1, 1, 1, 0.1, 0.1, 0.1]
+    load_cases = load_case(robot, rng.uniform(-1, 1, (20, robot.n)), wrench)
+    alone, slope = few.predict_with_sensitivities(load_cases)
+    beside, slopes = many.predict_with_sensitivities(load_cases)
+    assert np.abs(alone).max() > 1e-4 and np.allclose(beside, alone, rtol=0, atol=1e-14)
+    assert np.allclose(slopes[:, :, : slope.shape[2]], slope, rtol=1e-9, atol=1e-12)
+
+
 def test_instruments_have_no_say_in_what_really_moves(robot, model):
     whole = model + effect(robot, "reading_scale") + effect(robot, "force_bias")
     whole = whole.with_public(

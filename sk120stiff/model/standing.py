@@ -1,0 +1,51 @@
+"""Where a loaded arm stands, and what the instrument makes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import LoadCases
+from sk120stiff.model.misread import Misread
+from sk120stiff.stiffness import Equilibrium
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """Where the loaded arm stands.
+
+    Attributes:
+        load_cases: The readings.
+        wrench: (N, 6) true load, base axes [N, N·m].
+        loads: What the force sensor made of the load.
+        onset: (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or
+            N]; zero where nothing does.
+        rest: Equilibrium under load and weight.
+    """
+
+    load_cases: LoadCases
+    wrench: Array
+    loads: Misread
+    onset: Array
+    rest: Equilibrium
+
+
+@dataclass(frozen=True, eq=False)
+class Solution(Standing):
+    """A solved set of displacements; what sensitivities build on.
+
+    Attributes:
+        unloaded: Equilibrium before the load, under the arm's own weight.
+        readings: What the instrument made of the displacement.
+    """
+
+    unloaded: Equilibrium
+    readings: Misread
+
+    @property
+    def displacement(self) -> Array:
+        """(N, 3) predicted readings in the axes of the measurements [m]."""
+        axes = np.swapaxes(self.load_cases.reading_axes, -1, -2)
+        return np.asarray(np.einsum("nij,nj->ni", axes, self.readings.value))
