@@ -49,7 +49,7 @@ POSITIONS = _tests("absolute", "linear", "choose", "names")
 FAULTS: tuple[Fault, ...] = (
     *_of(
         "stiffness/cartesian.py", *STIFFNESS,
-        sign_of_K_C_of_a_force=("np.triu(np.cross(force, w) @", "np.triu(np.cross(w, force) @"),
+        sign_of_K_C_of_a_force=("np.cross(force, w) @", "np.cross(w, force) @"),
         sign_of_K_C_of_a_moment=("np.cross(moment, w) @", "np.cross(w, moment) @"),
         K_C_of_a_moment_not_transposed=("K_C = K_C + np.swapaxes(turned, -1, -2)",
                                         "K_C = K_C + turned"),
@@ -196,13 +196,12 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/judge/confirm.py", *_tests("explain", "evidence"),
-        confirmation_folds_that_leak=("regression.sums((fold != k).astype(float))",
-                                      "regression.sums(np.ones(regression.poses))"),
+        confirmation_folds_that_leak=("weigh((fold != k).astype(float))",
+                                      "weigh(np.ones(regression.poses))"),
         last_confirmation_fold_never_scored=(
             "for k in range(int(fold.max(initial=0)) + 1):\n        train",
             "for k in range(int(fold.max(initial=0))):\n        train"),
-        resampling_without_replacement=("rng.integers(0, regression.poses, regression.poses)",
-                                        "rng.permutation(regression.poses)"),
+        resampling_without_replacement=("rng.integers(0, poses, poses)", "rng.permutation(poses)"),
         rivals_never_counted=("rival_frequency=max(others.values(), default=0.0)", "rival_frequency=0.0"),
         what_beats_it_takes_its_place=("if both.plausible and fair[best] - both.score > WANTED", "if False"),
     ),

@@ -29,7 +29,8 @@ SEEN = Confirmation(5, 5, 1.0, 0.1, 1.0, 0.0)
 def test_the_held_out_gain_is_that_of_plain_least_squares_fold_by_fold():
     reg = regression()
     model = score_set(reg, reg.sums(), (0,))
-    fold_gain, pose_gain, axes = confirming._held_out_gain(reg, model, 0, np.random.default_rng(0))
+    rng = np.random.default_rng(0)
+    fold_gain, pose_gain, axes = confirming._held_out_gain(reg, reg.sums, model, 0, rng)
     fold = confirming.drawn_parts(POSES, confirming.FOLDS, np.random.default_rng(0))
     assert sorted(np.bincount(fold)) == [2, 2, 2, 3, 3]
     assert axes == reg.rows
@@ -45,7 +46,7 @@ def test_the_held_out_gain_is_that_of_plain_least_squares_fold_by_fold():
 
 def test_poses_are_drawn_again_whole_and_with_replacement():
     reg = regression()
-    drawn = confirming._resampled(reg, np.random.default_rng(1))
+    drawn = confirming._resampled(reg.sums, POSES, np.random.default_rng(1))
     picked = np.random.default_rng(1).integers(0, POSES, POSES)
     assert len(set(picked)) < POSES
     rows = np.concatenate([np.flatnonzero(reg.group == pose) for pose in picked])

@@ -105,7 +105,7 @@ def test_blocks_are_seamless(robot, model):
 
 @pytest.mark.parametrize("name", ["motoman_sk120", "ur5e"])
 def test_what_is_rigid_changes_nothing(name):
-    """A catalogue of absent effects beside springs predicts what the springs do, with its slopes."""
+    """Absent effects beside springs predict what the springs do, with its slopes."""
     robot = load_robot(name)
     few = joint_spring_model(robot, np.full(robot.n, 3e4))
     many = few

@@ -94,6 +94,7 @@ def judged(
     """
     fallen: list[Fallen] = []
     while True:
+        found = _of_better_evidence(found, {each.id for each in fallen})
         if unless_exceeding and found.final.exceeds:
             return found, Named((), tuple(fallen))
         findings, weakest = findings_of(found, seed=seed, least=least)
@@ -101,7 +102,7 @@ def judged(
             return found, Named(findings, tuple(fallen))
         fallen.append(weakest)
         kept = [e for e in _in_order(found) if e.id != weakest.id]
-        found = _of_better_evidence(with_the_strongest(found, kept), {each.id for each in fallen})
+        found = with_the_strongest(found, kept)
 
 
 def _of_better_evidence(found: Selection, fallen: Collection[str]) -> Selection:
@@ -298,16 +299,18 @@ def _finding(found: Selection, effect: int) -> Finding:
     chosen = regression.candidates[effect]
     rivals = _rivals(regression, with_it, without, effect)
     exact = _aliases(found, effect, with_it, rivals)
-    # A rival is compared with the effect in full: that some of its parameters may be equal is no
-    # evidence against the rival, nor is one parameter more.
+    # A rival with more parameters is compared with the effect in full: that some of its own may be
+    # equal is no evidence against the rival, nor is one parameter more. Any other is as simple.
     full = score_set(
         regression, regression.sums(), found.chosen, untied=effect, start=with_it.by_variant
     ).score
+    own = _moving(regression, with_it, effect)
     margin = max(MARGIN, np.log(regression.rows) + 0.5)
     same = [
         e
         for e, model in rivals
-        if model.score - full < margin or regression.candidates[e].id in exact
+        if model.score - (full if _moving(regression, model, e) > own else with_it.score) < margin
+        or regression.candidates[e].id in exact
     ]
     others = [(e, model.score) for e, model in rivals if e not in same]
     runner_up = min(others, key=lambda pair: pair[1], default=None)
@@ -331,6 +334,12 @@ def _finding(found: Selection, effect: int) -> Finding:
             rivals={regression.candidates[e].id: m.score - with_it.score for e, m in rivals},
         ),
     )
+
+
+def _moving(regression: Regression, model: Scored, effect: int) -> int:
+    """Number of parameters of an effect that move in a model."""
+    own = regression.variants[effect][model.by_variant[effect]]
+    return int(np.isin(own, model.solved.columns).sum())
 
 
 def _aliases(

@@ -54,10 +54,9 @@ def confirm(
     folds = len(fold_gain)
     error = float(pose_gain.std(ddof=1) * np.sqrt(len(pose_gain))) if len(pose_gain) > 1 else np.inf
     wins: Counter[int | None] = Counter()
-    poses = regression.poses
     for count in range(1, RESAMPLES + 1):
-        drawn = np.bincount(rng.integers(0, poses, poses), minlength=poses)
-        wins[_winner(regression, model, effect, same, weigh(drawn.astype(float)))] += 1
+        drawn = _resampled(weigh, regression.poses, rng)
+        wins[_winner(regression, model, effect, same, drawn)] += 1
         own = sum(times for winner, times in wins.items() if winner in same)
         if count % ENOUGH == 0 and _decided(own, count):
             break
@@ -123,6 +122,11 @@ def _held_out_gain(
         pose_gain[fold == k] = misfit[0] - misfit[1]
     fold_gain = np.array([pose_gain[fold == k].sum() for k in range(int(fold.max(initial=0)) + 1)])
     return fold_gain, pose_gain, float(regression.rows)
+
+
+def _resampled(weigh: Callable[[Array], Sums], poses: int, rng: np.random.Generator) -> Sums:
+    draw = rng.integers(0, poses, poses)
+    return weigh(np.bincount(draw, minlength=poses).astype(float))
 
 
 def _winner(

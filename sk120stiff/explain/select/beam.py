@@ -15,6 +15,7 @@ BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
 HOPELESS = 40.0  # score by which larger models lose that have no future
 EXCHANGED = 12  # candidates that are tried in the place of an effect
+RIVALS = 4  # of them that try all their laws
 WORTH = 4.0  # fall of the misfit that a gear's curve promises, to join in with all others
 
 
@@ -150,12 +151,16 @@ def exchanged(regression: Regression, model: Scored, barred: Collection[int] = (
             order = np.argsort(-largest(promised)).tolist()
             others = [f for f in order if f not in (*before.effects, *barred)][:EXCHANGED]
             likely = {f: likeliest(regression, sums, f, promised[f]) for f in others}
-            sets = [dict(sorted((rest | {f: k}).items())) for f, k in likely.items()]
-            tried = [m for m in score_sets(regression, sums, sets) if m.plausible]
-            model = min([model, *tried], key=lambda m: m.score)
+            sets = {f: dict(sorted((rest | {f: k}).items())) for f, k in likely.items()}
+            tried = dict(zip(sets, score_sets(regression, sums, list(sets.values())), strict=True))
+            for f in sorted(tried, key=lambda f: tried[f].score)[:RIVALS]:
+                by_law = score_set(regression, sums, sets[f], start=sets[f], only=(f,))
+                if by_law.score < before.score + HOPELESS:  # its neighbours may take other laws
+                    by_law = score_set(regression, sums, sets[f], start=by_law.by_variant)
+                if by_law.plausible and by_law.score < model.score:
+                    model = by_law
         if model is before:
             return model
-        model = score_set(regression, sums, model.effects, start=model.by_variant)
 
 
 def likeliest(regression: Regression, sums: Sums, effect: int, promised: Array) -> int:
