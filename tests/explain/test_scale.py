@@ -24,16 +24,22 @@ def ur10():
     return load_robot(str(example("ur10_robot.urdf")))
 
 
-@pytest.mark.parametrize(("softer", "largest"), [(1.0, 0.5e-3), (100.0, 50e-3)])
-def test_an_arm_a_hundred_times_softer_has_the_same_name(ur10, softer, largest):
-    """100 N bend it by half a millimetre or by five centimetres; 10 µm stay what was stated."""
+@pytest.mark.parametrize(
+    ("softer", "bearing", "largest"),
+    [(1.0, 1.0, 0.5e-3), (5.0, 12.0, 4.5e-3), (100.0, 100.0, 50e-3)],
+)
+def test_an_arm_a_hundred_times_softer_has_the_same_name(ur10, softer, bearing, largest):
+    """100 N bend it by half a millimetre or by five centimetres; 10 µm stay what was stated.
+
+    A bearing of 5·10⁴ N·m/rad is none of an arm with drives of 5·10⁵, and one of an arm of 10⁵.
+    """
     rng = np.random.default_rng(3)
     tilt = effect(ur10, "joint_tilt", "shoulder_lift_joint")
     values = {
         f"joint_springs:{joint}.stiffness": k / softer
         for joint, k in zip(ur10.actuated, STIFFNESS, strict=True)
     }
-    values |= {f"{tilt.id}.{p.name}": 6e5 / softer for p in tilt.parameters}
+    values |= {f"{tilt.id}.{p.name}": 6e5 / bearing for p in tilt.parameters}
     true = (joint_spring_model(ur10) + tilt).with_public(**values)
     poses, loads = 14, 3
     force = rng.normal(size=(poses * loads, 3))
