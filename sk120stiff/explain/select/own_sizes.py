@@ -17,12 +17,14 @@ from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.select.outliers import LEAST_LEFT, everything, robust_scale
 from sk120stiff.identify import Fit, Problem, solve_near
+from sk120stiff.identify.solve.polish import Evaluate, polish
 from sk120stiff.measurements import FormWhitener
 from sk120stiff.measurements.model_form import ModelForm
 
 TAILS = 4.0  # degrees of freedom, the usual choice where they are not estimated
 FACTORS = np.exp(np.linspace(-3.0, 4.0, 141))  # on a pose's variance, that are tried
-ROUNDS = 20  # of sizes and values, until they agree
+ROUNDS = 20  # of sizes and values to first order, until they agree
+REFITS = 4  # at exact equilibrium, likewise
 
 
 def own_sizes(regression: Regression, problem: Problem) -> ModelForm:
@@ -50,16 +52,53 @@ def with_settled_sizes(found: Fit) -> Fit:
     whitener = problem.whitener
     if not isinstance(whitener, FormWhitener):
         return found
-    rows = len(found.residual)
-    free = np.sqrt(max(rows - found.estimated, 1) / rows)  # share that the parameters leave
-    for _ in range(ROUNDS):
-        form = _with_factors(problem, whitener, whitener.apply(found.gap) / free)
-        mean = len(form.of_poses) / sum(1.0 / s for _, s in form.of_poses)
-        form = replace(even, of_poses=tuple((pose, s / mean) for pose, s in form.of_poses))
+    for _ in range(REFITS):
+        form, x = _settled(problem, whitener, found, even)
         if form == found.problem.noise.form:
             break
-        found = solve_near(replace(problem, noise=replace(noise, form=form)), found.x)
+        found = solve_near(replace(problem, noise=replace(noise, form=form)), x)
     return found
+
+
+def _settled(
+    problem: Problem, whitener: FormWhitener, found: Fit, even: ModelForm
+) -> tuple[ModelForm, Array]:
+    """Likeliest factors and values (P_free,) together, to first order around a fit.
+
+    Args:
+        problem: With the variance of the t distribution's scale and no factors, and its whitener.
+        whitener: Its own.
+        found: The fit.
+        even: Model-form error of the variance found of all poses.
+    """
+    rows = len(found.residual)
+    free = np.sqrt(max(rows - found.estimated, 1) / rows)  # share that the parameters leave
+    _, derivative = problem.model.predict_with_sensitivities(
+        problem.load_cases, problem.values(found.x)
+    )
+    slopes = derivative[:, :, problem.free] * problem.scale
+    x, form = found.x, found.problem.noise.form
+    for _ in range(ROUNDS):
+        gap = found.gap - slopes @ (x - found.x)
+        now = _with_factors(problem, whitener, whitener.apply(gap) / free)
+        mean = len(now.of_poses) / sum(1.0 / s for _, s in now.of_poses)
+        now = replace(even, of_poses=tuple((pose, s / mean) for pose, s in now.of_poses))
+        if now == form:
+            break
+        form = now
+        by = replace(problem, noise=replace(problem.noise, form=form)).whitener
+        linear = _linear(by.apply(gap), -by.apply(slopes), x)
+        x = polish(linear, x, problem.bounds, problem.span).x
+    return form, x
+
+
+def _linear(residual: Array, jacobian: Array, at: Array) -> Evaluate:
+    """A whitened gap that is linear around `at`, for `polish`."""
+
+    def evaluate(x: Array) -> tuple[Array, Array]:
+        return residual + jacobian @ (x - at), jacobian
+
+    return evaluate
 
 
 def _with_factors(problem: Problem, whitener: FormWhitener, fair: Array) -> ModelForm:
