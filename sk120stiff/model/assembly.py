@@ -130,6 +130,8 @@ class Assembly:
         None where most of the coordinates are at work anyway.
         """
         works = np.array([values[part].any() for part in self.slices], dtype=bool)
+        if works.all():
+            return None
         key = works.tobytes()
         if key not in self._parts:
             effects = tuple(e for e, own in zip(self.effects, works, strict=True) if own)

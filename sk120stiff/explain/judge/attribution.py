@@ -16,7 +16,7 @@ from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.confirm import UNTRIED, confirm
 from sk120stiff.explain.judge.posterior import posterior
 from sk120stiff.explain.judge.random_effects import is_constant, joint_that_turns
-from sk120stiff.explain.select.beam import exchanged, gains
+from sk120stiff.explain.select.beam import exchanged, in_its_place
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.explain.select.stepwise import Selection, laws_of, with_effects
 from sk120stiff.robot.anatomy import arm_joints
@@ -30,8 +30,6 @@ CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
 MOST_PLACES = 3  # the same beside model-form error, part of which fits at many places
 SOME = 0.05  # share of the drawings of the poses from which on a law of the same gear counts
-CONTENDERS = 24  # rivals looked at for every effect
-NEAR = 40.0  # difference of scores within which a rival's neighbours may take other laws
 
 
 @dataclass(frozen=True)
@@ -297,7 +295,7 @@ def _finding(found: Selection, effect: int) -> Finding:
     rest = tuple(e for e in found.chosen if e != effect)
     without = score_set(regression, regression.sums(), rest, start=with_it.by_variant)
     chosen = regression.candidates[effect]
-    rivals = _rivals(regression, with_it, without, effect)
+    rivals = in_its_place(regression, with_it, without, effect)
     exact = _aliases(found, effect, with_it, rivals)
     # A rival with more parameters is compared with the effect in full: that some of its own may be
     # equal is no evidence against the rival, nor is one parameter more. Any other is as simple.
@@ -381,19 +379,3 @@ def by_weight(regression: Regression, model: Scored) -> list[int]:
     while len(order) < len(model.effects):
         order.append(min((e for e in model.effects if e not in order), key=left_by))
     return order
-
-
-def _rivals(
-    regression: Regression, model: Scored, without: Scored, effect: int
-) -> list[tuple[int, Scored]]:
-    """The other candidates that promise most in the place of one effect, with their models."""
-    sums, rest, start = regression.sums(), without.effects, model.by_variant
-    promise = gains(regression, sums, without.solved)
-    order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:CONTENDERS]
-    found = [(e, score_set(regression, sums, (*rest, e), start=start, only=(e,))) for e in order]
-    near = model.score + NEAR
-    settled = [
-        (e, score_set(regression, sums, m.effects, start=m.by_variant) if m.score < near else m)
-        for e, m in found
-    ]
-    return [(e, m) for e, m in settled if m.plausible]

@@ -14,8 +14,8 @@ from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set, s
 BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
 HOPELESS = 40.0  # score by which larger models lose that have no future
-EXCHANGED = 12  # candidates that are tried in the place of an effect
-RIVALS = 4  # of them that try all their laws
+CONTENDERS = 24  # candidates that are tried in the place of an effect
+NEAR = 40.0  # difference of scores within which their neighbours may take other laws
 WORTH = 4.0  # fall of the misfit that a gear's curve promises, to join in with all others
 
 
@@ -141,26 +141,38 @@ def exchanged(regression: Regression, model: Scored, barred: Collection[int] = (
         model: What to begin with.
         barred: Candidates that may not enter.
     """
-    sums = regression.sums()
     while True:
         before = model
         for e in before.effects:
-            rest = {f: k for f, k in before.by_variant.items() if f != e}
-            without = score_sets(regression, sums, [rest])[0]
-            promised = promises(regression, sums, without.solved)
-            order = np.argsort(-largest(promised)).tolist()
-            others = [f for f in order if f not in (*before.effects, *barred)][:EXCHANGED]
-            likely = {f: likeliest(regression, sums, f, promised[f]) for f in others}
-            sets = {f: dict(sorted((rest | {f: k}).items())) for f, k in likely.items()}
-            tried = dict(zip(sets, score_sets(regression, sums, list(sets.values())), strict=True))
-            for f in sorted(tried, key=lambda f: tried[f].score)[:RIVALS]:
-                by_law = score_set(regression, sums, sets[f], start=sets[f], only=(f,))
-                if by_law.score < before.score + HOPELESS:  # its neighbours may take other laws
-                    by_law = score_set(regression, sums, sets[f], start=by_law.by_variant)
-                if by_law.plausible and by_law.score < model.score:
-                    model = by_law
+            rest = tuple(f for f in before.effects if f != e)
+            without = score_set(regression, regression.sums(), rest, start=before.by_variant)
+            rivals = in_its_place(regression, before, without, e)
+            fair = (rival for f, rival in rivals if f not in barred)
+            model = min([model, *fair], key=lambda m: m.score)
         if model is before:
             return model
+
+
+def in_its_place(
+    regression: Regression, model: Scored, without: Scored, effect: int
+) -> list[tuple[int, Scored]]:
+    """The other candidates that promise most in the place of one effect, with their models.
+
+    Args:
+        regression: Linearised readings.
+        model, without: A model with the effect, and the same without it.
+        effect: The one whose place it is.
+    """
+    sums, rest, start = regression.sums(), without.effects, model.by_variant
+    promise = gains(regression, sums, without.solved)
+    order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:CONTENDERS]
+    found = [(e, score_set(regression, sums, (*rest, e), start=start, only=(e,))) for e in order]
+    near = model.score + NEAR
+    settled = [
+        (e, score_set(regression, sums, m.effects, start=m.by_variant) if m.score < near else m)
+        for e, m in found
+    ]
+    return [(e, m) for e, m in settled if m.plausible]
 
 
 def likeliest(regression: Regression, sums: Sums, effect: int, promised: Array) -> int:
