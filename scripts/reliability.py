@@ -30,8 +30,8 @@ from tests.hidden.score import check_frozen, judge_case, level_of
 
 HEAD = """# Are the stated probabilities frequencies?
 
-{count} sealed cases of the hidden benchmark, drawn after the procedure was settled and answered
-through the public command ({levels}). Few cases leave wide bars.
+{count} sealed cases of the hidden benchmark{part}, drawn after the procedure was settled and
+answered through the public command ({levels}). Few cases leave wide bars.
 
 Below: names that `explain` gave, and all candidates that `probabilities` lists, by the probability
 that was stated. True: the name, one of its alternatives, its family where laws are wrong in detail
@@ -57,6 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folders", type=Path, nargs="+")
     parser.add_argument("--seed", required=True, help="of the draw, under which it is kept")
+    parser.add_argument("--part", default="", help="which of the draw these are, if not all")
     parser.add_argument("--out", type=Path, default=Path("docs"))
     asked = parser.parse_args(arguments)
     judged, levels, marks = [], Counter[str](), defaultdict[str, list[Mark]](list)
@@ -71,6 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     told = {what: seen for what, seen in found.items() if seen is not None}
     text = HEAD.format(
         count=len(judged),
+        part=f" ({asked.part})" if asked.part else "",
         levels=", ".join(f"{n} of {level}" for level, n in sorted(levels.items())),
     )
     text += "\n| level | cases | right | cases with a wrong name |\n|---|---|---|---|\n"
