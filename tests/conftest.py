@@ -1,6 +1,7 @@
 """The whole suite runs on several cores; where everything must run, nothing may be skipped."""
 
 import os
+import signal
 import sys
 from collections.abc import Generator
 
@@ -22,6 +23,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     # Hundreds of programs are started: what the first one compiled the others read.
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     sys.dont_write_bytecode = False
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # as in a job of a shell's background
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     asked = getattr(config.option, "numprocesses", 0)  # None: pytest-xdist is there, unasked
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
     if asked is not None or not whole or hasattr(config, "workerinput"):

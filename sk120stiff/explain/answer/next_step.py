@@ -122,14 +122,16 @@ def _gain(answer: Explanation) -> str:
 
 
 def _largest(answer: Explanation) -> list[str]:
-    named = {finding.effect.id for finding in answer.findings}
+    named = {finding.effect.id: finding for finding in answer.findings}
     mine = [share for share in answer.budget if share.name in named]
     if not mine:
         return []
-    error = "" if mine[0].std is None else f" (± {microns(mine[0].std)})"
+    first = mine[0]
+    error = "" if first.std is None else f" (± {microns(first.std)})"
+    names = " or ".join((first.name, *named[first.name].alternatives))
     return [
-        f"At the measured loads {mine[0].name} brings the most of what was named, "
-        f"{microns(mine[0].rms)}{error} rms per axis: look there first if the arm is to be mended."
+        f"At the measured loads {names} brings the most of what was named, "
+        f"{microns(first.rms)}{error} rms per axis: look there first if the arm is to be mended."
     ]
 
 

@@ -8,10 +8,12 @@ that thousands of models cost no more than a blink. What wins is refitted at exa
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
+from statistics import median
 
 import numpy as np
 from scipy import stats
@@ -310,8 +312,8 @@ def softness(springs: Array) -> float:
     Args:
         springs: Compliances of its joints in typical sizes; what is rigid does not count.
     """
-    moving = springs[springs > 0.0]
-    return max(float(np.exp(np.median(np.log(moving)))), 1.0) if len(moving) else 1.0
+    moving = [math.log(each) for each in springs.tolist() if each > 0.0]
+    return max(math.exp(median(moving)), 1.0) if moving else 1.0
 
 
 def _variants(

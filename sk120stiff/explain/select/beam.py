@@ -126,8 +126,7 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
                 break
     best = sorted((m for m in seen.values() if m.plausible), key=lambda m: m.score)
     best[:SETTLED] = sorted((settled(m) for m in best[:SETTLED]), key=lambda m: m.score)
-    better = exchanged(regression, best[0])
-    return best if better is best[0] else [better, *best]
+    return best
 
 
 def exchanged(regression: Regression, model: Scored, barred: Collection[int] = ()) -> Scored:

@@ -14,7 +14,7 @@ from sk120stiff.effects import Effect
 from sk120stiff.effects.reading_drift import warm_ups
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.regression import Regression, regression_at
-from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.beam import beam_search, exchanged
 from sk120stiff.explain.select.outliers import outlying_rows
 from sk120stiff.explain.select.own_sizes import own_sizes, price_of_factors
 from sk120stiff.explain.select.score import Scored, score_set
@@ -188,11 +188,18 @@ def _settle(
     ids: Sequence[str],
     max_effects: int,
 ) -> tuple[Fit, Regression, tuple[int, ...]]:
-    """Linearise, search, refit exactly, until the search confirms the model it was made at."""
+    """Linearise, search, refit exactly, until the search confirms the model it was made at.
+
+    Exchanges are looked for once it does: they cost as much as the search itself.
+    """
     final = base
     effects: list[Effect] = []
+    exchanging = False
     for number in range(ROUNDS):
         ranked = beam_search(regression, max_effects=max_effects)
+        if exchanging or set(laws_of(regression, ranked[0])) == set(effects):
+            exchanging = True
+            ranked = [exchanged(regression, ranked[0]), *ranked]
         if set(laws_of(regression, ranked[0])) == set(effects):
             break
         effects, final = _first_that_fits(base, regression, ranked)
