@@ -16,6 +16,7 @@ SETTLED = 2  # of them whose effects all try their variants
 HOPELESS = 40.0  # score by which larger models lose that have no future
 CONTENDERS = 24  # candidates that are tried in the place of an effect
 NEAR = 40.0  # difference of scores within which their neighbours may take other laws
+FIRST = 4  # of them whose neighbours may anyway: a strong beam by another taper hides much
 WORTH = 4.0  # fall of the misfit that a gear's curve promises, to join in with all others
 
 
@@ -166,9 +167,9 @@ def in_its_place(
     promise = gains(regression, sums, without.solved)
     order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:CONTENDERS]
     found = [(e, score_set(regression, sums, (*rest, e), start=start, only=(e,))) for e in order]
-    near = model.score + NEAR
+    near = max([model.score + NEAR, *sorted(m.score for _, m in found)[:FIRST]])
     settled = [
-        (e, score_set(regression, sums, m.effects, start=m.by_variant) if m.score < near else m)
+        (e, score_set(regression, sums, m.effects, start=m.by_variant) if m.score <= near else m)
         for e, m in found
     ]
     return [(e, m) for e, m in settled if m.plausible]
