@@ -11,7 +11,7 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
 from sk120stiff.explain.candidates.sums import solve_columns
-from sk120stiff.explain.select.beam import beam_search, exchanged, gains
+from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, gains, in_its_place
 from sk120stiff.explain.select.score import (
     _deviance,
     price_of_looking,
@@ -222,6 +222,36 @@ def test_an_effect_gives_way_to_one_of_better_evidence():
     imitates = score_set(found, found.sums(), [2])
     assert exchanged(found, imitates).effects == (0,)
     assert exchanged(found, imitates, barred=[0]).effects == (2,)
+
+
+def test_a_rival_is_not_judged_beside_a_law_that_suits_another():
+    """A strong effect by its second law and an imitation explain what it and the cause do."""
+    plain = regression()
+    X = plain.X.copy()
+    usual, other, cause, imitation = 2, 3, 4, 5
+    X[:, other] = X[:, usual] + 0.3 * X[:, other]
+    y = 40.0 * X[:, usual] + 9.0 * X[:, cause]
+    X[:, imitation] = (y - 40.0 * X[:, other]) / 9.0
+    columns = ((usual, other), (cause,), (imitation,))
+    variants = tuple(tuple(np.array([c]) for c in laws) for laws in columns)
+    laws = tuple((own[0],) * len(mine) for own, mine in zip(plain.laws, variants, strict=False))
+    few = {"candidates": plain.candidates[:3], "columns": tuple(v[0][:1] for v in variants)}
+    made = {
+        "y": y,
+        "X": X,
+        "variants": variants,
+        "laws": laws,
+        "tied": (-1,) * 3,
+        "usual": (0,) * 3,
+    }
+    found = Regression(**{**vars_of(plain), **few, **made})
+    sums = found.sums()
+    model = score_set(found, sums, [0, 2], start={0: 1}, only=())
+    without = score_set(found, sums, [0], start={0: 1}, only=())
+    beside_it = score_set(found, sums, [0, 1], start={0: 1}, only=())
+    assert beside_it.score > model.score + 2 * NEAR
+    (rival,) = (m for e, m in in_its_place(found, model, without, 2) if e == 1)
+    assert rival.by_variant == {0: 0, 1: 0} and rival.score < model.score + 1.0
 
 
 def test_sums_of_some_columns_score_their_models_as_all_do():
