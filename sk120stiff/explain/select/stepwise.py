@@ -199,7 +199,8 @@ def _settle(
         ranked = beam_search(regression, max_effects=max_effects)
         if exchanging or set(laws_of(regression, ranked[0])) == set(effects):
             exchanging = True
-            ranked = [exchanged(regression, ranked[0]), *ranked]
+            better = exchanged(regression, ranked[0])
+            ranked = ranked if better is ranked[0] else [better, *ranked]
         if set(laws_of(regression, ranked[0])) == set(effects):
             break
         effects, final = _first_that_fits(base, regression, ranked)
