@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Screws
 
@@ -70,7 +70,9 @@ def spring_matrix(stiffness: Array) -> Array:
     return stiffness[..., :, None] * np.eye(stiffness.shape[-1])
 
 
-def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
+def complementary_stiffness(
+    screws: Screws, wrench: ArrayLike, rows: Index | None = None
+) -> Array:
     """∂(Jᵀ W)/∂z for a force and a moment that are constant in base axes.
 
     With v and w the linear and angular parts of the unit twists of the chain joints, in chain
@@ -85,44 +87,40 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike) -> Array:
     Args:
         screws: Kinematics at the loaded point, batch shape (...).
         wrench: (..., 6) force [N] and moment [N·m] at that point, base axes.
+        rows: (r,) coordinates whose rows alone are wanted; all n without.
 
     Returns:
-        (..., n, n) [N·m/rad]. The part of the force is symmetric, that of a moment is not: a moment
+        (..., r, n) [N·m/rad]. The part of the force is symmetric, that of a moment is not: a moment
         about fixed axes has no potential. Symmetrise before any statement about definiteness.
     """
     load = np.asarray(wrench, dtype=float)
     if not load.any():
         n = screws.first.shape[-1]
         batch = np.broadcast_shapes(screws.position.shape[:-1], load.shape[:-1])
-        return np.zeros((*batch, n, n))
+        return np.zeros((*batch, n if rows is None else len(rows), n))
     force, moment = load[..., None, :3], load[..., None, 3:]
-    v, w = screws.linear, screws.angular
-    K_C = _mirrored(np.cross(force, w) @ np.swapaxes(v, -1, -2))  # (..., m, m)
+    joints = _moved(screws.first, rows)
+    w = screws.angular
+    K_C = _symmetric_rows(np.cross(force, w), screws.linear, joints)  # (..., j, m)
     if moment.any():
-        turned = np.triu(np.cross(moment, w) @ np.swapaxes(w, -1, -2), 1)
-        K_C = K_C + np.swapaxes(turned, -1, -2)
-    G = screws.first
-    K_Cz = _congruent(K_C, G)
-    if screws.second is not None:
-        torques = screws.joint_torques(load)
-        K_Cz = K_Cz + screws.second.contracted(torques, G.shape[-1])
-    return np.asarray(K_Cz)
+        turned = w[..., joints, :] @ np.swapaxes(np.cross(moment, w), -1, -2)
+        K_C = K_C + np.where(joints[:, None] > np.arange(w.shape[-2]), turned, 0.0)
+    bent = None if screws.second is None else screws.second.contracted(screws.joint_torques(load), screws.first.shape[-1])
+    return _in_coordinates(K_C, screws.first, joints, rows, bent)
 
 
-def gravity_stiffness(screws: Screws, gravity: Array) -> Array:
-    """∂τ_g/∂z (..., n, n) [N·m/rad]: K_C of the arm's own weight, spread over its links.
+def gravity_stiffness(screws: Screws, gravity: Array, rows: Index | None = None) -> Array:
+    """∂τ_g/∂z (..., r, n) [N·m/rad]: K_C of the arm's own weight, spread over its links.
 
     The formula of `complementary_stiffness` with v_max replaced by what the joint max(i,j) carries.
     """
     if screws.carried is None:
         n = screws.first.shape[-1]
-        return np.zeros((*screws.position.shape[:-1], n, n))
-    K_g = _mirrored(np.cross(gravity, screws.angular) @ np.swapaxes(screws.carried, -1, -2))
-    G = screws.first
-    K_gz = _congruent(K_g, G)
-    if screws.second is not None:
-        K_gz = K_gz + screws.second.contracted(screws.carried @ gravity, G.shape[-1])
-    return np.asarray(K_gz)
+        return np.zeros((*screws.position.shape[:-1], n if rows is None else len(rows), n))
+    joints = _moved(screws.first, rows)
+    K_g = _symmetric_rows(np.cross(gravity, screws.angular), screws.carried, joints)
+    bent = None if screws.second is None else screws.second.contracted(screws.carried @ gravity, screws.first.shape[-1])
+    return _in_coordinates(K_g, screws.first, joints, rows, bent)
 
 
 def symmetric_part(matrix: Array) -> Array:
@@ -130,18 +128,48 @@ def symmetric_part(matrix: Array) -> Array:
     return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
 
 
-def _mirrored(matrix: Array) -> Array:
-    """The symmetric matrix (..., m, m) with the upper triangle of another."""
-    row = np.arange(matrix.shape[-1])
-    return np.where(row[:, None] <= row, matrix, np.swapaxes(matrix, -1, -2))
+def _moved(G: Array, rows: Index | None) -> Index:
+    """The joints that some coordinates move, all of them without `rows`."""
+    if rows is None:
+        return np.arange(G.shape[-2])
+    return np.flatnonzero(G[..., rows].any(axis=(*range(G.ndim - 2), -1)))
 
 
-def _congruent(K: Array, G: Array) -> Array:
-    """Gᵀ K G (..., n, n); where joints only stand in another order than coordinates, by index."""
-    if G.ndim == 2 and G.shape[0] == G.shape[1] > 0:
-        there = G != 0.0
-        if (there.sum(axis=0) == 1).all() and (there.sum(axis=1) == 1).all():
-            row = there.argmax(axis=0)
-            by = G[row, np.arange(len(row))]
-            return np.asarray(K[..., row[:, None], row] * np.outer(by, by))
-    return np.asarray(np.swapaxes(G, -1, -2) @ K @ G)
+def _symmetric_rows(near: Array, far: Array, rows: Index) -> Array:
+    """Rows (..., r, m) of the symmetric matrix whose upper triangle is near_i · far_j."""
+    above = near[..., rows, :] @ np.swapaxes(far, -1, -2)
+    if len(rows) == far.shape[-2]:
+        below = np.swapaxes(above, -1, -2)
+    else:
+        below = far[..., rows, :] @ np.swapaxes(near, -1, -2)
+    return np.where(rows[:, None] <= np.arange(far.shape[-2]), above, below)
+
+
+def _in_coordinates(
+    K: Array, G: Array, joints: Index, rows: Index | None, bent: Array | None
+) -> Array:
+    """Rows of Gᵀ K G (..., r, n) from rows K (..., j, m) of some joints, plus those of `bent`.
+
+    Where joints only stand in another order than coordinates, that is done by index.
+    """
+    wanted = np.arange(G.shape[-1]) if rows is None else rows
+    where = _order(G)
+    if where is not None:
+        at, by = where
+        place = np.searchsorted(joints, at[wanted])
+        out = K[..., place[:, None], at] * np.outer(by[wanted], by)
+    else:
+        left = np.swapaxes(G[..., joints, :][..., wanted], -1, -2)
+        out = (left @ K) @ G
+    return np.asarray(out if bent is None else out + bent[..., wanted, :])
+
+
+def _order(G: Array) -> tuple[Index, Array] | None:
+    """The joint that each coordinate moves, and how far; None where some move several."""
+    if G.ndim != 2 or G.shape[0] != G.shape[1] or not len(G):
+        return None
+    there = G != 0.0
+    if not ((there.sum(axis=0) == 1).all() and (there.sum(axis=1) == 1).all()):
+        return None
+    row = there.argmax(axis=0)
+    return row, G[row, np.arange(len(row))]

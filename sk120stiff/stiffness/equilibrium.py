@@ -67,9 +67,9 @@ class Equilibrium:
         The r coordinates are those that yield at all.
         """
         own = (..., rows[:, None], rows)
-        out = self.compliance[own] @ self.K_C[..., rows, :]
+        out = self.compliance[own] @ complementary_stiffness(self.pulled, self.load, rows)
         if self.weight is not None:
-            hanging = gravity_stiffness(self.pulled, self.weight.gravity)[..., rows, :]
+            hanging = gravity_stiffness(self.pulled, self.weight.gravity, rows)
             out = out + self.weight.compliance[own] @ hanging
         return out
 

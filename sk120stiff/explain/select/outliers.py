@@ -15,6 +15,7 @@ from sk120stiff.measurements.poses import rows_by_label
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
 NEXT = 3.7  # the same once one outlier is certain
 LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to tell of the noise
+ROUNDING = 1e-10  # of the most that a shift has of its own
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
 
 
@@ -94,65 +95,94 @@ class _Searched(NamedTuple):
     noise: float
 
 
+class _Shifts(NamedTuple):
+    """What a shift of one reading alone does to the whitened rows of its pose.
+
+    Attributes:
+        readings: (n,) of the pose.
+        rows: (r,) of the pose; whitening mixes no others.
+        columns: (r, n, 3) shift of each reading along x, y, z; zero where that was not read.
+    """
+
+    readings: Index
+    rows: Index
+    columns: Array
+
+    def along(self, rows: Array) -> Array:
+        """(k, n, 3) scalar products of the shifts with some rows (k, R)."""
+        return np.tensordot(rows[:, self.rows], self.columns, axes=1)
+
+
 def _searched(
     X: Array,
     prior: Array,
     y: Array,
-    shifts: Sequence[tuple[Index, Array]],
+    shifts: Sequence[_Shifts],
     sigma_known: bool,
     noise: float | None = None,
 ) -> _Searched:
-    """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,)."""
+    """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,).
+
+    A shift that joins the fit adds orthonormal rows to `half` and changes none of the others.
+    """
     out: list[int] = []
-    while len(out) <= LARGEST_SHARE * len(shifts):
-        extra = [np.zeros((len(y), shifts[row][1].shape[1])) for row in out]
-        for own, row in zip(extra, out, strict=True):
-            own[shifts[row][0]] = shifts[row][1]
-        full = np.hstack([X, *extra])
-        weight = np.concatenate([prior, np.zeros(full.shape[1] - len(prior))])
-        half = _half(full, weight)
-        residual = y - half.T @ (half @ y)
+    half = _half(X, prior)
+    residual = y - half.T @ (half @ y)
+    leverage = (half**2).sum(0)
+    total, left, score = (np.zeros((sum(len(s.readings) for s in shifts), 3)) for _ in range(3))
+    for each in shifts:
+        total[each.readings] = (each.columns**2).sum(0)
+        left[each.readings] = total[each.readings] - (each.along(half) ** 2).sum(0)
+    while len(out) <= LARGEST_SHARE * len(total):
         size = noise
         if size is None:
-            size = 1.0 if sigma_known else robust_scale(residual, (half**2).sum(0))
-        worst, where = 0.0, -1
-        for row, (rows, block) in enumerate(shifts):
-            if row in out:
-                continue
-            total = (block**2).sum(0)
-            left = total - ((half[:, rows] @ block) ** 2).sum(0)
-            score = np.abs(block.T @ residual[rows]) / (size * np.sqrt(np.maximum(left, 1e-9)))
-            highest = float(score[left > LEAST_LEFT * total].max(initial=0.0))
-            if highest > worst:
-                worst, where = highest, row
-        if worst <= (NEXT if out else LIMIT):
+            size = 1.0 if sigma_known else robust_scale(residual, leverage)
+        for each in shifts:
+            score[each.readings] = np.abs(each.along(residual[None])[0])
+        score /= size * np.sqrt(np.maximum(left, 1e-9))
+        score[left <= LEAST_LEFT * total] = 0.0
+        score[out] = 0.0
+        worst = int(score.max(axis=1).argmax())
+        if score[worst].max() <= (NEXT if out else LIMIT):
             left_over = float(y @ residual) / size**2
             return _Searched(np.array(sorted(out), dtype=np.intp), left_over, size)
-        out.append(where)
+        out.append(worst)
+        new = _beyond(half, next(each for each in shifts if worst in each.readings), worst)
+        half = np.vstack([half, new])
+        residual = residual - new.T @ (new @ y)
+        leverage += (new**2).sum(0)
+        for each in shifts:
+            left[each.readings] -= (each.along(new) ** 2).sum(0)
     return _Searched(np.zeros(0, dtype=np.intp), np.inf, np.nan)
 
 
-def _shift_columns(whitener: Whitener | FormWhitener, pose: Index) -> list[tuple[Index, Array]]:
-    """For each reading the rows of its pose and their whitened shifts (rows, axes read).
+def _beyond(half: Array, shifts: _Shifts, reading: int) -> Array:
+    """(k, R) orthonormal rows by which a free shift of one reading goes beyond `half` (P, R)."""
+    own = shifts.columns[:, int(np.flatnonzero(shifts.readings == reading)[0])]
+    shared = half[:, shifts.rows] @ own
+    free = -half.T @ shared
+    free[shifts.rows] += own
+    values, vectors = np.linalg.eigh(own.T @ own - shared.T @ shared)
+    seen = values > ROUNDING * values.max()
+    return np.asarray((free @ (vectors[:, seen] / np.sqrt(values[seen]))).T)
 
-    Whitening mixes rows of one pose (R,) only.
-    """
+
+def _shift_columns(whitener: Whitener | FormWhitener, pose: Index) -> list[_Shifts]:
+    """The shifts of all readings, pose by pose. Whitening mixes rows of one pose (R,) only."""
     count, reading = whitener.n_readings, whitener.reading
     numbers = rows_by_label(pose)  # of each pose
-    place, position = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
-    for k, rows in enumerate(numbers):
-        members = np.unique(reading[rows])
-        place[members], position[members] = k, np.arange(len(members))
+    members = [np.unique(reading[rows]) for rows in numbers]
+    position = np.zeros(count, dtype=np.intp)
+    for own in members:
+        position[own] = np.arange(len(own))
     width = int(position.max(initial=0)) + 1
     unit = np.zeros((count, 3, width, 3))
     unit[np.arange(count), :, position, :] = np.eye(3)
     white = whitener.apply(unit.reshape(count, 3, -1)).reshape(len(reading), width, 3)
-    out = []
-    for k in range(count):
-        rows = numbers[place[k]]
-        shift = white[rows, position[k]]
-        out.append((rows, shift[:, (shift != 0.0).any(axis=0)]))
-    return out
+    return [
+        _Shifts(own, rows, white[rows][:, : len(own)])
+        for own, rows in zip(members, numbers, strict=True)
+    ]
 
 
 def robust_scale(residual: Array, leverage: Array) -> float:

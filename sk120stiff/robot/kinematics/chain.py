@@ -137,9 +137,43 @@ class Chain:
         )
 
     @cached_property
-    def _crosses(self) -> Array:
-        """(m, 3, 3) cross products with the joint axes."""
-        return crossed(self.axes)
+    def _folded(self) -> dict[bytes, tuple[_Stretch, ...]]:
+        return {}
+
+    def _stretches(self, moving: Mask) -> tuple[_Stretch, ...]:
+        """The chain cut behind each of the joints that move; what stands still in between is rigid.
+
+        Most virtual joints of a catalogue stand still: they cost no step of their own.
+        """
+        key = moving.tobytes()
+        if key not in self._folded:
+            ends = np.flatnonzero(moving)
+            starts = np.append(0, ends + 1)
+            self._folded[key] = tuple(
+                self._stretch(int(first), int(end), mover=k < len(ends))
+                for k, (first, end) in enumerate(zip(starts, [*ends, self.m], strict=True))
+            )
+        return self._folded[key]
+
+    def _stretch(self, first: int, last: int, *, mover: bool) -> _Stretch:
+        """From joint `first` to joint `last`, whose own motion comes last, or to the end frame."""
+        placement: Array = np.eye(4)
+        joints = np.arange(first, last + 1 if mover else last)
+        axes, origins, centres = (np.zeros((3, len(joints))) for _ in range(3))
+        for place, k in enumerate(joints):
+            placement = placement @ self.placements[k]
+            rotation, origins[:, place] = placement[:3, :3], placement[:3, 3]
+            axes[:, place] = rotation @ self.axes[k]
+            centres[:, place] = rotation @ self.centres[k] + placement[:3, 3]
+        if not mover:
+            placement = placement @ self.placements[-1]
+        parts = [axes, origins, placement[:3, 3:], placement[:3, :3]]
+        if self.weighs:
+            parts.insert(2, centres)
+        if mover and self.revolute[last]:
+            cross = crossed(self.axes[last])
+            parts += [placement[:3, :3] @ cross, placement[:3, :3] @ cross @ cross]
+        return _Stretch(joints, np.hstack(parts), last if mover else None)
 
     def sweep(self, q: Array) -> Sweep:
         """Forward kinematics that keeps every joint on the way.
@@ -153,31 +187,39 @@ class Chain:
         batch = q.shape[:-1]
         count = int(np.prod(batch, dtype=int))
         flat = q.reshape(count, self.m)
-        sines, cosines = np.sin(flat), np.cos(flat)
+        moving = flat.any(axis=0)
+        sines = np.sin(flat[:, moving])[..., None, None]
+        versines = 1.0 - np.cos(flat[:, moving])[..., None, None]
         axes = np.empty((count, self.m, 3))
         origins = np.empty((count, self.m, 3))
         centres = np.empty((count, self.m, 3)) if self.weighs else None
-        rotation = np.broadcast_to(np.eye(3), (count, 3, 3))
+        rotation: Array = np.broadcast_to(np.eye(3), (count, 3, 3))
         position = np.zeros((count, 3))
-        for k in range(self.m):
-            position = position + rotation @ self.placements[k, :3, 3]
-            rotation = _times(rotation, self.placements[k, :3, :3])
-            axes[:, k] = rotation @ self.axes[k]
-            if self.revolute[k]:
-                cross = self._crosses[k]
-                swept = _times(rotation, cross)
-                rotation = (
-                    rotation
-                    + sines[:, k, None, None] * swept
-                    + (1.0 - cosines[:, k, None, None]) * _times(swept, cross)
-                )
-            else:
-                position = position + flat[:, k, None] * axes[:, k]
-            origins[:, k] = position
+        for k, stretch in enumerate(self._stretches(moving)):
+            joints, n = stretch.joints, len(stretch.joints)
+            turned = rotation.reshape(-1, 3) @ stretch.constants
+            turned = turned.reshape(count, 3, stretch.constants.shape[1])
+            there = position[:, None, :]
+            axes[:, joints] = np.swapaxes(turned[..., :n], 1, 2)
+            origins[:, joints] = there + np.swapaxes(turned[..., n : 2 * n], 1, 2)
+            at = 2 * n
             if centres is not None:
-                centres[:, k] = position + rotation @ self.centres[k]
-        position = position + rotation @ self.placements[-1, :3, 3]
-        rotation = _times(rotation, self.placements[-1, :3, :3])
+                centres[:, joints] = there + np.swapaxes(turned[..., at : at + n], 1, 2)
+                at += n
+            position = position + turned[..., at]
+            rotation = turned[..., at + 1 : at + 4]
+            mover = stretch.mover
+            if mover is None:
+                break
+            if self.revolute[mover]:
+                rotation = rotation + sines[:, k] * turned[..., at + 4 : at + 7]
+                rotation += versines[:, k] * turned[..., at + 7 :]
+            else:
+                position = position + flat[:, mover, None] * axes[:, mover]
+                origins[:, mover] = position
+            if centres is not None:
+                own = self.centres[mover]
+                centres[:, mover] = position + rotation @ own if own.any() else position
         return Sweep(
             axes.reshape(*batch, self.m, 3),
             origins.reshape(*batch, self.m, 3),
@@ -185,6 +227,22 @@ class Chain:
             position.reshape(*batch, 3),
             None if centres is None else centres.reshape(*batch, self.m, 3),
         )
+
+
+class _Stretch(NamedTuple):
+    """A rigid piece of a chain, up to the next joint that moves.
+
+    Attributes:
+        joints: Those on it; the one that moves is the last.
+        constants: (3, c) in the frame where it begins: the joints' axes, their origins, the centres
+            of their masses where there are any, the end's position and rotation, and this rotation
+            times the cross product with the axis of a joint that turns there, once and twice.
+        mover: The joint at its end, None for the end frame.
+    """
+
+    joints: Index
+    constants: Array
+    mover: int | None
 
 
 class Sweep(NamedTuple):
@@ -202,7 +260,3 @@ class Sweep(NamedTuple):
     position: Array
     centres: Array | None
 
-
-def _times(many: Array, one: Array) -> Array:
-    """(N, 3, 3) @ (3, 3) as a single matrix product, which is several times faster."""
-    return (many.reshape(-1, 3) @ one).reshape(many.shape)
