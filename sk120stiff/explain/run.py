@@ -16,6 +16,7 @@ from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.explain.advise.best_guess import contenders
 from sk120stiff.explain.advise.consequences import completed
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
+from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
 from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
@@ -244,18 +245,25 @@ def _selections(
     plain = tuple(effect for effect in candidates if not effect.random_effects)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
+    known: dict[tuple[Effect | None, bool], Linearised] = {}
+
     def under(chosen: NoiseModel, beside: Effect | None = None) -> Selection:
         # Constants of single poses are what a shared zero brings; it need not have been separate.
         # Beside model-form error they are part of it.
-        return select(
+        constants = not (chosen.form or (undescribed and chosen.zero == "separate"))
+        found = select(
             base_model if beside is None else base_model + beside,
             measurements,
             chosen,
-            plain if chosen.form or (undescribed and chosen.zero == "separate") else candidates,
+            candidates if constants else plain,
             max_effects=options.max_effects,
             alpha=options.alpha,
             prior=options.prior,
+            near=known.get((beside, constants)),
         )
+        if found.at_base is not None:
+            known[beside, constants] = found.at_base
+        return found
 
     return under
 

@@ -70,9 +70,7 @@ def spring_matrix(stiffness: Array) -> Array:
     return stiffness[..., :, None] * np.eye(stiffness.shape[-1])
 
 
-def complementary_stiffness(
-    screws: Screws, wrench: ArrayLike, rows: Index | None = None
-) -> Array:
+def complementary_stiffness(screws: Screws, wrench: ArrayLike, rows: Index | None = None) -> Array:
     """∂(Jᵀ W)/∂z for a force and a moment that are constant in base axes.
 
     With v and w the linear and angular parts of the unit twists of the chain joints, in chain
@@ -105,7 +103,9 @@ def complementary_stiffness(
     if moment.any():
         turned = w[..., joints, :] @ np.swapaxes(np.cross(moment, w), -1, -2)
         K_C = K_C + np.where(joints[:, None] > np.arange(w.shape[-2]), turned, 0.0)
-    bent = None if screws.second is None else screws.second.contracted(screws.joint_torques(load), screws.first.shape[-1])
+    bent = None
+    if screws.second is not None:
+        bent = screws.second.contracted(screws.joint_torques(load), screws.first.shape[-1])
     return _in_coordinates(K_C, screws.first, joints, rows, bent)
 
 
@@ -119,7 +119,9 @@ def gravity_stiffness(screws: Screws, gravity: Array, rows: Index | None = None)
         return np.zeros((*screws.position.shape[:-1], n if rows is None else len(rows), n))
     joints = _moved(screws.first, rows)
     K_g = _symmetric_rows(np.cross(gravity, screws.angular), screws.carried, joints)
-    bent = None if screws.second is None else screws.second.contracted(screws.carried @ gravity, screws.first.shape[-1])
+    bent = None
+    if screws.second is not None:
+        bent = screws.second.contracted(screws.carried @ gravity, screws.first.shape[-1])
     return _in_coordinates(K_g, screws.first, joints, rows, bent)
 
 

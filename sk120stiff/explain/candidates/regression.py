@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
 from statistics import median
 
 import numpy as np
@@ -21,10 +20,10 @@ from scipy import stats
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
 from sk120stiff.explain.candidates.form_rows import FormRows, form_rows
+from sk120stiff.explain.candidates.linearised import Linearised, linearised_at
 from sk120stiff.explain.candidates.sums import Solved, Sums, weighted_sums
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
-from sk120stiff.model import Parameter
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +53,7 @@ class Regression:
         alpha: Probability at which a first effect may be named where nothing is missing.
         prior: Probabilities of effects that the user gave, by ``name`` or ``name:where``.
         form: Its part in which model-form error outweighs the noise; None where there is none.
+        linearised: What it was made from.
     """
 
     y: Array
@@ -75,6 +75,7 @@ class Regression:
     alpha: float
     prior: Mapping[str, float]
     form: FormRows | None = None
+    linearised: Linearised | None = None
 
     @cached_property
     def unusual(self) -> tuple[float, ...]:
@@ -214,6 +215,7 @@ def regression_at(
     *,
     alpha: float,
     prior: Mapping[str, float] | None = None,
+    near: Linearised | None = None,
 ) -> Regression:
     """Linearise the readings at a fit, over its own parameters and all candidates.
 
@@ -222,25 +224,15 @@ def regression_at(
         candidates: Effects to consider besides; those that the model holds already are skipped.
         base_effects: Ids of the effects that belong to every model.
         alpha, prior: See `Regression`; without `prior` the table of `priors.py` counts alone.
+        near: Sensitivities at another fit, see `linearised_at`.
     """
     problem = fit.problem
-    full = fit.model
-    present = {effect.id for effect in full.effects}
-    for effect in candidates:
-        if effect.id not in present:
-            full = full + effect
-    chosen = [effect for effect in full.effects if effect.id not in base_effects]
-    others = [effect.other_laws(problem.load_cases) for effect in chosen]
-    if not problem.noise.form:  # beside model-form error no law is right in detail
-        for k in [k for k, effect in enumerate(chosen) if effect.id in present]:
-            others[k] = (*others[k], *chosen[k].nearby_laws(problem.load_cases))
-    extra = tuple(Parameter(e, spec) for e in chain.from_iterable(others) for spec in e.parameters)
-    full = replace(full, parameters=full.parameters + extra)  # two laws of one effect, so no sum
+    linear = linearised_at(fit, candidates, base_effects, near)
+    full, chosen, others = linear.model, linear.candidates, linear.laws
     specs = [parameter.spec for parameter in full.parameters]
     typical = np.array([spec.typical for spec in specs])
-    predicted, derivative = full.predict_with_sensitivities(problem.load_cases)
-    X = problem.whitener.apply(derivative * typical)
-    gap = problem.whitener.apply(problem.measured - predicted)
+    X = problem.whitener.apply(linear.sensitivities)
+    gap = problem.whitener.apply(fit.gap)
     fixed = np.array([not p.free for p in full.parameters])
     y = gap + X[:, ~fixed] @ (full.values / typical)[~fixed]
 
@@ -299,6 +291,7 @@ def regression_at(
         alpha=alpha,
         prior=prior or {},
         form=form_rows(fit, whole, y),
+        linearised=linear,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError, Refusal
+from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
@@ -71,29 +72,34 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
     ids = [effect.id for effect in start.effects]
     whole = found.base.problem.noise
 
-    def searched(base: Fit, counts: Sequence[int]) -> list[Fit]:
+    def searched(
+        base: Fit, counts: Sequence[int], near: Linearised | None = None
+    ) -> tuple[list[Fit], Linearised | None]:
         if not any(counts):
-            return [with_settled_sizes(base) for _ in counts]
+            return [with_settled_sizes(base) for _ in counts], near
         regression = regression_at(
-            base, found.candidates, ids, alpha=alpha, prior=found.regression.prior
+            base, found.candidates, ids, alpha=alpha, prior=found.regression.prior, near=near
         )
         base, regression = with_own_sizes(base, regression)
         ranked = beam_search(regression, width=NARROW, max_effects=max(counts))
         return [
             _first_fit(base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count])
             for count in counts
-        ]
+        ], regression.linearised
 
-    def beside_what_is_left(at: Fit, counts: Sequence[int]) -> list[Fit]:
-        return searched(fit(start, at.problem.measurements, noise=with_model_form(at)), counts)
+    def beside_what_is_left(
+        at: Fit, counts: Sequence[int], near: Linearised | None = None
+    ) -> tuple[list[Fit], Linearised | None]:
+        base = fit(start, at.problem.measurements, noise=with_model_form(at))
+        return searched(base, counts, near)
 
     def learn(readings: Measurements) -> list[Fit]:
         base = fit(start, readings)
         if not whole.form and (whole.known or not base.sigma_known):  # laws that are exact
-            return searched(base, counts)
-        once = beside_what_is_left(base, counts)
+            return searched(base, counts)[0]
+        once, near = beside_what_is_left(base, counts)
         return [
-            beside_what_is_left(asked_anew(each, base), [count])[0] if count else each
+            beside_what_is_left(asked_anew(each, base), [count], near)[0][0] if count else each
             for count, each in zip(counts, once, strict=True)
         ]
 

@@ -13,6 +13,7 @@ from sk120stiff.arrays import Index
 from sk120stiff.effects import Effect
 from sk120stiff.effects.reading_drift import warm_ups
 from sk120stiff.errors import Refusal
+from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search, exchanged
 from sk120stiff.explain.select.outliers import outlying_rows
@@ -39,6 +40,7 @@ class Selection:
         outliers: Rows (of the readings given) that were set aside as outliers.
         candidates: All effects considered.
         total: Score of the whole, noise included; those under other zeros compare by it.
+        at_base: Sensitivities of all readings at the base model.
     """
 
     base: Fit
@@ -48,6 +50,7 @@ class Selection:
     outliers: Index
     candidates: tuple[Effect, ...]
     total: float
+    at_base: Linearised | None = None
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -69,6 +72,7 @@ def select(
     max_effects: int,
     alpha: float,
     prior: Mapping[str, float] | None = None,
+    near: Linearised | None = None,
 ) -> Selection:
     """Settle on a set of effects under one noise model.
 
@@ -80,10 +84,12 @@ def select(
         max_effects: Largest number of them to add.
         alpha: Probability of naming something where nothing is missing.
         prior: Probabilities of effects that the user gave.
+        near: Sensitivities at another fit of the base model.
     """
     base = fit(model, measurements, noise=noise)
     ids = tuple(effect.id for effect in model.effects)
-    regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
+    regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior, near=near)
+    at_base = regression.linearised
     slow = warm_ups(base.problem.load_cases)
     outliers = outlying_rows(regression, base.problem.whitener, slow)
     if len(outliers):
@@ -104,6 +110,7 @@ def select(
         outliers=outliers,
         candidates=tuple(candidates),
         total=score + whole + numbers * float(measurements.read[outliers].sum()),
+        at_base=at_base,
     )
 
 
@@ -116,17 +123,20 @@ def with_own_sizes(base: Fit, regression: Regression) -> tuple[Fit, Regression]:
     again = fit(problem.model, problem.measurements, noise=noise)
     ids = [effect.id for effect in problem.model.effects]
     return again, regression_at(
-        again, regression.candidates, ids, alpha=regression.alpha, prior=regression.prior
-    )
+        again, regression.candidates, ids,
+        alpha=regression.alpha, prior=regression.prior, near=regression.linearised,
+    )  # fmt: skip
 
 
 def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
     """The same selection with other effects chosen, refitted and linearised anew."""
     ids = tuple(effect.id for effect in found.base.model.effects)
     final = refit(found.base, effects)
+    linear = found.regression
     regression = regression_at(
-        final, found.candidates, ids, alpha=found.regression.alpha, prior=found.regression.prior
-    )
+        final, found.candidates, ids,
+        alpha=linear.alpha, prior=linear.prior, near=linear.linearised,
+    )  # fmt: skip
     chosen = positions(regression, effects)
     return Selection(
         base=found.base,
@@ -203,7 +213,10 @@ def _settle(
             ranked = ranked if better is ranked[0] else [better, *ranked]
         if set(laws_of(regression, ranked[0])) == set(effects):
             break
+        before = effects
         effects, final = _first_that_fits(base, regression, ranked)
+        if number and set(effects) == set(before):  # what ranks higher has no fit
+            break
         regression = regression_at(
             final, candidates, ids, alpha=regression.alpha, prior=regression.prior
         )

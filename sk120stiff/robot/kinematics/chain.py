@@ -173,7 +173,9 @@ class Chain:
         if mover and self.revolute[last]:
             cross = crossed(self.axes[last])
             parts += [placement[:3, :3] @ cross, placement[:3, :3] @ cross @ cross]
-        return _Stretch(joints, np.hstack(parts), last if mover else None)
+        constants = np.ascontiguousarray(np.hstack(parts).T)
+        place = slice(first, first + len(joints))
+        return _Stretch(place, len(joints), constants, last if mover else None)
 
     def sweep(self, q: Array) -> Sweep:
         """Forward kinematics that keeps every joint on the way.
@@ -185,62 +187,66 @@ class Chain:
             Sweep: Joint axes, joint origins, centres of mass and the end frame, in base axes.
         """
         batch = q.shape[:-1]
-        count = int(np.prod(batch, dtype=int))
-        flat = q.reshape(count, self.m)
-        moving = flat.any(axis=0)
-        sines = np.sin(flat[:, moving])[..., None, None]
-        versines = 1.0 - np.cos(flat[:, moving])[..., None, None]
-        axes = np.empty((count, self.m, 3))
-        origins = np.empty((count, self.m, 3))
-        centres = np.empty((count, self.m, 3)) if self.weighs else None
-        rotation: Array = np.broadcast_to(np.eye(3), (count, 3, 3))
-        position = np.zeros((count, 3))
+        flat = q.reshape(int(np.prod(batch, dtype=int)), self.m)
+        moving: Mask = np.asarray(flat.any(axis=0))
+        value = np.ascontiguousarray(flat[:, moving].T)
+        sines, versines = np.sin(value), 1.0 - np.cos(value)
+        # Poses come last on the way: long rows are what arithmetic is fast on.
+        count = len(flat)
+        axes, origins = np.empty((self.m, 3, count)), np.empty((self.m, 3, count))
+        centres = np.empty((self.m, 3, count)) if self.weighs else None
+        rotation: Array = np.repeat(np.eye(3)[:, :, None], count, axis=2)  # (row, column, pose)
+        position = np.zeros((3, count))
         for k, stretch in enumerate(self._stretches(moving)):
-            joints, n = stretch.joints, len(stretch.joints)
-            turned = rotation.reshape(-1, 3) @ stretch.constants
-            turned = turned.reshape(count, 3, stretch.constants.shape[1])
-            there = position[:, None, :]
-            axes[:, joints] = np.swapaxes(turned[..., :n], 1, 2)
-            origins[:, joints] = there + np.swapaxes(turned[..., n : 2 * n], 1, 2)
+            joints, n = stretch.joints, stretch.count
+            turned = stretch.constants @ rotation
+            axes[joints] = np.swapaxes(turned[:, :n], 0, 1)
+            origins[joints] = position + np.swapaxes(turned[:, n : 2 * n], 0, 1)
             at = 2 * n
             if centres is not None:
-                centres[:, joints] = there + np.swapaxes(turned[..., at : at + n], 1, 2)
+                centres[joints] = position + np.swapaxes(turned[:, at : at + n], 0, 1)
                 at += n
-            position = position + turned[..., at]
-            rotation = turned[..., at + 1 : at + 4]
+            position = position + turned[:, at]
+            rotation = turned[:, at + 1 : at + 4]
             mover = stretch.mover
             if mover is None:
                 break
             if self.revolute[mover]:
-                rotation = rotation + sines[:, k] * turned[..., at + 4 : at + 7]
-                rotation += versines[:, k] * turned[..., at + 7 :]
+                rotation = rotation + sines[k] * turned[:, at + 4 : at + 7]
+                rotation += versines[k] * turned[:, at + 7 :]
             else:
-                position = position + flat[:, mover, None] * axes[:, mover]
-                origins[:, mover] = position
+                position = position + value[k] * axes[mover]
+                origins[mover] = position
             if centres is not None:
                 own = self.centres[mover]
-                centres[:, mover] = position + rotation @ own if own.any() else position
+                centres[mover] = position + own @ rotation if own.any() else position
         return Sweep(
-            axes.reshape(*batch, self.m, 3),
-            origins.reshape(*batch, self.m, 3),
-            rotation.reshape(*batch, 3, 3),
-            position.reshape(*batch, 3),
-            None if centres is None else centres.reshape(*batch, self.m, 3),
+            _by_pose(axes, batch),
+            _by_pose(origins, batch),
+            _by_pose(rotation, batch),
+            position.T.reshape(*batch, 3),
+            None if centres is None else _by_pose(centres, batch),
         )
+
+
+def _by_pose(many: Array, batch: tuple[int, ...]) -> Array:
+    """(k, 3, N) → (..., k, 3)."""
+    return np.ascontiguousarray(many.transpose(2, 0, 1)).reshape(*batch, *many.shape[:2])
 
 
 class _Stretch(NamedTuple):
     """A rigid piece of a chain, up to the next joint that moves.
 
     Attributes:
-        joints: Those on it; the one that moves is the last.
-        constants: (3, c) in the frame where it begins: the joints' axes, their origins, the centres
+        joints, count: Those on it, and how many; the one that moves is the last.
+        constants: (c, 3) in the frame where it begins: the joints' axes, their origins, the centres
             of their masses where there are any, the end's position and rotation, and this rotation
             times the cross product with the axis of a joint that turns there, once and twice.
         mover: The joint at its end, None for the end frame.
     """
 
-    joints: Index
+    joints: slice
+    count: int
     constants: Array
     mover: int | None
 
@@ -259,4 +265,3 @@ class Sweep(NamedTuple):
     rotation: Array
     position: Array
     centres: Array | None
-
