@@ -21,7 +21,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
 from sk120stiff.explain.candidates.form_rows import FormRows, form_rows
 from sk120stiff.explain.candidates.linearised import Linearised, linearised_at
-from sk120stiff.explain.candidates.sums import Solved, Sums, weighted_sums
+from sk120stiff.explain.candidates.sums import Solved, Sums, weighing
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 
@@ -171,11 +171,15 @@ class Regression:
 
         A model that has only these columns is scored as by all of them, in a fraction of the time.
         """
-        parts = [(rows.X[:, columns], rows.y, rows.group) for rows in (self, self.form) if rows]
         size = self.X.shape[1]
+        parts = [
+            weighing(rows.X[:, columns], rows.y, rows.group, columns, size)
+            for rows in (self, self.form)
+            if rows
+        ]
 
         def weighed(weights: Array) -> Sums:
-            whole, *form = (weighted_sums(*part, weights, columns, size) for part in parts)
+            whole, *form = (part(weights) for part in parts)
             return replace(whole, form=form[0]) if form else whole
 
         return weighed

@@ -5,7 +5,7 @@ A thousand models of the same readings share XᵀX and Xᵀy; every one of them 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,7 +14,9 @@ from scipy.linalg import cho_solve
 from scipy.linalg.lapack import dposv, dtrtrs
 
 from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.measurements.poses import rows_by_label
 
+WIDE = 4  # columns per row of a pose beyond which the sums of all poses take too much room
 DEPENDENT = 1e-6  # part of a column beyond the ones before it that is rounding
 
 
@@ -75,23 +77,42 @@ class Sums:
         return self._marginals[key]
 
 
-def weighted_sums(
-    X: Array, y: Array, group: Index, weights: Array, columns: Index, size: int
-) -> Sums:
-    """Sums of rows that count `weights` (g,) times by their pose.
+def weighing(
+    X: Array, y: Array, group: Index, columns: Index, size: int
+) -> Callable[[Array], Sums]:
+    """Sums of rows as a function of how often (g,) each pose counts.
+
+    Where poses have many rows for the columns, the sums of each are made once.
 
     Args:
         X, y, group: (R, k) columns, (R,) readings and their poses.
-        weights: How often each pose counts.
         columns, size: Which of so many columns these are; the sums of the others are zero.
     """
-    root = np.sqrt(weights)[group]
-    kept = np.flatnonzero(root)
-    X, y = X[kept] * root[kept, None], y[kept] * root[kept]
-    gram, moment = np.zeros((size, size)), np.zeros(size)
-    gram[columns[:, None], columns] = X.T @ X
-    moment[columns] = X.T @ y
-    return Sums(gram, moment, float(y @ y), float(root @ root))
+    whole = np.column_stack([X, y])
+    rows = rows_by_label(group)
+    if len(rows) * whole.shape[1] <= WIDE * len(whole):
+        labels = group[[own[0] for own in rows]]
+        each = np.stack([whole[own].T @ whole[own] for own in rows])
+        count = np.array([len(own) for own in rows])
+
+        def inner(weights: Array) -> tuple[Array, float]:
+            return np.tensordot(weights[labels], each, axes=1), float(weights[labels] @ count)
+    else:
+
+        def inner(weights: Array) -> tuple[Array, float]:
+            root = np.sqrt(weights)[group]
+            kept = np.flatnonzero(root)
+            part = whole[kept] * root[kept, None]
+            return part.T @ part, float(root @ root)
+
+    def weighed(weights: Array) -> Sums:
+        product, rows = inner(weights)
+        gram, moment = np.zeros((size, size)), np.zeros(size)
+        gram[columns[:, None], columns] = product[:-1, :-1]
+        moment[columns] = product[:-1, -1]
+        return Sums(gram, moment, float(product[-1, -1]), rows)
+
+    return weighed
 
 
 @dataclass(frozen=True, eq=False)

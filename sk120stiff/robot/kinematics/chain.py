@@ -158,9 +158,9 @@ class Chain:
     def _stretch(self, first: int, last: int, *, mover: bool) -> _Stretch:
         """From joint `first` to joint `last`, whose own motion comes last, or to the end frame."""
         placement: Array = np.eye(4)
-        joints = np.arange(first, last + 1 if mover else last)
-        axes, origins, centres = (np.zeros((3, len(joints))) for _ in range(3))
-        for place, k in enumerate(joints):
+        length = last - first + int(mover)
+        axes, origins, centres = (np.zeros((3, length)) for _ in range(3))
+        for place, k in enumerate(range(first, first + length)):
             placement = placement @ self.placements[k]
             rotation, origins[:, place] = placement[:3, :3], placement[:3, 3]
             axes[:, place] = rotation @ self.axes[k]
@@ -174,8 +174,8 @@ class Chain:
             cross = crossed(self.axes[last])
             parts += [placement[:3, :3] @ cross, placement[:3, :3] @ cross @ cross]
         constants = np.ascontiguousarray(np.hstack(parts).T)
-        place = slice(first, first + len(joints))
-        return _Stretch(place, len(joints), constants, last if mover else None)
+        joints = slice(first, first + length)
+        return _Stretch(joints, length, constants, last if mover else None)
 
     def sweep(self, q: Array) -> Sweep:
         """Forward kinematics that keeps every joint on the way.
@@ -198,7 +198,7 @@ class Chain:
         rotation: Array = np.repeat(np.eye(3)[:, :, None], count, axis=2)  # (row, column, pose)
         position = np.zeros((3, count))
         for k, stretch in enumerate(self._stretches(moving)):
-            joints, n = stretch.joints, stretch.count
+            joints, n = stretch.joints, stretch.length
             turned = stretch.constants @ rotation
             axes[joints] = np.swapaxes(turned[:, :n], 0, 1)
             origins[joints] = position + np.swapaxes(turned[:, n : 2 * n], 0, 1)
@@ -238,7 +238,7 @@ class _Stretch(NamedTuple):
     """A rigid piece of a chain, up to the next joint that moves.
 
     Attributes:
-        joints, count: Those on it, and how many; the one that moves is the last.
+        joints, length: Those on it, and how many; the one that moves is the last.
         constants: (c, 3) in the frame where it begins: the joints' axes, their origins, the centres
             of their masses where there are any, the end's position and rotation, and this rotation
             times the cross product with the axis of a joint that turns there, once and twice.
@@ -246,7 +246,7 @@ class _Stretch(NamedTuple):
     """
 
     joints: slice
-    count: int
+    length: int
     constants: Array
     mover: int | None
 
