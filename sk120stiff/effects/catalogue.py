@@ -172,6 +172,11 @@ class Catalogue:
             >>> sk.CATALOGUE.effect(robot, "joint_tilt", "joint_2_l").id
             'joint_tilt:joint_2_l'
         """
+        if not isinstance(robot, Robot) or not isinstance(name, str):
+            raise InputError(
+                f"an effect needs a robot and then its name, not {robot!r} and {name!r}",
+                remedy="Write effect(load_robot('ur5e'), 'base_rocking'), for example.",
+            )
         kind = self[name]
         places = kind.places(robot)
         if where is None and len(places) == 1:

@@ -28,6 +28,11 @@ def test_it_adds_one_effect_or_several_and_stays_as_it_was() -> None:
     assert repr(Catalogue([LinkStretch])) == "Catalogue(link_stretch)"
 
 
+def test_arguments_in_the_wrong_order_are_told() -> None:
+    with pytest.raises(InputError, match="a robot and then its name, not 'joint_tilt' and"):
+        effect("joint_tilt", arm("ur5e"))  # type: ignore[arg-type]
+
+
 def test_a_name_is_looked_up_in_the_catalogue_that_is_given() -> None:
     robot = arm("sk120")
     found = effect(robot, "link_stretch", "link_2_l", catalogue=EVERYTHING)
