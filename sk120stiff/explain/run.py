@@ -77,8 +77,7 @@ def explain(
     Raises:
         InputError: No readings, too few of them, one pose alone, an effect that does not exist, or
             an option that does nothing for such readings.
-        Refusal: The data look written down wrongly, they contradict their stated uncertainty, or
-            the base model itself cannot be fitted.
+        Refusal: The data look written down wrongly, or the base model itself cannot be fitted.
 
     Examples:
         >>> import sk120stiff as sk
@@ -135,8 +134,6 @@ def explain_displacements(
     beside = None if account is None else account.fit
     final = with_selection_uncertainty(found, findings, beside)
     verdict = _verdict(findings, left)
-    if verdict == "none":
-        left.refuse_contradicted(str(measurements.path or "the measurements"))
     if remainder.significant:
         lives = where_sentences(localise(held_against(noise, found.final)))
         if account is not None:  # of another suspect in its place no more need be said

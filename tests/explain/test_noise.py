@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
-from sk120stiff.errors import Refusal
 from sk120stiff.explain import Explanation, explain, verdict_document
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.measurements import NoiseStatement
 from tests.explain.readings import SIGMA, hidden
@@ -52,10 +52,10 @@ def assert_said_to_be_too_small(answer, factor):
     assert answer.noise_floor == pytest.approx(2**0.5 * SIGMA / factor)
 
 
-def test_a_statement_exceeded_three_times_is_no_agreement(springs):
-    with pytest.raises(Refusal, match=r"scatter 4\.2 times as much as their stated") as it:
-        explain(springs, understated(101, 4.0))
-    assert "noise: {sigma: ..., unit: ...}" in str(it.value.remedy)
+def test_a_statement_that_is_a_wrong_number_is_said_to_be(springs):
+    answer = explain(springs, understated(101, 4.0))
+    assert_said_to_be_too_small(answer, 4.0)
+    assert "Correct the stated σ to about" in next_step(answer)
 
 
 def test_a_statement_exceeded_eight_times_is_a_finding(springs):

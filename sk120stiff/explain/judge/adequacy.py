@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from sk120stiff.errors import Refusal
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.identify import Fit, LackOfFit, Yardstick, lack_of_fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.checks.saturated import load_basis, pose_columns
-from sk120stiff.identify.checks.yardstick import CONTRADICTED, scatter
+from sk120stiff.identify.checks.yardstick import scatter
 from sk120stiff.measurements.poses import rows_by_label
 
 LEVEL = 1e-3  # probability below which something is missing beyond doubt
@@ -65,24 +64,6 @@ class Adequacy:
     def chance(self) -> float | None:
         """The one probability of the gap that is left; None where nothing tells the noise."""
         return None if self.whole is None else self.whole.probability
-
-    def refuse_contradicted(self, where: str) -> None:
-        """Stop where "nothing is missing" would rest on noise that the data themselves deny.
-
-        Raises:
-            Refusal: Nothing structured is left, and what is left is `CONTRADICTED` times the stated
-                σ.
-        """
-        if self.understated is None or self.understated < CONTRADICTED:
-            return
-        raise Refusal(
-            f"the readings scatter {self.understated:.2g} times as much as their stated "
-            "uncertainty, and nothing structured is left that an effect could account for",
-            where=where,
-            remedy="Whether something is missing cannot be told against such a number. Check "
-            "noise: {sigma: ..., unit: ...} in the YAML file beside the readings and that every "
-            "row's load and reading belong together; without a sigma it is estimated.",
-        )
 
     def of_the_statement(self) -> tuple[str, ...]:
         """What is to be said of a stated σ that the readings do not bear out."""
