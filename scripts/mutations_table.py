@@ -48,18 +48,44 @@ POSITIONS = _tests("absolute", "linear", "choose", "names")
 
 FAULTS: tuple[Fault, ...] = (
     *_of(
+        "robot/kinematics/chain.py", "tests/robot/test_kinematics.py", "tests/model",
+        a_mass_where_its_joint_would_be_at_rest=("position + own @ rotation if own.any() else position",
+                                                 "position + own[:, None] if own.any() else position"),
+    ),
+    *_of(
+        "explain/select/outliers.py", *_tests("explain", "outliers"),
+        a_second_outlier_beside_the_first_shift=("left[each.readings] -= (each", "left[each.readings] -= 0.0 * (each"),
+        a_shift_that_takes_nothing_of_the_readings=("residual = residual - new.T @ (new @ y)", "residual = residual + 0.0"),
+        a_shift_counted_with_what_the_fit_has=("free = -half.T @ shared", "free = half.T @ shared"),
+    ),
+    *_of(
+        "explain/candidates/linearised.py", *_tests("explain", "linearised"),
+        sensitivities_of_other_readings=("self.measurements is not other.measurements or ", ""),
+    ),
+    *_of(
+        "explain/candidates/sums.py", *_tests("explain", "regression"),
+        sums_of_a_pose_under_another_name=("np.tensordot(weights[labels], each", "np.tensordot(weights[labels[::-1]], each"),
+    ),
+    *_of(
         "stiffness/cartesian.py", *STIFFNESS,
-        sign_of_K_C_of_a_force=("np.cross(force, w) @", "np.cross(w, force) @"),
-        sign_of_K_C_of_a_moment=("np.cross(moment, w) @", "np.cross(w, moment) @"),
-        K_C_of_a_moment_not_transposed=("K_C = K_C + np.swapaxes(turned, -1, -2)",
-                                        "K_C = K_C + turned"),
-        K_C_without_the_curvature_of_a_loop=("K_Cz = K_Cz + screws.second",
-                                             "K_Cz = K_Cz - screws.second"),
+        sign_of_K_C_of_a_force=("np.cross(force, w), screws.linear", "np.cross(w, force), screws.linear"),
+        sign_of_K_C_of_a_moment=("np.swapaxes(np.cross(moment, w)", "np.swapaxes(np.cross(w, moment)"),
+        K_C_of_a_moment_not_transposed=("joints[:, None] > np.arange(w.shape[-2])",
+                                        "joints[:, None] < np.arange(w.shape[-2])"),
+        rows_of_K_C_below_the_diagonal_not_mirrored=("below = far[..., rows, :] @ np.swapaxes(near, -1, -2)",
+                                                     "below = near[..., rows, :] @ np.swapaxes(far, -1, -2)"),
+        K_C_without_the_curvature_of_a_loop=("bent = screws.second.contracted(screws.joint",
+                                             "bent = -screws.second.contracted(screws.joint"),
         symmetric_part_not_halved=("return 0.5 * (matrix + np", "return 1.0 * (matrix + np"),
     ),
     *_of(
         "stiffness/cartesian.py", *_tests("model", "model"), *_tests("effects", "contract"),
         coordinates_in_a_wrong_order=("row = there.argmax(axis=0)", "row = there.argmax(axis=1)"),
+    ),
+    *_of(
+        "robot/kinematics/chain.py", "tests/robot/test_kinematics.py", "tests/model",
+        a_mass_where_its_joint_would_be_at_rest=("position + own @ rotation if own.any() else position",
+                                                 "position + own[:, None] if own.any() else position"),
     ),
     *_of(
         "stiffness/cartesian.py", *STIFFNESS,

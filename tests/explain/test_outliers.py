@@ -9,7 +9,7 @@ from sk120stiff.effects.reading_drift import ReadingDrift, warm_ups
 from sk120stiff.explain import explain
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
-from sk120stiff.explain.select.outliers import outlying_rows
+from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
 from sk120stiff.measurements import Measurements
 from tests.explain.readings import SIGMA, base_fit, hidden
 
@@ -80,3 +80,29 @@ def test_a_tracker_that_warms_up_over_two_poses_of_many_is_named():
     answer = explain(base_fit(readings).model, readings)
     assert [finding.effect.id for finding in answer.findings] == ["reading_drift:tracker"]
     assert answer.set_aside == ()
+
+
+@pytest.mark.parametrize("rows", [[4, 5, 6], [8, 10], [0, 60, 61, 110]])
+def test_they_are_those_that_dense_least_squares_finds_one_after_the_other(rows: list[int]):
+    readings = off(hidden(poses=12, loads=10), rows, 12 * SIGMA)
+    base = base_fit(readings)
+    springs = [effect.id for effect in base.model.effects]
+    regression = regression_at(base, (), springs, alpha=0.01)
+    whitener = base.problem.whitener
+    X = regression.X[:, regression.base]
+    unit = np.eye(3 * readings.n_readings).reshape(readings.n_readings, 3, -1)
+    shifts = np.split(whitener.apply(unit), readings.n_readings, axis=1)
+    out: list[int] = []
+    while True:
+        basis = np.linalg.qr(np.hstack([X, *(shifts[row] for row in out)]))[0]
+        left = regression.y - basis @ (basis.T @ regression.y)
+        free = [each - basis @ (basis.T @ each) for each in shifts]
+        length = np.array([np.linalg.norm(each, axis=0) for each in free])
+        score = np.array([np.abs(each.T @ left) for each in shifts]) / np.maximum(length, 1e-6)
+        score[out] = 0.0
+        worst = int(score.max(axis=1).argmax())
+        if score[worst].max() <= (NEXT if out else LIMIT):
+            break
+        out.append(worst)
+    assert set(rows) <= set(out)
+    assert outlying_rows(regression, whitener).tolist() == sorted(out)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sk120stiff.robot import LinearCoupling, Mechanism, load_robot
 from sk120stiff.robot.kinematics.coupling import Curvature, JointMotion
-from sk120stiff.stiffness import complementary_stiffness, symmetric_part
+from sk120stiff.stiffness import complementary_stiffness, gravity_stiffness, symmetric_part
 from tests.stiffness.arms import (
     POINT,
     critical_load,
@@ -175,3 +175,17 @@ def test_batch_is_the_loop():
 def test_no_load_no_stiffness():
     arm = mixed_arm(0)
     assert not complementary_stiffness(arm.robot.screws(arm.poses(3, 0)), np.zeros(6)).any()
+
+
+@given(arms, wrenches, st.data())
+def test_some_rows_are_those_of_the_whole(arm, wrench, data):
+    """Of any arm, also where coordinates move several joints, and of weight as of loads."""
+    n = arm.n
+    rows = np.array(sorted(data.draw(st.sets(st.integers(0, n - 1), min_size=1))))
+    screws = arm.robot.screws(np.linspace(-0.7, 0.9, n), point=POINT)
+    for whole, some in (
+        (complementary_stiffness(screws, wrench), complementary_stiffness(screws, wrench, rows)),
+        (gravity_stiffness(screws, FORCE[:3]), gravity_stiffness(screws, FORCE[:3], rows)),
+    ):
+        assert some.shape == (len(rows), n)
+        assert np.allclose(some, whole[rows], rtol=0, atol=1e-12 * np.abs(whole).max(initial=1.0))
