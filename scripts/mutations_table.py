@@ -68,8 +68,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "stiffness/cartesian.py", *STIFFNESS,
-        sign_of_K_C_of_a_force=("np.cross(force, w), screws.linear", "np.cross(w, force), screws.linear"),
-        sign_of_K_C_of_a_moment=("np.swapaxes(np.cross(moment, w)", "np.swapaxes(np.cross(w, moment)"),
+        sign_of_K_C_of_a_force=("cross(force, w), screws.linear", "cross(w, force), screws.linear"),
+        sign_of_K_C_of_a_moment=("np.swapaxes(cross(moment, w)", "np.swapaxes(cross(w, moment)"),
         K_C_of_a_moment_not_transposed=("joints[:, None] > np.arange(w.shape[-2])",
                                         "joints[:, None] < np.arange(w.shape[-2])"),
         rows_of_K_C_below_the_diagonal_not_mirrored=("below = far[..., rows, :] @ np.swapaxes(near, -1, -2)",
@@ -119,8 +119,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "robot/kinematics/screws.py", *_tests("robot", "kinematics"), *STIFFNESS,
-        twist_about_the_wrong_side=("np.cross(self.axes, self.position[..., None, :] - self.origins)",
-                                    "np.cross(self.position[..., None, :] - self.origins, self.axes)"),
+        twist_about_the_wrong_side=("cross(self.axes, self.position[..., None, :] - self.origins)",
+                                    "cross(self.position[..., None, :] - self.origins, self.axes)"),
     ),
     *_of(
         "measurements/noise.py", *_tests("measurements", "noise", "repeats"),

@@ -181,8 +181,7 @@ class Assembly:
         z_0 = self.start(load_cases, values)
         if load_cases.zero_a is not None:  # encoders read a little otherwise without load
             z_0[:, : self.robot.n] += load_cases.zero_a - load_cases.a
-        weight = self._weight(self.law(load_cases, values, stood.onset)[1])
-        unloaded = self._sagging(z_0, load_cases, weight, self.soft(values), bare)
+        unloaded = self._sagging(z_0, load_cases, stood.rest.weight, self.soft(values), bare)
         displacement = stood.rest.screws.position - unloaded.screws.position
         readings = misread(self.of(ReadingError), load_cases, values, displacement)
         return Solution(

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Screws
+from sk120stiff.robot.rotations import cross
 
 
 def cartesian_compliance(jacobian: Array, joint_stiffness: Array) -> Array:
@@ -99,9 +100,9 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike, rows: Index | Non
     force, moment = load[..., None, :3], load[..., None, 3:]
     joints = _moved(screws.first, rows)
     w = screws.angular
-    K_C = _symmetric_rows(np.cross(force, w), screws.linear, joints)  # (..., j, m)
+    K_C = _symmetric_rows(cross(force, w), screws.linear, joints)  # (..., j, m)
     if moment.any():
-        turned = w[..., joints, :] @ np.swapaxes(np.cross(moment, w), -1, -2)
+        turned = w[..., joints, :] @ np.swapaxes(cross(moment, w), -1, -2)
         K_C = K_C + np.where(joints[:, None] > np.arange(w.shape[-2]), turned, 0.0)
     bent = None
     if screws.second is not None:
@@ -118,7 +119,7 @@ def gravity_stiffness(screws: Screws, gravity: Array, rows: Index | None = None)
         n = screws.first.shape[-1]
         return np.zeros((*screws.position.shape[:-1], n if rows is None else len(rows), n))
     joints = _moved(screws.first, rows)
-    K_g = _symmetric_rows(np.cross(gravity, screws.angular), screws.carried, joints)
+    K_g = _symmetric_rows(cross(gravity, screws.angular), screws.carried, joints)
     bent = None
     if screws.second is not None:
         bent = screws.second.contracted(screws.carried @ gravity, screws.first.shape[-1])

@@ -120,7 +120,7 @@ def with_own_sizes(base: Fit, regression: Regression) -> tuple[Fit, Regression]:
     if not problem.noise.form:
         return base, regression
     noise = replace(problem.noise, form=own_sizes(regression, problem))
-    again = fit(problem.model, problem.measurements, noise=noise)
+    again = solve_near(replace(problem, noise=noise), base.x)
     ids = [effect.id for effect in problem.model.effects]
     return again, regression_at(
         again, regression.candidates, ids,
