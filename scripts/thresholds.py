@@ -21,10 +21,11 @@ HEAD = """# The numbers that steer `explain`
 Module-level numbers of the data checks, the fit, the search, the judgement and the pilot, each with
 the reason that stands beside it in its file. Made by `python scripts/thresholds.py`.
 
-*Halved* and *doubled* say how the points of the blind benchmark change when that number alone is
-half as large or twice (a wrong name costs one, a right answer brings one), over the cases in which
-code that reads it runs; their number is beside. `scripts/thresholds_effect.py` makes them. Where
-nothing stands it was not tried.
+*Halved* and *doubled* say by how many points the sum over the cases of a blind benchmark changes
+when that number alone is half as large or twice (a right answer brings one point, a wrong name
+costs one), over those cases in which code that reads it runs; their number is beside. A number
+between a third and one is not doubled, but goes half the way to one. `scripts/thresholds_effect.py`
+makes them. Where nothing stands it was not tried, or is no other number when halved.
 
 | name | value | file | what it is | halved | doubled | cases |
 |---|---|---|---|---|---|---|
@@ -66,7 +67,7 @@ def numbers() -> list[Number]:
 def _of(file: Path) -> Iterator[Number]:
     lines = file.read_text(encoding="utf-8").splitlines()
     for node, name, value in _constants(ast.parse("\n".join(lines))):
-        above = []
+        above: list[str] = []
         for line in reversed(lines[: node.lineno - 1]):
             if not line.startswith(("# ", "#: ")):
                 break
@@ -129,6 +130,7 @@ def _effect(found: dict[tuple[str, str, str], dict[str, str]], number: Number) -
 
 
 def shown(value: float | tuple[float, ...]) -> str:
+    """The value or values as the table prints them."""
     return ", ".join(f"{x:.10g}" for x in (value if isinstance(value, tuple) else (value,)))
 
 

@@ -4,9 +4,10 @@
 
 CASES: sealed cases (`python -m tests.hidden.make_cases`). Every case is answered as it is, and it
 is noted which functions ran; then each number is changed alone, in the cases in which a function
-that reads it ran. A run that was broken off goes on where it was. Results go to
-docs/thresholds.csv, and `python scripts/thresholds.py` puts them into the table. Whole numbers are
-rounded after halving, and probabilities stay below one.
+that reads it ran. A run that was broken off goes on where it was; RUNS is of one state of the
+package. Results go to docs/thresholds.csv, and `python scripts/thresholds.py` puts them into the
+table. Whole numbers are rounded after halving, and probabilities stay below one. A case whose
+answer never comes, or that ends the process, has no points.
 """
 
 from __future__ import annotations
@@ -14,12 +15,15 @@ from __future__ import annotations
 import argparse
 import ast
 import csv
+import hashlib
 import importlib.abc
 import importlib.machinery
 import json
+import shutil
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+import threading
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
@@ -30,6 +34,7 @@ from thresholds import EFFECTS, PLACES, ROOT, Number, effects, numbers, shown
 sys.path.insert(0, str(ROOT))
 PACKAGE = ROOT / "sk120stiff"
 FACTORS = (0.5, 2.0)
+LONGEST = 120.0  # s for one command; a changed tolerance may never be met
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
@@ -112,51 +117,81 @@ def serve(changed: Sequence[str]) -> None:
 
 
 class _Served:
-    """A process that answers cases, one line each."""
+    """A process that answers cases, one line each; another takes its place where it ends."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
-        self.process = process
+    def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
+        self.command, self.environment = command, environment
         self.ran: set[str] = set()
+        self.process = self._begun()
+
+    def _begun(self) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT,
+            env=self.environment,
+        )  # fmt: skip
 
     def call(self, out: Path, err: Path, arguments: list[str]) -> tuple[int | None, float]:
-        """Exit code and seconds."""
+        """Exit code and seconds; no code where the answer never comes."""
         stdin, stdout = self.process.stdin, self.process.stdout
         assert stdin is not None
         assert stdout is not None
         stdin.write(json.dumps([str(out), str(err), *arguments]) + "\n")
         stdin.flush()
-        code, seconds, ran = json.loads(stdout.readline())
+        patience = threading.Timer(LONGEST, self.process.kill)
+        patience.start()
+        said = stdout.readline()
+        patience.cancel()
+        if not said:
+            self.end()
+            self.process = self._begun()
+            return None, LONGEST
+        code, seconds, ran = json.loads(said)
         self.ran |= set(ran)
         return code, seconds
 
+    def end(self) -> None:
+        """Let the process end."""
+        with self.process:
+            assert self.process.stdin is not None
+            self.process.stdin.close()
+
 
 @cache
-def _readers() -> dict[tuple[str, str], frozenset[str] | None]:
-    """Functions that read each number of the package, by file and name; None: its own module does.
+def _readers() -> dict[tuple[str, str], frozenset[str]]:
+    """Functions that read each number of the package, by file and name, as ``file:first line``.
 
-    What its own module makes of it (a default, another number) may be read anywhere.
+    What a module reads on its first level (a default, another number), any function of it may use:
+    there is no line then.
     """
     trees = {
         file.relative_to(PACKAGE).as_posix(): ast.parse(file.read_text(encoding="utf-8"))
         for file in sorted(PACKAGE.rglob("*.py"))
     }
     own = {(n.file, n.name) for n in numbers()}
-    out: dict[tuple[str, str], set[str] | None] = {each: set() for each in own}
+    out: dict[tuple[str, str], set[str]] = {each: set() for each in own}
     for file, tree in trees.items():
         names = {name: (file, name) for place, name in own if place == file}
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module is not None:
-                origin = node.module.removeprefix("sk120stiff.").replace(".", "/") + ".py"
                 for alias in node.names:
+                    origin = _origin(trees, node.module, alias.name)
                     if (origin, alias.name) in own:
                         names[alias.asname or alias.name] = (origin, alias.name)
         for name, place in _read(tree, None, names):
-            found = out[names[name]]
-            if place is None:
-                out[names[name]] = None
-            elif found is not None:
-                found.add(f"{file}:{place}")
-    return {key: None if found is None else frozenset(found) for key, found in out.items()}
+            out[names[name]].add(f"{file}:{'' if place is None else place}")
+    return {key: frozenset(found) for key, found in out.items()}
+
+
+def _origin(trees: Mapping[str, ast.Module], module: str, name: str) -> str:
+    """The file in which a name is defined that a module or package gives."""
+    place = module.removeprefix("sk120stiff.").replace(".", "/")
+    package = trees.get(f"{place}/__init__.py")
+    if package is None:
+        return f"{place}.py"
+    for node in package.body:
+        if isinstance(node, ast.ImportFrom) and name in {alias.name for alias in node.names}:
+            return _origin(trees, str(node.module), name)
+    return f"{place}/__init__.py"
 
 
 def _read(
@@ -177,13 +212,29 @@ def _read(
         yield from _read(child, inner if child in inside else function, names)
 
 
+def _state() -> str:
+    """A digest of the package."""
+    found = hashlib.sha256()
+    for file in sorted(PACKAGE.rglob("*.py")):
+        found.update(file.read_bytes())
+    return found.hexdigest()
+
+
 class Bench:
     """Sealed cases, answered as they are and with one number changed."""
 
-    def __init__(self, folder: Path, out: Path) -> None:
+    def __init__(self, folder: Path, out: Path, jobs: int) -> None:
         self.folder, self.out = folder.resolve(), out.resolve()
+        self.out.mkdir(parents=True, exist_ok=True)
+        state = self.out / "state.txt"
+        if state.exists() and state.read_text("utf-8") != _state():
+            raise SystemExit(f"{self.out} holds runs of another state of the package")
+        state.write_text(_state(), encoding="utf-8")
         self.cases = sorted(path.name for path in (self.folder / "cases").iterdir())
-        self.plain = {case: self.points("as-it-is", (), [case])[case] for case in self.cases}
+        parts = [self.cases[k::jobs] for k in range(jobs)]
+        with ThreadPoolExecutor(jobs) as pool:
+            found = pool.map(lambda k: self.points(f"as-it-is-{k}", (), parts[k]), range(jobs))
+        self.plain = {case: said for part in found for case, said in part.items()}
 
     def points(
         self, label: str, changed: Sequence[str], cases: Sequence[str]
@@ -202,28 +253,27 @@ class Bench:
         known = json.loads(note.read_text("utf-8")) if note.exists() else {}
         if missing := [case for case in cases if case not in known]:
             command = [sys.executable, __file__, "--serve", *changed]
-            with subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT,
-                env=ENVIRONMENT,
-            ) as process:  # fmt: skip
-                for case in missing:
-                    runner = _Served(process)
-                    answer(target, case, runner)  # type: ignore[arg-type]
-                    truth = json.loads((target / "truth" / f"{case}.json").read_text("utf-8"))
-                    share, wrong, _ = mark(truth, read_answer(target / "answers" / case))
-                    known[case] = [share - wrong, sorted(runner.ran)]
-                assert process.stdin is not None
-                process.stdin.close()
+            runner = _Served(command, ENVIRONMENT)
+            for case in missing:
+                runner.ran.clear()
+                shutil.rmtree(target / "answers" / case, ignore_errors=True)  # broken off
+                answer(target, case, runner)  # type: ignore[arg-type]
+                truth = json.loads((target / "truth" / f"{case}.json").read_text("utf-8"))
+                share, wrong, _ = mark(truth, read_answer(target / "answers" / case))
+                known[case] = [share - wrong, sorted(runner.ran)]
+            runner.end()
             note.write_text(json.dumps(known), encoding="utf-8")
         return {case: (known[case][0], frozenset(known[case][1])) for case in cases}
 
     def touched(self, number: Number) -> list[str]:
         """Cases in which code that reads a number ran."""
         readers = _readers()[number.file, number.name]
-        if readers is None:
-            inside = f"{number.file}:"
-            return [c for c in self.cases if any(f.startswith(inside) for f in self.plain[c][1])]
-        return [case for case in self.cases if readers & self.plain[case][1]]
+        return [
+            case
+            for case in self.cases
+            if any(ran in readers or f"{ran.partition(':')[0]}:" in readers
+                   for ran in self.plain[case][1])
+        ]  # fmt: skip
 
     def change(self, number: Number, factor: float, cases: Sequence[str]) -> float:
         """Change of the points, summed over the cases."""
@@ -258,14 +308,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     if asked.folder is None or asked.out is None:
         parser.error("give the folder of the cases and --out")
-    bench = Bench(asked.folder, asked.out)
+    bench = Bench(asked.folder, asked.out, asked.jobs)
     plain = sum(points for points, _ in bench.plain.values())
     print(f"as it is: {plain:.3f} points of {len(bench.cases)} cases", flush=True)
     rows = effects()
 
-    def tried(number: Number) -> tuple[Number, int, list[float]]:
+    def tried(number: Number) -> tuple[Number, int, list[str]]:
         cases = bench.touched(number)
-        return number, len(cases), [bench.change(number, f, cases) for f in FACTORS]
+        told = [
+            f"{bench.change(number, f, cases):+.2f}" if cases and number.times(f) != number.value
+            else ""
+            for f in FACTORS
+        ]  # fmt: skip
+        return number, len(cases), told
 
     wanted = [
         number
@@ -276,12 +331,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     ]
     with ThreadPoolExecutor(asked.jobs) as pool:
         for number, count, (half, twice) in pool.map(tried, wanted):
-            print(f"{number.name} ({number.file}): {half:+.2f} {twice:+.2f} of {count}", flush=True)
+            print(f"{number.name} ({number.file}): {half} {twice} of {count}", flush=True)
             value = shown(number.value)
             rows[number.file, number.name, value] = {
                 "file": number.file, "name": number.name, "value": value,
-                "halved": f"{half:+.2f}" if count else "", "cases": str(count),
-                "doubled": f"{twice:+.2f}" if count else "",
+                "halved": half, "doubled": twice, "cases": str(count),
             }  # fmt: skip
             _written(rows)
     return 0

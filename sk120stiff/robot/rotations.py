@@ -18,7 +18,7 @@ def crossed(vector: ArrayLike) -> Array:
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
-def cross(a: Array, b: Array) -> Array:
+def cross_product(a: Array, b: Array) -> Array:
     """(..., 3) cross products of vectors (..., 3), as `np.cross`, in a third of its time."""
     out = np.empty(np.broadcast_shapes(a.shape, b.shape))
     x, y, z = a[..., 0], a[..., 1], a[..., 2]

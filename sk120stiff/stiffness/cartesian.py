@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import Refusal
 from sk120stiff.robot import Screws
-from sk120stiff.robot.rotations import cross
+from sk120stiff.robot.rotations import cross_product
 
 
 def cartesian_compliance(jacobian: Array, joint_stiffness: Array) -> Array:
@@ -100,9 +100,9 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike, rows: Index | Non
     force, moment = load[..., None, :3], load[..., None, 3:]
     joints = _moved(screws.first, rows)
     w = screws.angular
-    K_C = _symmetric_rows(cross(force, w), screws.linear, joints)  # (..., j, m)
+    K_C = _symmetric_rows(cross_product(force, w), screws.linear, joints)  # (..., j, m)
     if moment.any():
-        turned = w[..., joints, :] @ np.swapaxes(cross(moment, w), -1, -2)
+        turned = w[..., joints, :] @ np.swapaxes(cross_product(moment, w), -1, -2)
         K_C = K_C + np.where(joints[:, None] > np.arange(w.shape[-2]), turned, 0.0)
     bent = None
     if screws.second is not None:
@@ -110,19 +110,25 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike, rows: Index | Non
     return _in_coordinates(K_C, screws.first, joints, rows, bent)
 
 
-def gravity_stiffness(screws: Screws, gravity: Array, rows: Index | None = None) -> Array:
+def gravity_stiffness(screws: Screws, gravity: ArrayLike, rows: Index | None = None) -> Array:
     """∂τ_g/∂z (..., r, n) [N·m/rad]: K_C of the arm's own weight, spread over its links.
 
     The formula of `complementary_stiffness` with v_max replaced by what the joint max(i,j) carries.
+
+    Args:
+        screws: Kinematics, batch shape (...), of an arm with masses; zero of one without.
+        gravity: (3,) acceleration in base axes [m/s²].
+        rows: (r,) coordinates whose rows alone are wanted; all n without.
     """
     if screws.carried is None:
         n = screws.first.shape[-1]
         return np.zeros((*screws.position.shape[:-1], n if rows is None else len(rows), n))
     joints = _moved(screws.first, rows)
-    K_g = _symmetric_rows(cross(gravity, screws.angular), screws.carried, joints)
+    g = np.asarray(gravity, dtype=float)
+    K_g = _symmetric_rows(cross_product(g, screws.angular), screws.carried, joints)
     bent = None
     if screws.second is not None:
-        bent = screws.second.contracted(screws.carried @ gravity, screws.first.shape[-1])
+        bent = screws.second.contracted(screws.carried @ g, screws.first.shape[-1])
     return _in_coordinates(K_g, screws.first, joints, rows, bent)
 
 

@@ -31,7 +31,7 @@ def test_every_tuned_number_stands_in_the_table_with_its_reason() -> None:
     script = runpy.run_path(str(DOCS.parent / "scripts" / "thresholds.py"))
     assert [n.name for n in script["numbers"]() if not n.reason] == []
     now = (DOCS / "THRESHOLDS.md").read_text(encoding="utf-8")
-    assert now == script["table"](), "write it anew: python scripts/thresholds.py --table"
+    assert now == script["table"](), "write it anew: python scripts/thresholds.py"
 
 
 @pytest.mark.parametrize("name", ["fit", "explain", "own_effect"])

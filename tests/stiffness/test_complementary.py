@@ -1,6 +1,7 @@
 """K_C against differences of torques that matrices alone produce, and against a column by hand."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
@@ -177,15 +178,28 @@ def test_no_load_no_stiffness():
     assert not complementary_stiffness(arm.robot.screws(arm.poses(3, 0)), np.zeros(6)).any()
 
 
-@given(arms, wrenches, st.data())
-def test_some_rows_are_those_of_the_whole(arm, wrench, data):
-    """Of any arm, also where coordinates move several joints, and of weight as of loads."""
-    n = arm.n
-    rows = np.array(sorted(data.draw(st.sets(st.integers(0, n - 1), min_size=1))))
-    screws = arm.robot.screws(np.linspace(-0.7, 0.9, n), point=POINT)
+@cache
+def _seen(kind: str):
+    """Joints that several coordinates move, some that one moves and that weigh, a bent closure."""
+    if kind == "cam":
+        chain = load_robot(uncoupled(mixed_urdf(2)), base="l0", tool="l3").mechanism().chain
+        return Mechanism(chain, Cam()).screws(np.array([0.4, -0.3, 0.7]))
+    robot = load_robot("ur5e") if kind == "ur5e" else mixed_arm(3).robot
+    return robot.screws(np.linspace(-0.7, 0.9, robot.n), point=POINT)
+
+
+@given(st.sampled_from(["mixed", "ur5e", "cam"]), wrenches, st.data())
+def test_some_rows_are_those_of_the_whole(kind, wrench, data):
+    screws = _seen(kind)
+    n = screws.first.shape[-1]
+    rows = np.array(data.draw(st.lists(st.integers(0, n - 1), min_size=1, unique=True)))
+    assert (screws.second is not None, screws.carried is not None) == (
+        kind == "cam",
+        kind == "ur5e",
+    )
     for whole, some in (
         (complementary_stiffness(screws, wrench), complementary_stiffness(screws, wrench, rows)),
-        (gravity_stiffness(screws, FORCE[:3]), gravity_stiffness(screws, FORCE[:3], rows)),
+        (gravity_stiffness(screws, [0, 2, -9.81]), gravity_stiffness(screws, [0, 2, -9.81], rows)),
     ):
         assert some.shape == (len(rows), n)
         assert np.allclose(some, whole[rows], rtol=0, atol=1e-12 * np.abs(whole).max(initial=1.0))

@@ -1,9 +1,9 @@
 """Readings to first order in everything that a model has and may lack.
 
-Sensitivities hardly depend on where they were taken: a spring that is a tenth softer bends the arm
-by a tenth more of a millimetre, on arms that are a metre long. So those taken at one fit serve the
-next fits of the same model to the same readings, under other noise; what the model predicts there
-is computed anew.
+Sensitivities change no more than what the model predicts: those of a scale or of an offset are in
+proportion to the deflection, those of a spring hardly depend on it. So where two fits of the same
+model to the same readings, under other noise, predict nearly the same, the sensitivities taken at
+one serve at the other. What the model predicts there is computed anew.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sk120stiff.identify import Fit
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter
 
-NEAR = 0.1  # change of the predictions, of their size, over which sensitivities serve
+NEAR = 0.01  # change of the predictions, of their size, over which sensitivities serve
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +32,8 @@ class Linearised:
         model: With everything that may be missing.
         candidates: The effects that are no part of every model.
         laws: For each of them the other laws by which it may act.
-        predicted: (N, 3) readings there [m].
-        sensitivities: (N, 3, P) by the parameters in their typical sizes.
+        predicted: (N, 3) readings where the sensitivities were taken, in reading axes [m].
+        sensitivities: (N, 3, P) change of the readings by each parameter's typical size [m].
     """
 
     measurements: Measurements
@@ -43,14 +43,15 @@ class Linearised:
     predicted: Array
     sensitivities: Array
 
-    def serves(self, other: Linearised, fit: Fit) -> bool:
-        """Do its sensitivities hold at a fit too, where `other` asks for them?"""
-        if self.measurements is not other.measurements or self.laws != other.laws:
+    def serves(self, fit: Fit, model: Model, laws: tuple[tuple[Effect, ...], ...]) -> bool:
+        """Do its sensitivities hold at a fit too, of a model with the same effects and laws?"""
+        if self.measurements is not fit.problem.measurements or self.laws != laws:
             return False
-        if self.model.effects != other.model.effects:
+        if self.model.effects != model.effects:
             return False
         change = fit.problem.measured - fit.gap - self.predicted
-        return bool(np.nansum(change**2) <= NEAR**2 * np.nansum(self.predicted**2))
+        size = np.nansum(self.predicted**2, axis=0)
+        return bool((np.nansum(change**2, axis=0) <= NEAR**2 * size).all())
 
 
 def linearised_at(
@@ -79,10 +80,11 @@ def linearised_at(
             others[k] = (*others[k], *chosen[k].nearby_laws(problem.load_cases))
     extra = tuple(Parameter(e, spec) for e in chain.from_iterable(others) for spec in e.parameters)
     full = replace(full, parameters=full.parameters + extra)  # two laws of one effect, so no sum
-    none = np.zeros(0)
-    found = Linearised(problem.measurements, full, tuple(chosen), tuple(others), none, none)
-    if near is not None and near.serves(found, fit):
-        return replace(found, predicted=near.predicted, sensitivities=near.sensitivities)
+    laws = tuple(others)
+    if near is not None and near.serves(fit, full, laws):
+        return replace(near, model=full, candidates=tuple(chosen))
     typical = np.array([parameter.spec.typical for parameter in full.parameters])
     predicted, derivative = full.predict_with_sensitivities(problem.load_cases)
-    return replace(found, predicted=predicted, sensitivities=derivative * typical)
+    return Linearised(
+        problem.measurements, full, tuple(chosen), laws, predicted, derivative * typical
+    )

@@ -21,7 +21,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect
 from sk120stiff.explain.candidates.form_rows import FormRows, form_rows
 from sk120stiff.explain.candidates.linearised import Linearised, linearised_at
-from sk120stiff.explain.candidates.sums import Solved, Sums, weighing
+from sk120stiff.explain.candidates.sums import Solved, Sums, sums_of, weighing
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 
@@ -53,7 +53,7 @@ class Regression:
         alpha: Probability at which a first effect may be named where nothing is missing.
         prior: Probabilities of effects that the user gave, by ``name`` or ``name:where``.
         form: Its part in which model-form error outweighs the noise; None where there is none.
-        linearised: What it was made from.
+        linearised: What it was made from; its sensitivities may be those of another fit nearby.
     """
 
     y: Array
@@ -186,7 +186,9 @@ class Regression:
 
     @cached_property
     def _all(self) -> Sums:
-        return self.weighing(self.every_column)(np.ones(self.poses))
+        whole = sums_of(self.X, self.y)
+        form = None if self.form is None else sums_of(self.form.X, self.form.y)
+        return replace(whole, form=form)
 
 
 def price_of_choice(regression: Regression, effect: int, variant: int, tied: bool = True) -> float:

@@ -77,6 +77,11 @@ class Sums:
         return self._marginals[key]
 
 
+def sums_of(X: Array, y: Array) -> Sums:
+    """Sums of rows (R, k) and readings (R,) that count once each."""
+    return Sums(X.T @ X, X.T @ y, float(y @ y), float(len(y)))
+
+
 def weighing(
     X: Array, y: Array, group: Index, columns: Index, size: int
 ) -> Callable[[Array], Sums]:
@@ -89,11 +94,13 @@ def weighing(
         columns, size: Which of so many columns these are; the sums of the others are zero.
     """
     whole = np.column_stack([X, y])
-    rows = rows_by_label(group)
-    if len(rows) * whole.shape[1] <= WIDE * len(whole):
-        labels = group[[own[0] for own in rows]]
-        each = np.stack([whole[own].T @ whole[own] for own in rows])
-        count = np.array([len(own) for own in rows])
+    poses = rows_by_label(group)
+    if len(poses) * whole.shape[1] <= WIDE * len(whole):
+        labels = group[[rows[0] for rows in poses]]
+        each = np.empty((len(poses), whole.shape[1], whole.shape[1]))
+        for out, rows in zip(each, poses, strict=True):
+            np.matmul(whole[rows].T, whole[rows], out=out)
+        count = np.array([len(rows) for rows in poses])
 
         def inner(weights: Array) -> tuple[Array, float]:
             return np.tensordot(weights[labels], each, axes=1), float(weights[labels] @ count)
@@ -106,11 +113,11 @@ def weighing(
             return part.T @ part, float(root @ root)
 
     def weighed(weights: Array) -> Sums:
-        product, rows = inner(weights)
+        product, counted = inner(weights)
         gram, moment = np.zeros((size, size)), np.zeros(size)
         gram[columns[:, None], columns] = product[:-1, :-1]
         moment[columns] = product[:-1, -1]
-        return Sums(gram, moment, float(product[-1, -1]), rows)
+        return Sums(gram, moment, float(product[-1, -1]), counted)
 
     return weighed
 

@@ -123,13 +123,14 @@ def _searched(
 ) -> _Searched:
     """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,).
 
-    A shift that joins the fit adds orthonormal rows to `half` and changes none of the others.
+    A shift that joins the fit adds rows to `half`, with which halfᵀ half is the fit again.
     """
     out: list[int] = []
+    count = 1 + max((int(each.readings.max()) for each in shifts), default=-1)
     half = _half(X, prior)
     residual = y - half.T @ (half @ y)
     leverage = (half**2).sum(0)
-    total, left, score = (np.zeros((sum(len(s.readings) for s in shifts), 3)) for _ in range(3))
+    total, left, score = (np.zeros((count, 3)) for _ in range(3))
     for each in shifts:
         total[each.readings] = (each.columns**2).sum(0)
         left[each.readings] = total[each.readings] - (each.along(half) ** 2).sum(0)
@@ -157,7 +158,7 @@ def _searched(
 
 
 def _beyond(half: Array, shifts: _Shifts, reading: int) -> Array:
-    """(k, R) orthonormal rows by which a free shift of one reading goes beyond `half` (P, R)."""
+    """(k, R) rows that join `half` (P, R) when a shift of one reading is free, drawn to nothing."""
     own = shifts.columns[:, int(np.flatnonzero(shifts.readings == reading)[0])]
     shared = half[:, shifts.rows] @ own
     free = -half.T @ shared

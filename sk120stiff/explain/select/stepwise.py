@@ -129,7 +129,7 @@ def with_own_sizes(base: Fit, regression: Regression) -> tuple[Fit, Regression]:
 
 
 def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
-    """The same selection with other effects chosen, refitted and linearised anew."""
+    """The same selection with other effects chosen, refitted and linearised there."""
     ids = tuple(effect.id for effect in found.base.model.effects)
     final = refit(found.base, effects)
     linear = found.regression

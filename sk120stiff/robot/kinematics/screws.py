@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.robot.kinematics.chain import Chain, Sweep, VirtualJoint
 from sk120stiff.robot.kinematics.coupling import Coupling, Curvature
-from sk120stiff.robot.rotations import cross
+from sk120stiff.robot.rotations import cross_product
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Screws:
     @cached_property
     def linear(self) -> Array:
         """(..., m, 3) linear parts v_k of the unit twists at the point [m per rad, or 1]."""
-        turned = cross(self.axes, self.position[..., None, :] - self.origins)
+        turned = cross_product(self.axes, self.position[..., None, :] - self.origins)
         if self.revolute.all():
             return turned
         return np.where(self.revolute[:, None], turned, self.axes)
@@ -167,5 +167,5 @@ def _carried(chain: Chain, swept: Sweep) -> Array:
     moments = chain.masses[:, None] * swept.centres
     beyond = np.flip(np.cumsum(np.flip(moments, -2), axis=-2), -2)
     mass = np.flip(np.cumsum(np.flip(chain.masses)))[:, None]
-    turned = cross(swept.axes, beyond - mass * swept.origins)
+    turned = cross_product(swept.axes, beyond - mass * swept.origins)
     return np.where(chain.revolute[:, None], turned, mass * swept.axes)
