@@ -60,7 +60,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/candidates/linearised.py", *_tests("explain", "linearised"),
-        sensitivities_of_other_readings=("self.measurements is not other.measurements or ", ""),
+        sensitivities_of_other_readings=("self.measurements is not fit.problem.measurements or ", ""),
     ),
     *_of(
         "explain/candidates/sums.py", *_tests("explain", "regression"),
