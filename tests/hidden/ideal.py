@@ -29,8 +29,9 @@ from .judge import mark
 from .observer import LENIENT, STRICT, Candidates, Law, Whole, decide, posterior
 from .score import level_of
 
-STRENGTHS = {"L1": (26.0, 80.0), "L2": (8.0, 25.0), "L3": (4.0, 8.0), "L6": (12.0, 45.0),
-             "L9": (10.0, 60.0), "L1.plans": (26.0, 80.0), "L2.plans": (8.0, 25.0)}  # fmt: skip
+STRENGTHS = {"L1": (26.0, 80.0), "L2": (8.0, 25.0), "L3": (4.0, 8.0), "L4": (8.0, 16.0),
+             "L6": (12.0, 45.0), "L9": (10.0, 60.0), "L1.plans": (26.0, 80.0),
+             "L2.plans": (8.0, 25.0)}  # fmt: skip
 BROAD = (2.0, 200.0)
 # What is known of sizes. broad: how they relate in the generator, strengths of 2 to 200, each
 # order of magnitude as likely; known: the strengths of the level; loose: signs alone, 2 to 200.
@@ -191,7 +192,8 @@ def case_line(path: Path, given: argparse.Namespace) -> dict[str, Any]:
     }  # fmt: skip
     for look, draws in said.items():
         told = [[group for group in groups if group] for groups in draws]
-        marks = [mark(truth, Answer("named", groups))[:2] for groups in told]
+        verdict = "ambiguous" if out["level"] == "L4" else "named"  # a set brings next poses
+        marks = [mark(truth, Answer(verdict, each, next_poses=True))[:2] for each in told]
         out[look] = float(np.mean([right for right, _ in marks]))
         if look.endswith("alarm"):
             out[look] = sum(map(len, told)) / given.draws / len(own)
