@@ -10,6 +10,7 @@ from sk120stiff.explain import Explanation, explain, verdict_document
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.measurements import NoiseStatement
+from sk120stiff.show.stories.verdicts import title_of
 from tests.explain.readings import SIGMA, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 from tests.hidden.generator.causes_joint import FrictionHysteresis, Memory
@@ -50,6 +51,7 @@ def assert_said_to_be_too_small(answer, factor):
     assert "times too small; nothing structured is left" in " ".join(answer.noise_reasons)
     assert answer.noise.sigma == SIGMA / factor  # it stays the yardstick
     assert answer.noise_floor == pytest.approx(2**0.5 * SIGMA / factor)
+    assert title_of(answer) == "Nothing structured is missing, but σ looks too small"
 
 
 def test_a_statement_that_is_a_wrong_number_is_said_to_be(springs):

@@ -13,11 +13,20 @@ FEW = 2  # rivals that are told in the first lines; the evidence lists all
 def title_of(answer: Explanation) -> str:
     """Heading of the report."""
     return {
-        "none": "Model and measurement agree",
+        "none": _title_of_none(answer),
         "named": "Why model and measurement disagree",
         "ambiguous": "Why model and measurement disagree: more than one name fits",
         "outside": "Model and measurement disagree, and no cause is confirmed",
     }[answer.verdict]
+
+
+def _title_of_none(answer: Explanation) -> str:
+    left = answer.adequacy
+    if left.understated is not None:
+        return "Nothing structured is missing, but σ looks too small"
+    if answer.noise_floor is None or (left.chance is not None and left.chance < DOUBTFUL):
+        return "No effect can be named"
+    return "Model and measurement agree"
 
 
 def lead_of(answer: Explanation) -> str:
