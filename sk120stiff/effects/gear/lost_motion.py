@@ -15,7 +15,9 @@ from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot
 
-FLANKS = (0.02, 0.06, 0.15)  # of the largest torque: over which teeth may take hold
+# of the largest torque: over which teeth may take hold. Gear makers read lost motion off at 3 % of
+# the rated torque; what gives way over more of it is the gear's first stiffness (`hardening.py`)
+FLANKS = (0.02, 0.06)
 HALF, FLANK = "half_width", "_flank_"
 SIDES = {"": 0, "_positive": 1, "_negative": -1}  # end of a name → sign of the torque
 
