@@ -2,8 +2,9 @@
 
 The law, per axis and in the axes of the readings: a displacement is a loaded reading minus the mean
 of `zero_count` zero readings. The loaded reading has the variance σ² + (growth·|d|)², or s² where
-the row states its own, plus (growth·|d|)². The zero reading has σ²/zero_count. Rows that subtract
-the same zero reading share its error, whatever the number of rows.
+the row states its own, plus (growth·|d|)². The zero reading has σ²/zero_count, or as much as the
+loaded readings that subtract it state on average. Rows that subtract the same zero reading share
+its error, whatever the number of rows.
 
 What was stated is the yardstick: no scatter overrules it. Noise that grows with the displacement
 was stated, or shows in true repeats; nothing else tells it from a cause that grows with the load.
@@ -18,7 +19,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.branches import TOLD
 from sk120stiff.measurements.data import Measurements
@@ -125,15 +126,16 @@ class NoiseModel:
             (15, 3) 14.1 µm
         """
         count = measurements.n_readings
-        own = np.full((count, 3), self.sigma**2)
+        own = zero = np.full((count, 3), self.sigma**2)
         if measurements.sigma is not None:
             own = measurements.sigma**2
+            group = np.arange(count) if self.zero == "separate" else measurements.zero_group
+            zero = _mean_of_groups(own, group, instead=self.sigma**2)
         if self.growth > 0:
             own = own + (self.growth * _sizes(measurements, sizes)) ** 2
         if not measurements.read.all():
             own = np.where(measurements.read, own, np.inf)
-        zero = np.repeat(self.sigma**2 / measurements.zero_count[:, None], 3, axis=1)
-        return own, zero
+        return own, zero / measurements.zero_count[:, None]
 
     def whitener(
         self,
@@ -255,6 +257,16 @@ def _from_repeats(found: Repeated | None) -> tuple[float, float]:
     if found is None or found.sigma <= FINEST:
         return _START, 0
     return found.sigma, found.freedom
+
+
+def _mean_of_groups(values: Array, group: Integers, *, instead: float) -> Array:
+    """(N, 3) mean of the values (N, 3) of each row's group; `instead` where none is known."""
+    known = np.isfinite(values)
+    _, index = np.unique(group, return_inverse=True)
+    sums, counts = np.zeros((2, int(index.max()) + 1, 3))
+    np.add.at(sums, index, np.where(known, values, 0.0))
+    np.add.at(counts, index, known)
+    return np.where(counts > 0, sums / np.maximum(counts, 1.0), instead)[index]
 
 
 def _sizes(measurements: Measurements, sizes: ArrayLike | None) -> Array:

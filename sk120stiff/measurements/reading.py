@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff import files, units
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements import columns
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute, is_absolute, read_absolute
@@ -19,8 +20,9 @@ from sk120stiff.measurements.columns import Roles
 from sk120stiff.measurements.data import Measurements, NoiseStatement
 from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
 from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
-from sk120stiff.measurements.subtraction import displacements, undisplaced
+from sk120stiff.measurements.subtraction import Displacements, displacements, undisplaced
 from sk120stiff.measurements.table import Table, read_table
+from sk120stiff.measurements.zero import of_displacement
 
 if TYPE_CHECKING:
     from sk120stiff.measurements.settings import Settings, SettingsFile
@@ -146,7 +148,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         force_frame=settings.force.frame,
         displacement_frame=settings.displacement.frame,
         noise=noise,
-        sigma=None if rows.sigma is None else rows.sigma[kept],
+        sigma=None if rows.sigma is None else _of_one_reading(rows.sigma[kept], found, roles),
         order=None if rows.order is None else rows.order[kept],
         time=None if rows.time is None else rows.time[kept],
         branch=None if branch is None else tuple(branch[i] for i in kept),
@@ -170,6 +172,16 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         notes=(*_assumed_frames(settings, absolute, rows), *found.notes, *told),
         data_hash=data_hash,
     )
+
+
+def _of_one_reading(sigma: Array, found: Displacements, roles: Roles) -> Array:
+    """(N, 3) standard uncertainty of the loaded reading, from that of what the row states.
+
+    A displacement has that of two readings: its own, and the mean of its zero ones.
+    """
+    if roles.measured != columns.DISPLACEMENTS:
+        return sigma
+    return np.asarray(sigma / of_displacement(found.count))
 
 
 def _branch(rows: Rows) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:

@@ -89,3 +89,11 @@ def since_zero(clock: Array, zero: Array | None, group: Integers) -> Array:
     known = np.full(len(clock), np.nan) if zero is None else zero
     since: Array = clock - np.where(np.isnan(known), first[index] - interval, known)
     return since
+
+
+def of_displacement(zero_count: Integers) -> Array:
+    """(N, 1) standard uncertainty of a displacement over that of one reading.
+
+    It is the difference of a loaded reading and the mean of `zero_count` (N,) others.
+    """
+    return np.asarray(np.sqrt(1.0 + 1.0 / zero_count[:, None]))

@@ -48,6 +48,11 @@ COUNTS = [2, 1, 2, 4, 2, 1, 1, 2]
 def test_covariance_is_that_of_simulated_readings(zero: str, growth: float, own: bool) -> None:
     """Readings are drawn one by one: zero readings, their mean, the loaded reading minus it."""
     stated = np.linspace(5e-6, 30e-6, 24).reshape(8, 3) if own else None
+    idle = np.full((8, 3), SIGMA)  # of one zero reading: as those state that subtract it
+    if stated is not None:
+        alike = [[k for k, p in enumerate(MIXED) if p == pose] for pose in MIXED]
+        idle = np.array([np.sqrt((stated[rows] ** 2).mean(axis=0)) for rows in alike])
+        idle = idle if zero == "shared" else stated
     m = make(MIXED, zero=zero, zero_count=COUNTS, sigma=stated)
     rng = np.random.default_rng(8)
     draws = 16_000
@@ -56,7 +61,7 @@ def test_covariance_is_that_of_simulated_readings(zero: str, growth: float, own:
     noise = np.empty((draws, 8, 3))
     for i, pose in enumerate(MIXED):
         if zero == "separate" or pose not in means:
-            zeros = rng.normal(scale=SIGMA, size=(draws, COUNTS[i], 3))
+            zeros = idle[i] * rng.normal(size=(draws, COUNTS[i], 3))
             means[pose] = zeros.mean(axis=1)
         loaded = rng.normal(size=(draws, 3)) * (SIGMA if stated is None else stated[i])
         loaded += rng.normal(scale=growth * size[i], size=(draws, 3))
@@ -82,7 +87,12 @@ def dense(model: NoiseModel, m: Measurements, sizes: Floats | None = None) -> Fl
         for j in range(count):
             for axis in range(3):
                 share = i == j or (model.zero == "shared" and m.zero_group[i] == m.zero_group[j])
-                value = model.sigma**2 / m.zero_count[i] if share else 0.0
+                idle = model.sigma**2
+                if m.sigma is not None:  # the zero reading is as good as those that subtract it
+                    same = m.zero_group == m.zero_group[i]
+                    rows = [i] if model.zero == "separate" else np.flatnonzero(same)
+                    idle = float(np.mean(m.sigma[rows, axis] ** 2))
+                value = idle / m.zero_count[i] if share else 0.0
                 if i == j:
                     value += model.sigma**2 if m.sigma is None else m.sigma[i, axis] ** 2
                     value += (model.growth * sizes[i, axis]) ** 2
@@ -167,11 +177,26 @@ def test_zeros_that_nobody_described_are_as_the_model_says() -> None:
 
 def test_a_reading_of_a_quarter_of_the_weight_has_twice_the_sigma() -> None:
     weights = np.array([1.0, 0.25, 1.0, 1.0, 0.04, 1.0, 1.0, 1.0])
-    stated = SIGMA / np.sqrt(weights)[:, None] * np.ones(3)
     x = np.random.default_rng(2).normal(size=(8, 3)) * SIGMA
-    weighted = NoiseModel(SIGMA).whitener(make(MIXED, zero_count=COUNTS), weights=weights)
-    rows_own = NoiseModel(SIGMA).whitener(make(MIXED, zero_count=COUNTS, sigma=stated))
-    np.testing.assert_allclose(weighted.apply(x), rows_own.apply(x), rtol=1e-12)
+    m, model = make(MIXED, zero_count=COUNTS), NoiseModel(SIGMA)
+    covariance = dense(model, m, np.zeros(8))
+    covariance += np.diag(np.repeat((1.0 / weights - 1.0) * SIGMA**2, 3))
+    expected = np.linalg.solve(np.linalg.cholesky(covariance), x.ravel())
+    np.testing.assert_allclose(model.whitener(m, weights=weights).apply(x), expected, rtol=1e-12)
+
+
+def test_a_zero_reading_is_as_good_as_those_that_subtract_it() -> None:
+    """What rows state of their displacements is what the noise has, whatever else is told."""
+    stated = np.linspace(3e-6, 30e-6, 24).reshape(8, 3)
+    own, zero = NoiseModel(SIGMA, zero="separate").variances(make(MIXED, sigma=stated))
+    np.testing.assert_allclose(own + zero, 2.0 * stated**2, rtol=1e-14)
+    _, shared = NoiseModel(SIGMA).variances(make(["a", "b", "a"], sigma=stated[:3]))
+    np.testing.assert_allclose(shared[0], 0.5 * (stated[0] ** 2 + stated[2] ** 2), rtol=1e-14)
+    np.testing.assert_allclose(shared[1], stated[1] ** 2, rtol=1e-14)
+    blank = np.array([[3e-6, np.nan, 3e-6]])
+    moved = np.array([[1e-4, np.nan, 1e-4]])
+    _, alone = NoiseModel(SIGMA).variances(make(["a"], displacement=moved, sigma=blank))
+    np.testing.assert_allclose(alone, [[9e-12, SIGMA**2, 9e-12]], rtol=1e-14)
 
 
 def test_large_data_are_whitened_in_milliseconds() -> None:

@@ -58,7 +58,8 @@ def test_every_column_and_key_arrives_in_si(tmp_path: Path) -> None:
     np.testing.assert_allclose(
         m.displacement, [[1.5e-3, 2.5e-4, 1e-3], [3e-3, 5e-4, 2e-3], [0, 0, -1e-3]]
     )
-    np.testing.assert_allclose(m.sigma, np.tile([1e-5, 2e-5, 3e-5], (3, 1)))
+    # told of displacements, which are two readings each
+    np.testing.assert_allclose(m.sigma, np.tile([1e-5, 2e-5, 3e-5], (3, 1)) / np.sqrt(2.0))
     np.testing.assert_array_equal(m.order, [1, 2, 3])
     np.testing.assert_array_equal(m.time, [0, 30, 60])
     assert m.branch == ("load", "unload", "load")
