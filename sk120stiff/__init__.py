@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from sk120stiff.identify.fit import Fit
     from sk120stiff.identify.run import fit
     from sk120stiff.measurements import (
+        Instrument,
         Measurements,
         NoiseModel,
         read_measurements,
@@ -67,7 +68,7 @@ _HOME = {
         "sk120stiff.exports": "export",
         "sk120stiff.identify.fit": "Fit",
         "sk120stiff.identify.run": "fit",
-        "sk120stiff.measurements": "Measurements NoiseModel read read_measurements "
+        "sk120stiff.measurements": "Measurements Instrument NoiseModel read read_measurements "
         "write_measurements",
         "sk120stiff.model": "Model base_model joint_spring_model loaded_stiffness predict "
         "read_model stiffness write_model",
@@ -89,6 +90,7 @@ __all__ = [
     "Explanation",
     "Fit",
     "InputError",
+    "Instrument",
     "Measurements",
     "Model",
     "NoiseModel",

@@ -40,7 +40,7 @@ from sk120stiff.explain.select.best_selection import (
 )
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
-from sk120stiff.identify import Fit, refuse_unusable
+from sk120stiff.identify import Fit, as_seen, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
@@ -111,7 +111,7 @@ def explain_displacements(
     options = options or Options()
     tell = progress or _silent
     _refuse_unexplainable(model, measurements)
-    sound = _sound(model, measurements)
+    sound = _sound(model, as_seen(model.robot, measurements))
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
     under = _selections(model, used, options, catalogue)

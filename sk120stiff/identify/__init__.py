@@ -13,7 +13,7 @@ from sk120stiff.identify.checks.held_out import (
 from sk120stiff.identify.checks.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
 from sk120stiff.identify.checks.null_space import unseen_reasons, weak_directions, why_unseen
 from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
-from sk120stiff.identify.estimate import likelier, refuse_unusable
+from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.report import fit_report
 from sk120stiff.identify.run import fit, known_model, refuse_for_positions
@@ -31,6 +31,7 @@ __all__ = [
     "Learn",
     "Problem",
     "Yardstick",
+    "as_seen",
     "compare",
     "contradiction",
     "drawn_parts",

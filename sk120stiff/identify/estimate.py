@@ -11,8 +11,16 @@ from sk120stiff.identify.robust import solve_robustly
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve
-from sk120stiff.measurements import Measurements, NoiseModel, candidates, decided
+from sk120stiff.measurements import (
+    Measurements,
+    NoiseModel,
+    candidates,
+    decided,
+    may_have_rays,
+    seen_from,
+)
 from sk120stiff.model import Model
+from sk120stiff.robot import Robot
 
 IN_DOUBT = 4.6  # twice the log-likelihood, a tenfold one, that separate zero readings must gain
 FEWEST = 2  # readings; one alone leaves nothing to judge a fit by
@@ -28,7 +36,8 @@ def fit_displacements(
 ) -> Fit:
     """See `sk120stiff.identify.run.fit`."""
     refuse_unusable(model, measurements)
-    model, used = model.under(measurements.gravity), measurements.masked()
+    model = model.under(measurements.gravity)
+    used = as_seen(model.robot, measurements).masked()
     open_ = [noise] if noise is not None else candidates(used)
     fits = [solve(Problem(model, used, each), method=method) for each in open_]
     found = fits[likelier([2.0 * each.log_likelihood for each in fits])]
@@ -36,6 +45,17 @@ def fit_displacements(
         found = solve_robustly(found.problem, method=method)
     reasons = () if noise is not None else decided(found.problem.noise, used)
     return _checked(replace(found, reasons=reasons), measurements)
+
+
+def as_seen(robot: Robot, measurements: Measurements) -> Measurements:
+    """The readings with what their instrument makes the axes of each have in common.
+
+    See `line_of_sight.seen_from`.
+    """
+    if not may_have_rays(measurements):
+        return measurements
+    known = measurements.with_joints(robot.actuated, robot.kinds)
+    return seen_from(measurements, robot.screws(known.joints, point=known.point).position)
 
 
 def likelier(support: Sequence[float]) -> int:

@@ -2,10 +2,12 @@
 
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
-from sk120stiff.measurements.data import Measurements, NoiseStatement
+from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.joining import join_measurements
+from sk120stiff.measurements.line_of_sight import may_have_rays, seen_from
 from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.noise import NoiseModel, candidates, decided
+from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.measurements.reading import read_measurements
 from sk120stiff.measurements.whitening import Whitener
 from sk120stiff.measurements.writing import write_measurements
@@ -15,6 +17,7 @@ __all__ = [
     "Absolute",
     "Channels",
     "FormWhitener",
+    "Instrument",
     "Measurements",
     "ModelForm",
     "NoiseModel",
@@ -23,6 +26,8 @@ __all__ = [
     "candidates",
     "decided",
     "join_measurements",
+    "may_have_rays",
     "read_measurements",
+    "seen_from",
     "write_measurements",
 ]

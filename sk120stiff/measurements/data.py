@@ -18,6 +18,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute
 from sk120stiff.measurements.cells_read import refuse_unread
 from sk120stiff.measurements.frame import Tabular
+from sk120stiff.measurements.noise_statement import UNSTATED, NoiseStatement
 from sk120stiff.measurements.poses import (
     SAME_JOINT,
     refuse_differing_joints,
@@ -31,29 +32,9 @@ Zero = Literal["shared", "separate", "unknown"]
 
 # Row fields, cut together by `select`.
 PER_ROW = (
-    "pose", "joints", "wrench", "displacement", "sigma", "order", "time", "branch", "repeat",
-    "use", "zero_group", "zero_count", "zero_order", "zero_time", "zero_joints", "line",
+    "pose", "joints", "wrench", "displacement", "sigma", "along", "order", "time", "branch",
+    "repeat", "use", "zero_group", "zero_count", "zero_order", "zero_time", "zero_joints", "line",
 )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class NoiseStatement:
-    """What the data say of their own noise; None stands for "not said".
-
-    Args:
-        sigma: Standard uncertainty of one reading per axis, m.
-        growth: Part that grows with the displacement: standard uncertainty per metre of
-            displacement.
-    """
-
-    sigma: float | None = None
-    growth: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.sigma is not None and not 0 < self.sigma < np.inf:
-            raise InputError(f"a noise sigma of {self.sigma} m is not positive")
-        if self.growth is not None and not 0 <= self.growth < 1:
-            raise InputError(f"a noise growth of {self.growth} is not between 0 and 1")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,6 +56,8 @@ class Measurements(Tabular):
             ``"separate"``: each row its own; ``"unknown"``: nobody said (then `zero_group` is what
             sharing within a pose would mean).
         sigma: (N, 3) standard uncertainty of each loaded reading, m (NaN where not read), or None.
+        along: (N, 3) standard uncertainty along the ray of the instrument, as a vector along it, m,
+            base axes; NaN: errors of the three axes are independent (`line_of_sight.py`).
         order, time, branch, repeat: When and how each row was read, or None. `branch` holds load,
             unload or "".
         use: (N,) False masks a row. Nothing is deleted.
@@ -111,9 +94,10 @@ class Measurements(Tabular):
     force_point: Array = field(default_factory=lambda: np.zeros(0))
     force_frame: Frame = "base"
     displacement_frame: Frame = "base"
-    noise: NoiseStatement = NoiseStatement()
+    noise: NoiseStatement = UNSTATED
     zero: Zero = "unknown"
     sigma: Array | None = None
+    along: Array | None = None
     order: Array | None = None
     time: Array | None = None
     branch: tuple[str, ...] | None = None
@@ -147,7 +131,7 @@ class Measurements(Tabular):
         self._array("point", (3,))
         self._array("force_point", (3,), default=self.point)
         self._array("gravity", (3,))
-        for name in ("displacement", "sigma"):
+        for name in ("displacement", "sigma", "along"):
             self._array(name, (count, 3), may_be_nan=True)
         for name in ("order", "time"):
             self._array(name, (count,))

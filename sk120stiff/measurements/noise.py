@@ -6,6 +6,9 @@ the row states its own, plus (growth·|d|)². The zero reading has σ²/zero_cou
 loaded readings that subtract it state on average. Rows that subtract the same zero reading share
 its error, whatever the number of rows.
 
+An instrument that is sharper along its ray than across it makes the errors of one reading's axes go
+together; such readings are whitened along the ray and across it (`line_of_sight.py`).
+
 What was stated is the yardstick: no scatter overrules it. Noise that grows with the displacement
 was stated, or shows in true repeats; nothing else tells it from a cause that grows with the load.
 """
@@ -23,6 +26,7 @@ from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.branches import TOLD
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.line_of_sight import SEEN, in_axes_of_sight
 from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.repeats import ENOUGH, Repeated, repeated
 from sk120stiff.measurements.whitening import Whitener
@@ -125,10 +129,17 @@ class NoiseModel:
             >>> print(loaded.shape, f"{1e6 * (loaded + zero).max() ** 0.5:.1f} µm")
             (15, 3) 14.1 µm
         """
+        stated = None if measurements.sigma is None else measurements.sigma**2
+        return self._variances(measurements, sizes, stated)
+
+    def _variances(
+        self, measurements: Measurements, sizes: ArrayLike | None, stated: Array | None
+    ) -> tuple[Array, Array]:
+        """See `variances`; `stated` (N, 3) are those that rows state, along any axes."""
         count = measurements.n_readings
         own = zero = np.full((count, 3), self.sigma**2)
-        if measurements.sigma is not None:
-            own = measurements.sigma**2
+        if stated is not None:
+            own = stated
             group = np.arange(count) if self.zero == "separate" else measurements.zero_group
             zero = _mean_of_groups(own, group, instead=self.sigma**2)
         if self.growth > 0:
@@ -155,17 +166,24 @@ class NoiseModel:
             >>> whitener.apply(readings.displacement).shape
             (45,)
         """
-        own, zero = self.variances(measurements, sizes)
+        stated = axes = None
+        if measurements.sigma is not None:
+            stated = measurements.sigma**2
+            if measurements.along is not None:
+                stated, axes = in_axes_of_sight(measurements.along, measurements.sigma)
+        own, zero = self._variances(measurements, sizes, stated)
         group = measurements.zero_group
         if self.zero == "separate":
             own, zero, group = own + zero, np.zeros_like(own), np.arange(len(own))
         if weights is not None:
             own = own / weights[:, None]
-        noise = Whitener(own, zero, group)
+        noise = Whitener(own, zero, group, axes)
         return FormWhitener(noise, self.form, measurements) if self.form else noise
 
     def covariance(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Array:
         """Dense covariance (3, N, N) per axis, m²: for a look at few readings, not for fits.
+
+        What an instrument's ray makes the axes of one reading have in common is not in it.
 
         Examples:
             >>> import sk120stiff as sk
@@ -218,7 +236,7 @@ def candidates(measurements: Measurements) -> list[NoiseModel]:
 
 def decided(noise: NoiseModel, measurements: Measurements) -> tuple[str, ...]:
     """What was taken for noise beyond the data's own description, in sentences."""
-    said = [note for note in measurements.notes if TOLD in note]
+    said = [note for note in measurements.notes if TOLD in note or SEEN in note]
     if measurements.zero == "unknown" and len(candidates(measurements)) > 1:
         said.append(
             f"Nobody said how zero readings were shared; {noise.zero} ones explain the readings "

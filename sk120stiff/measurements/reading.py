@@ -17,7 +17,8 @@ from sk120stiff.measurements import columns
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute, is_absolute, read_absolute
 from sk120stiff.measurements.branches import branches_by_order
 from sk120stiff.measurements.columns import Roles
-from sk120stiff.measurements.data import Measurements, NoiseStatement
+from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
 from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
 from sk120stiff.measurements.subtraction import Displacements, displacements, undisplaced
@@ -119,7 +120,14 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         str(table.path),
         SAME_JOINT if roles.measured == columns.DISPLACEMENTS else SAME_POSE,
     )
-    noise = NoiseStatement(_sigma(file), settings.noise.growth)
+    noise = NoiseStatement(_sigma(file), settings.noise.growth, _instrument(file))
+    if noise.instrument is not None and (absolute is not None or rows.sigma is not None):
+        raise InputError(
+            "an instrument's uncertainty along its ray serves readings of displacements that state "
+            "none of their own",
+            where=file.place("noise.instrument"),
+            remedy="Write noise: {sigma: ..., unit: ...}, or keep the columns sx, sy, sz alone.",
+        )
     point = np.zeros(3)
     if settings.point is not None:
         point = np.array(settings.point.in_metres(file.place("point.unit")))
@@ -205,6 +213,27 @@ def _assumed_frames(settings: Settings, absolute: Absolute | None, rows: Rows) -
         )
         if not said
     ]
+
+
+def _instrument(file: SettingsFile) -> Instrument | None:
+    told, unit = file.settings.noise.instrument, file.settings.noise.unit
+    if told is None:
+        return None
+    place = units.to_si(told.xyz, told.unit, "length", where=file.place("noise.instrument.unit"))
+    along, across, along_per_m, across_per_m = units.to_si(
+        (told.along, told.across, told.along_per_m, told.across_per_m),
+        unit,
+        "length",
+        where=file.place("noise.unit"),
+    )
+    if file.settings.noise.sigma is not None:
+        raise InputError(
+            "both a standard uncertainty and an instrument are stated",
+            where=file.place("noise.instrument"),
+            remedy="Keep 'sigma' where all axes are alike, else 'instrument'.",
+        )
+    x, y, z = (float(v) for v in place)
+    return Instrument((x, y, z), along, across, along_per_m, across_per_m)
 
 
 def _sigma(file: SettingsFile) -> float | None:

@@ -82,10 +82,25 @@ class PayloadEntry(_Entry):
     fit: bool = False
 
 
+class InstrumentEntry(_Entry):
+    """Where the instrument stands in the base frame, and its uncertainty along and across its ray.
+
+    Uncertainties are in `noise.unit`; those per metre of distance are added in squares.
+    """
+
+    xyz: tuple[_Finite, _Finite, _Finite]
+    unit: str
+    along: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    across: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    along_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    across_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+
+
 class NoiseEntry(_Entry):
     """Standard uncertainty of one reading per axis, and the part that grows with displacement.
 
-    `rotation` is that of an orientation about each axis.
+    `rotation` is that of an orientation about each axis; `instrument` is given in the place of
+    `sigma` where one is sharper along its ray than across it.
     """
 
     sigma: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
@@ -93,6 +108,7 @@ class NoiseEntry(_Entry):
     rotation: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     rotation_unit: str | None = None
     growth: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
+    instrument: InstrumentEntry | None = None
 
 
 class Settings(_Entry):

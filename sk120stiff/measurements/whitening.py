@@ -25,14 +25,20 @@ class Whitener:
         own: (N, 3) variance of each row's own error, m², positive; infinite where not read.
         shared: (N, 3) variance of the error that rows of a group share, m², equal within a group.
         group: (N,) number of the group of each row.
+        axes: (N, 3, 3) unit vectors, as rows, along which the variances are, where that is not
+            along the axes of the readings; equal within a group. Rows that lack an axis have none
+            of their own.
     """
 
-    def __init__(self, own: Array, shared: Array, group: Integers) -> None:
+    def __init__(
+        self, own: Array, shared: Array, group: Integers, axes: Array | None = None
+    ) -> None:
         if own.ndim != 2 or own.shape[1] != 3 or shared.shape != own.shape:
             raise InputError(f"variances of shapes {own.shape} and {shared.shape} are no (N, 3)")
         if not (np.all(own > 0) and np.all(np.isfinite(shared)) and np.all(shared >= 0)):
             raise InputError("a variance is not positive")
         self.n_readings = len(own)
+        self._axes = axes
         read = np.isfinite(own)
         self._read = None if read.all() else read  # (N, 3); None: everything
         self.reading: Index = np.nonzero(read)[0]
@@ -64,6 +70,8 @@ class Whitener:
         columns = values.reshape(self.n_readings, 3, -1)
         if self._read is not None:
             columns = np.where(self._read[:, :, None], columns, 0.0)
+        if self._axes is not None:
+            columns = self._axes @ columns
         out = np.empty_like(columns)
         for rows, own_inverse, gain, scale in self._blocks:
             block = columns[rows]  # (g, L, 3, k)

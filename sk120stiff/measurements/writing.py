@@ -22,6 +22,7 @@ from sk120stiff.measurements.columns import (
     UNCERTAINTIES,
 )
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.noise_statement import Instrument
 from sk120stiff.measurements.zero import of_displacement
 
 _Column = tuple[str, Iterable[str]]
@@ -194,6 +195,9 @@ def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
     if m.noise.sigma is not None:
         noise["sigma"] = _shortest(m.noise.sigma, length)
         noise["unit"] = length
+    if m.noise.instrument is not None:
+        noise["instrument"] = _instrument(m.noise.instrument, length)
+        noise["unit"] = length
     if m.noise.growth is not None:
         noise["growth"] = m.noise.growth
     if noise:
@@ -203,6 +207,13 @@ def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
     if m.source:
         settings["source"] = m.source
     return settings
+
+
+def _instrument(stated: Instrument, length: str) -> dict[str, Any]:
+    sizes = ("along", "across", "along_per_m", "across_per_m")
+    return _point(stated.place, length) | {
+        name: _shortest(value, length) for name in sizes if (value := getattr(stated, name)) > 0.0
+    }
 
 
 def _point(xyz: ArrayLike, length: str) -> dict[str, Any]:

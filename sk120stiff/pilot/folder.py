@@ -29,7 +29,7 @@ from sk120stiff.files import (
     write_atomically,
 )
 from sk120stiff.measurements import Measurements, read_measurements, write_measurements
-from sk120stiff.measurements.data import NoiseStatement
+from sk120stiff.measurements.noise_statement import NoiseStatement
 from sk120stiff.model import Model
 from sk120stiff.pilot.campaign import Campaign
 from sk120stiff.plan import Cell, feasible_pool

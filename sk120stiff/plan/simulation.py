@@ -12,7 +12,7 @@ from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.data import NoiseStatement
+from sk120stiff.measurements.noise_statement import NoiseStatement
 from sk120stiff.model import Model
 from sk120stiff.plan.schedule import Schedule, scheduled
 

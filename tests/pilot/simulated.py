@@ -12,7 +12,7 @@ import numpy as np
 
 from sk120stiff.effects import LoadCases, effect
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.data import NoiseStatement
+from sk120stiff.measurements.noise_statement import NoiseStatement
 from sk120stiff.model import Model, typical_model
 from sk120stiff.model import base_model as springs_of
 from sk120stiff.pilot.campaign import Campaign, Stop

@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.identify.checks.held_out import HeldOut, held_out, refitted
-from sk120stiff.identify.estimate import fit_displacements, likelier
+from sk120stiff.identify.estimate import as_seen, fit_displacements, likelier
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import Model
@@ -69,7 +69,8 @@ def compare(
     """
     if len(models) < 2:
         raise InputError("a comparison takes two models or more")
-    used = measurements.masked()
+    robot = next(iter(models.values())).robot
+    used = as_seen(robot, measurements).masked()
     fits = _fits(models, used, [noise] if noise is not None else candidates(used))
     errors: dict[str, HeldOut | None] = {}
     for k, (name, model) in enumerate(models.items()):
