@@ -18,6 +18,12 @@ class Instrument:
         place: (3,) in the base frame, m.
         along, across: Standard uncertainty along its ray, and in each direction across it, m.
         along_per_m, across_per_m: What each metre of distance adds to them, in squares, m per m.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> tracker = sk.Instrument((3.0, -2.0, 0.5), 5e-6, 10e-6, across_per_m=3e-6)
+        >>> tracker.along, tracker.along_per_m
+        (5e-06, 0.0)
     """
 
     place: tuple[float, float, float]
