@@ -70,6 +70,8 @@ def test_what_any_other_law_makes_of_uncertainties_is_no_instrument() -> None:
     drawn = RNG.uniform(4e-6, 20e-6, (20, 3))
     for told in (np.full((20, 3), 1e-5), np.tile([1e-5, 1.4e-5, 2e-5], (20, 1)), growing, drawn):
         assert told_by(POINTS, told) is None
+    off = sigmas(TRACKER, POINTS) * RNG.uniform(0.95, 1.05, (20, 3))  # more than rounding
+    assert told_by(POINTS, off) is None
     alike = replace(TRACKER, along=TRACKER.across, along_per_m=TRACKER.across_per_m)
     assert told_by(POINTS, sigmas(alike, POINTS)) is None  # what independent axes have as well
     flat = POINTS * [0.0, 1.0, 1.0] + [1.2, 0.0, 0.0]  # from the front as well as from behind
