@@ -79,7 +79,8 @@ def told_by(points: Array, sigma: Array) -> Instrument | None:
     """
     whole = np.isfinite(sigma).all(axis=1)
     _, rows = np.unique(np.round(points[whole], 6), axis=0, return_index=True)
-    places, variances = points[whole][rows][:MOST], sigma[whole][rows][:MOST] ** 2
+    rows = rows[np.linspace(0, len(rows) - 1, min(len(rows), MOST)).astype(np.intp)]
+    places, variances = points[whole][rows], sigma[whole][rows] ** 2
     if len(places) < FEWEST:
         return None
     varies = float(np.std(variances / variances.mean(axis=0) - 1.0))
