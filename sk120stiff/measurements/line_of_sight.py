@@ -58,7 +58,9 @@ def seen_from(measurements: Measurements, points: Array) -> Measurements:
                 where=str(measurements.path or "measurements"),
                 remedy="Give displacements in the base frame, or leave noise.instrument out.",
             )
-        return _by(measurements, stated, points)
+        told = _by(measurements, stated, points)
+        said = f"Readings are weighed by the {_placed(stated, points)}."
+        return replace(told, notes=(*told.notes, said))
     found = None
     if measurements.sigma is not None and measurements.displacement_frame == "base":
         found = told_by(points, measurements.sigma)
@@ -146,12 +148,18 @@ def _by(measurements: Measurements, instrument: Instrument, points: Array) -> Me
 
 
 def _sentence(found: Instrument, points: Array) -> str:
-    _, along, across = found.at(points)
-    x, y, z = found.place
     return (
-        f"The uncertainties of the axes are those of an {SEEN} ({x:.2f}, {y:.2f}, {z:.2f}) m, with "
-        f"{1e6 * np.median(along):.3g} µm along its ray and {1e6 * np.median(across):.3g} µm "
-        "across it; the errors of one reading's axes are taken to go together so."
+        f"The uncertainties of the axes are those of an {_placed(found, points)}; the errors of "
+        "one reading's axes are taken to go together so."
+    )
+
+
+def _placed(instrument: Instrument, points: Array) -> str:
+    _, along, across = instrument.at(points)
+    x, y, z = instrument.place
+    return (
+        f"{SEEN} ({x:.2f}, {y:.2f}, {z:.2f}) m, with {1e6 * np.median(along):.3g} µm along its "
+        f"ray and {1e6 * np.median(across):.3g} µm across it"
     )
 
 

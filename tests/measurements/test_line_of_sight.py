@@ -153,6 +153,7 @@ def test_an_instrument_is_stated_read_and_written(tmp_path: Path) -> None:
     points = robot.screws(read.joints, point=read.point).position
     np.testing.assert_allclose(seen.sigma, sigmas(read.noise.instrument, points), rtol=1e-12)
     found = sk.fit(sk.base_model(robot), read)
+    assert "(3.40, -2.70, 0.90) m, with 4 µm along its ray" in " ".join(found.reasons)
     assert found.sigma_known  # what was stated is the yardstick
 
 
