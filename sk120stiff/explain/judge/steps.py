@@ -66,7 +66,7 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
 
     It gives the base model, and for every count the best model with so many effects at most; the
     names need not be those that all readings bring. Beside laws that are not exact, the search is
-    made once more beside the model-form error that its first model leaves.
+    made once more beside the model-form error that the largest of its first models leaves.
     """
     start, alpha = found.base.problem.model, found.regression.alpha
     ids = [effect.id for effect in start.effects]
@@ -98,9 +98,13 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
         if not whole.form and (whole.known or not base.sigma_known):  # laws that are exact
             return searched(base, counts)[0]
         once, near = beside_what_is_left(base, counts)
+        if not any(counts):
+            return once
+        most = once[int(np.argmax(counts))]
+        again, _ = beside_what_is_left(asked_anew(most, base), counts, near)
         return [
-            beside_what_is_left(asked_anew(each, base), [count], near)[0][0] if count else each
-            for count, each in zip(counts, once, strict=True)
+            second if count else first
+            for count, first, second in zip(counts, once, again, strict=True)
         ]
 
     return learn
