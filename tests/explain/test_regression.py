@@ -10,7 +10,7 @@ from scipy.stats import multivariate_normal
 from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
-from sk120stiff.explain.candidates.sums import solve_columns
+from sk120stiff.explain.candidates.sums import Solved, Sums, solve_columns
 from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, gains, in_its_place
 from sk120stiff.explain.select.score import (
     _deviance,
@@ -61,7 +61,7 @@ def test_sums_over_poses_are_the_whole():
     sums = found.sums()
     assert np.allclose(sums.gram, found.X.T @ found.X)
     assert np.allclose(sums.moment, found.X.T @ found.y)
-    twice = found.sums(np.full(POSES, 2.0))
+    twice = weighed(found, np.full(POSES, 2.0))
     assert np.allclose(twice.gram, 2.0 * sums.gram)
 
 
@@ -156,6 +156,19 @@ def test_an_implausible_value_disqualifies():
     assert not score_set(tight, tight.sums(), [0]).plausible
 
 
+def test_a_value_is_disbelieved_only_where_the_readings_show_it():
+    """The same size, told by readings of little noise and of much."""
+    plain = regression()
+    limits = np.full(plain.X.shape[1], 1.0)
+    for share, believed in ((1.0, False), (1e-3, True)):  # of how far its column reaches
+        X = plain.X.copy()
+        X[:, 2] *= share
+        mine = {"X": X, "plausible": limits}
+        made = Regression(**{**vars_of(plain), **mine})
+        far = Solved(np.array([0, 1, 2]), np.array([1.0, 1.0, 1.3]), 0.0)
+        assert made.is_believed(far, made.sums()) == believed
+
+
 def test_a_soft_arm_may_have_soft_bearings():
     """Its own springs say how soft an arm is: 1 and 9 times as soft as usual are 3 times."""
     plain = regression()
@@ -168,6 +181,11 @@ def test_a_soft_arm_may_have_soft_bearings():
         limit = made.believed(model.solved)[model.solved.columns == 2]
         assert limit == pytest.approx(3.0 if soft else 1.0, rel=0.1)
         assert model.plausible != hard
+
+
+def weighed(found: Regression, weights: np.ndarray) -> Sums:
+    """Sums in which poses count so often."""
+    return found.weighing(np.arange(found.X.shape[1]))(weights)
 
 
 def vars_of(found: Regression) -> dict[str, object]:
@@ -259,7 +277,7 @@ def test_sums_of_some_columns_score_their_models_as_all_do():
     twice = np.full(found.poses, 2.0)
     twice[0] = 0.0
     columns = np.array([0, 1, 3])
-    some, every = found.weighing(columns)(twice), found.sums(twice)
+    some, every = found.weighing(columns)(twice), weighed(found, twice)
     assert np.array_equal(np.flatnonzero(some.moment), columns)
     assert score_set(found, some, [1]).score == pytest.approx(score_set(found, every, [1]).score)
     assert score_set(found, some, []).score == pytest.approx(score_set(found, every, []).score)
@@ -280,7 +298,7 @@ def test_every_model_has_its_own_size_of_model_form_error(pick):
     columns = np.array(pick)
     weights = np.ones(POSES)
     weights[0] = 0.0  # as in a fold
-    sums = found.sums(weights)
+    sums = weighed(found, weights)
     solved = solve_columns(sums, columns, found.lower, found.plausible)
     rest = (found.y - found.X[:, columns] @ solved.values)[found.group > 0]
     own = np.arange(len(found.y))[found.group > 0] % 3 < 2
