@@ -10,7 +10,7 @@ from scipy.stats import multivariate_normal
 from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
-from sk120stiff.explain.candidates.sums import Solved, Sums, solve_columns
+from sk120stiff.explain.candidates.sums import Sums, solve_columns
 from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, gains, in_its_place
 from sk120stiff.explain.select.score import (
     _deviance,
@@ -154,19 +154,6 @@ def test_an_implausible_value_disqualifies():
     narrow[2] = 0.2
     tight = Regression(**{**vars_of(found), "plausible": narrow})
     assert not score_set(tight, tight.sums(), [0]).plausible
-
-
-def test_a_value_is_disbelieved_only_where_the_readings_show_it():
-    """The same size, told by readings of little noise and of much."""
-    plain = regression()
-    limits = np.full(plain.X.shape[1], 1.0)
-    for share, believed in ((1.0, False), (1e-3, True)):  # of how far its column reaches
-        X = plain.X.copy()
-        X[:, 2] *= share
-        mine = {"X": X, "plausible": limits}
-        made = Regression(**{**vars_of(plain), **mine})
-        far = Solved(np.array([0, 1, 2]), np.array([1.0, 1.0, 1.3]), 0.0)
-        assert made.is_believed(far, made.sums()) == believed
 
 
 def test_a_soft_arm_may_have_soft_bearings():

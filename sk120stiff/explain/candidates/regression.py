@@ -25,8 +25,6 @@ from sk120stiff.explain.candidates.sums import Solved, Sums, sums_of, weighing
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 
-LEFT_OPEN = 2.0  # standard errors by which a value may lie beyond what is believed
-
 
 @dataclass(frozen=True, eq=False)
 class Regression:
@@ -115,23 +113,11 @@ class Regression:
         limits = self.plausible[solved.columns]
         return np.where(self.compliances[solved.columns], limits * ratio / self.softness, limits)
 
-    def is_believed(self, solved: Solved, sums: Sums) -> bool:
-        """Does no value of an added parameter lie beyond what is believed?
-
-        By more than the readings leave open, that is: along a direction that they hardly show any
-        value serves, and another would have done as well.
-        """
+    def is_believed(self, solved: Solved) -> bool:
+        """Does no value of an added parameter lie beyond what is believed?"""
         size, added = np.abs(solved.values), ~self.in_base[solved.columns]
-        if not (added & (size > self._always[solved.columns])).any():
-            return True
-        excess = np.where(added, size - self.believed(solved), 0.0)
-        beyond = np.flatnonzero(excess > 0.0)
-        if not len(beyond):
-            return True
-        open_ = sums.standard_errors(solved, self.plausible)[beyond]
-        if not self.sigma_known:
-            open_ = open_ * np.sqrt(solved.rss / max(sums.count - len(solved.columns), 1.0))
-        return not (excess[beyond] > LEFT_OPEN * open_).any()
+        beyond = added & (size > self._always[solved.columns])
+        return not beyond.any() or not (added & (size > self.believed(solved))).any()
 
     @cached_property
     def _always(self) -> Array:

@@ -76,19 +76,6 @@ class Sums:
             self._marginals[key] = Marginal(sums, price, members, factor)
         return self._marginals[key]
 
-    def standard_errors(self, solved: Solved, plausible: Array) -> Array:
-        """(k,) of a solution's values, the noise's variance being one.
-
-        Args:
-            solved: As of `solve_sets`.
-            plausible: (P,) standard deviations with which values are drawn towards zero.
-        """
-        columns = solved.columns
-        gram = self.gram[np.ix_(columns, columns)] + np.diag(plausible[columns] ** -2.0)
-        size = np.sqrt(np.diag(gram))
-        inverse = np.linalg.pinv(gram / np.outer(size, size), hermitian=True)
-        return np.asarray(np.sqrt(np.maximum(np.diag(inverse), 0.0)) / size)
-
 
 def sums_of(X: Array, y: Array) -> Sums:
     """Sums of rows (R, k) and readings (R,) that count once each."""

@@ -130,7 +130,7 @@ def score_sets(
         else:
             solutions = _with_parts(regression, sums, several)
         for (key, variants), (solved, score) in zip(same.items(), solutions, strict=True):
-            plausible = regression.is_believed(solved, sums)
+            plausible = regression.is_believed(solved)
             score += sum(_of_choice(regression, e, k, e != untied) for e, k in variants.items())
             chosen, laws = tuple(variants), tuple(variants.values())
             sums.scores[key] = Scored(chosen, float(score), solved, plausible, laws)
