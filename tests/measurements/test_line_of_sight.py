@@ -195,3 +195,32 @@ def test_displacements_in_tool_axes_have_no_ray() -> None:
         sigma=sigmas(TRACKER, np.repeat(POINTS[:8], 3, axis=0)), displacement_frame="tool"
     )
     assert np.isnan(seen_from(told, np.repeat(POINTS[:8], 3, axis=0)).along).all()
+
+
+def test_springs_come_out_sharper_and_their_errors_hold() -> None:
+    """Noise is drawn from whole covariances; told are its sizes per axis alone."""
+    model = sk.base_model(sk.load_robot("motoman_sk120"))
+    plan = sk.plan(model, 12, point=[-0.06, 0.04, 0.15], seed=3)
+    exact = sk.simulate(model, plan).measurements
+    assert exact.displacement is not None
+    points = model.robot.screws(exact.joints, point=exact.point).position
+    sharp = replace(TRACKER, along=1.5e-6, across=12e-6)
+    roots = np.linalg.cholesky(covariances(sharp, points))
+    alike = replace(
+        exact, sigma=sigmas(sharp, points), noise=NoiseStatement(), zero="separate",
+        zero_group=np.arange(exact.n_readings),
+    )  # fmt: skip
+    rng = np.random.default_rng(11)
+    off: dict[bool, list[np.ndarray]] = {True: [], False: []}
+    errors: dict[bool, np.ndarray] = {}
+    truth = model.values[model.free]
+    for _ in range(40):
+        error = np.sqrt(2.0) * (roots @ rng.normal(size=(exact.n_readings, 3, 1)))[..., 0]
+        drawn = replace(alike, displacement=exact.displacement + error)
+        for seen in (True, False):
+            independent = replace(drawn, along=np.full(error.shape, np.nan))
+            found = sk.fit(model, drawn if seen else independent)
+            errors[seen] = np.sqrt(np.diag(found.covariance))
+            off[seen].append((found.x - truth / found.problem.scale) / errors[seen])
+    assert np.all(errors[True] < 0.9 * errors[False])
+    assert np.sqrt(np.mean(np.square(off[True]))) == pytest.approx(1.0, abs=0.12)
