@@ -28,6 +28,7 @@ OFF = 0.03  # relative rms by which told variances may be off the law: they are 
 TELLS = 0.1  # share of how they vary from place to place that the law may leave
 RATIO = 1.2  # of across and along, below which the axes may as well be independent
 AMBIGUOUS = 3.0  # times the misfit of the best place: others up to there are as good
+SHARPEST = 0.01  # of across, that is told along
 SAME_RAY = 0.15  # rad within which two places mean the same rays
 SEEN = "instrument that stands at"  # in the sentence that tells it
 
@@ -91,9 +92,7 @@ def told_by(points: Array, sigma: Array) -> Instrument | None:
 
     def misfit(place: Array) -> Array:
         law = _law(places - place)
-        weight = 1.0 / variances.ravel()
-        values, _ = optimize.nnls(law * weight[:, None], np.ones(len(weight)))
-        return np.asarray(law @ values * weight - 1.0)
+        return np.asarray(law @ _parts(law, variances) / variances.ravel() - 1.0)
 
     starts = sorted(_starts(places), key=lambda place: float(np.square(misfit(place)).sum()))
     fits = [optimize.least_squares(misfit, start, x_scale=1.0) for start in starts[:STARTS]]
@@ -107,10 +106,9 @@ def told_by(points: Array, sigma: Array) -> Instrument | None:
         apart = np.arccos(np.clip(np.abs((rays * other).sum(axis=1)), 0.0, 1.0)).max()
         if rms < max(AMBIGUOUS * off[0], 1e-3) and apart > SAME_RAY:
             return None
-    law = _law(places - fits[0].x)
-    weight = 1.0 / variances.ravel()
-    values, _ = optimize.nnls(law * weight[:, None], np.ones(len(weight)))
-    across, across_per, along, along_per = np.sqrt(values)
+    parts = _parts(_law(places - fits[0].x), variances)
+    across, across_per, along, along_per = np.sqrt(parts)
+    along = max(along, SHARPEST * max(across, across_per))  # rounded numbers may tell none at all
     x, y, z = (float(v) for v in fits[0].x)
     found = Instrument((x, y, z), along, across, along_per, across_per)
     _, b, a = found.at(places)
@@ -174,6 +172,13 @@ def _law(sight: Array) -> Array:
     rays, distance = _rays(sight)
     along, far = rays.ravel() ** 2, np.repeat(distance**2, 3)
     return np.stack([1.0 - along, (1.0 - along) * far, along, along * far], axis=1)
+
+
+def _parts(law: Array, variances: Array) -> Array:
+    """(4,) squares that bring a law (3N, 4) next to variances (N, 3), by relative errors."""
+    weight = 1.0 / variances.ravel()
+    values, _ = optimize.nnls(law * weight[:, None], np.ones(len(weight)))
+    return np.asarray(values)
 
 
 def _starts(points: Array) -> Iterator[Array]:

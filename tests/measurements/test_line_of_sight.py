@@ -64,6 +64,13 @@ def test_uncertainties_of_the_axes_tell_the_place_of_the_instrument(
     np.testing.assert_allclose(across, expected_across, rtol=0.05)
 
 
+def test_an_instrument_that_is_perfect_along_its_ray_still_has_readings() -> None:
+    perfect = replace(TRACKER, along=1e-12)
+    found = told_by(POINTS, sigmas(perfect, POINTS))
+    assert found is not None
+    assert 0.0 < found.along < 0.05 * TRACKER.across
+
+
 def test_what_any_other_law_makes_of_uncertainties_is_no_instrument() -> None:
     size = RNG.uniform(0.0, 1e-3, (20, 1))
     growing = np.sqrt(1e-10 + (0.03 * size) ** 2) * np.ones(3)
