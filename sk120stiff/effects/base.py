@@ -175,6 +175,18 @@ class Effect(ABC):
         """
         return USUAL_PLACES[cls.place](robot)
 
+    def special_case_of(self, robot: Robot) -> str | None:
+        """Id of a more general effect by whose name this one is looked for; None: by its own.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> robot = sk.load_robot("motoman_sk120")
+            >>> sk.effect(robot, "link_bending", "link_6_t").special_case_of(robot)
+            'tool_compliance:tool0'
+        """
+        del robot
+        return None
+
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
         """Groups of parameters that are equal where the part is as stiff one way as the other."""

@@ -107,6 +107,11 @@ class LinkBending(LinearElastic):
         """The law that the names of the parameters tell."""
         return Options(shape=tuple(parameters))
 
+    def special_case_of(self, robot: Robot) -> str | None:
+        """What bends behind the last joint is the flange and what is bolted to it."""
+        last = arm_links(robot)[-1].link
+        return f"tool_compliance:{robot.tool_frame}" if self.where == last else None
+
     @property
     def _law(self) -> str:
         """End of the parameters' names."""

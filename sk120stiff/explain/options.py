@@ -97,7 +97,8 @@ def candidates_for(
     Offsets of single poses are looked for among at most `POSES_WITH_OFFSETS` poses, unless the
     user names them: beyond that they cost more time than all other effects together. Gears that
     change their stiffness are looked for, likewise, where the model has one: at a joint that it
-    holds rigid the spring itself is missing first.
+    holds rigid the spring itself is missing first. Special cases are looked for where the user
+    names them, or excludes the general effect.
     """
     load_cases = load_cases_of(model.robot, used)
     present = {effect.id for effect in model.effects}
@@ -108,9 +109,13 @@ def candidates_for(
     springs = np.isfinite(model.joint_stiffness())
     soft = {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
 
+    excluded = {e.id for e in everything if any(_matches(e, w) for w in options.exclude)}
+    general = {effect.id for effect in everything} - excluded
+
     def sensible(effect: Effect) -> bool:
         few = not effect.random_effects or len(used.poses) <= POSES_WITH_OFFSETS
-        return few and (not effect.bends_a_spring or effect.where in soft)
+        own = effect.special_case_of(model.robot) not in general
+        return few and own and (not effect.bends_a_spring or effect.where in soft)
 
     found = tuple(
         effect

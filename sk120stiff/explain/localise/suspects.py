@@ -106,6 +106,8 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     screws = load_cases.nominal
     yield from drives(load_cases)
     for joint in arm_joints(robot):
+        # what yields behind the last joint is the flange and what is bolted to it
+        behind = ("tool_compliance",) if joint is arm_joints(robot)[-1] else ()
         at = screws.origins[:, joint.index]
         frames = _frames(load_cases, joint)
         across = _rotation(load_cases, joint) @ np.stack(joint.tilt_axes(), axis=-1)
@@ -116,11 +118,12 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
             middle = at + 0.5 * joint.length * frames[..., 0]
             name = f"the moment that bends {joint.link} halfway"
             bends = _turning("place", name, load_cases, middle, frames[..., 1:])
-            yield replace(bends, frees=(f"link_bending:{joint.link}",))
+            yield replace(bends, frees=(f"link_bending:{joint.link}", *behind))
             name = f"the moment that twists {joint.link}"
             twists = _turning("place", name, load_cases, at, frames[..., :1])
-            yield replace(twists, frees=(f"link_torsion:{joint.link}",))
-        yield _pushing("place", f"the force that {joint.link} carries", load_cases, frames)
+            yield replace(twists, frees=(f"link_torsion:{joint.link}", *behind))
+        pulled = _pushing("place", f"the force that {joint.link} carries", load_cases, frames)
+        yield replace(pulled, frees=behind)
     tip = screws.frame_position
     at_tool = (
         _turning("place", "the moment that the tool carries", load_cases, tip, load_cases.rotation),
