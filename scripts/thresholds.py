@@ -26,8 +26,9 @@ when that number alone is half as large or twice (a right answer brings one poin
 costs one), over those cases in which code that reads it runs; their number is beside. A number
 between a third and one is not doubled, but goes half the way to one. `scripts/thresholds_effect.py`
 makes them. Where nothing stands it was not tried, or is no other number when halved. So far ten
-cases (L0.plans, L1.plans, L3, L4, L6, L7, L9, L10, L11, L12; seed 777003) tried the search and a
-part of the judgement: few cases show what hangs on a number, not that nothing does.
+cases (L0.plans, L1.plans, L3, L4, L6, L7, L9, L10, L11, L12; seed 777003) tried the search, the
+judgement, and most of solving and localising: few cases show what hangs on a number, not that
+nothing does.
 
 | name | value | file | what it is | halved | doubled | cases |
 |---|---|---|---|---|---|---|
