@@ -26,11 +26,16 @@ from tests.explain.test_regression import POSES, regression
 SEEN = Confirmation(5, 5, 1.0, 0.1, 1.0, 0.0)
 
 
+def weighed(reg):
+    """Sums in which poses count so often, over every column."""
+    return reg.weighing(np.arange(reg.X.shape[1]))
+
+
 def test_the_held_out_gain_is_that_of_plain_least_squares_fold_by_fold():
     reg = regression()
     model = score_set(reg, reg.sums(), (0,))
     rng = np.random.default_rng(0)
-    fold_gain, pose_gain, axes = confirming._held_out_gain(reg, reg.sums, model, 0, rng)
+    fold_gain, pose_gain, axes = confirming._held_out_gain(reg, weighed(reg), model, 0, rng)
     fold = confirming.drawn_parts(POSES, confirming.FOLDS, np.random.default_rng(0))
     assert sorted(np.bincount(fold)) == [2, 2, 2, 3, 3]
     assert axes == reg.rows
@@ -46,7 +51,7 @@ def test_the_held_out_gain_is_that_of_plain_least_squares_fold_by_fold():
 
 def test_poses_are_drawn_again_whole_and_with_replacement():
     reg = regression()
-    drawn = confirming._resampled(reg.sums, POSES, np.random.default_rng(1))
+    drawn = confirming._resampled(weighed(reg), POSES, np.random.default_rng(1))
     picked = np.random.default_rng(1).integers(0, POSES, POSES)
     assert len(set(picked)) < POSES
     rows = np.concatenate([np.flatnonzero(reg.group == pose) for pose in picked])
