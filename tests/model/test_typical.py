@@ -5,7 +5,7 @@ import pytest
 
 from sk120stiff import base_model, fit, joint_spring_model, load_robot
 from sk120stiff.effects import load_case
-from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements import Measurements, NoiseStatement
 from sk120stiff.model import typical_model, typical_parameters
 from sk120stiff.model.typical import typical_stiffness
 from tests.corpus.robots import example
@@ -56,7 +56,7 @@ def test_the_base_model_of_an_unknown_arm_can_be_fitted() -> None:
     readings = Measurements(
         pose=tuple(map(str, range(15))), joint_names=robot.actuated, joint_kinds=("angle",) * 6,
         joints=a, wrench=wrench, displacement=exact, point=point, force_point=point,
-        noise=NoiseModel(1e-6),
+        noise=NoiseStatement(1e-6),
     )  # fmt: skip
     found = fit(model, readings)
     np.testing.assert_allclose(found.model.joint_stiffness(), truth, rtol=1e-6)
