@@ -18,7 +18,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute
 from sk120stiff.measurements.cells_read import refuse_unread
 from sk120stiff.measurements.frame import Tabular
-from sk120stiff.measurements.noise_statement import UNSTATED, NoiseStatement
+from sk120stiff.measurements.noise_statement import UNSTATED, NoiseStatement, stated
 from sk120stiff.measurements.poses import (
     SAME_JOINT,
     refuse_differing_joints,
@@ -127,6 +127,7 @@ class Measurements(Tabular):
         if len(self.joint_kinds) != n or set(self.joint_kinds) - {"angle", "length"}:
             raise InputError(f"joint_kinds {self.joint_kinds} do not fit {n} joints")
         self._array("joints", (count, n))
+        self._put("noise", stated(self.noise))
         self._array("wrench", (count, 6))
         self._array("point", (3,))
         self._array("force_point", (3,), default=self.point)

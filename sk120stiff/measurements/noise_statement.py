@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -78,3 +79,22 @@ class NoiseStatement:
 
 
 UNSTATED = NoiseStatement()
+
+
+class HasSize(Protocol):
+    """What a `NoiseModel` says as well."""
+
+    @property
+    def sigma(self) -> float | None:
+        """Standard uncertainty of one reading per axis, m."""
+
+    @property
+    def growth(self) -> float | None:
+        """Part that grows with the displacement."""
+
+
+def stated(noise: HasSize) -> NoiseStatement:
+    """What a noise model, or a statement, states of readings."""
+    if isinstance(noise, NoiseStatement):
+        return noise
+    return NoiseStatement(noise.sigma, noise.growth)

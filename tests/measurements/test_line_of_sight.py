@@ -231,3 +231,7 @@ def test_springs_come_out_sharper_and_their_errors_hold() -> None:
             off[seen].append((found.x - truth / found.problem.scale) / errors[seen])
     assert np.all(errors[True] < 0.9 * errors[False])
     assert np.sqrt(np.mean(np.square(off[True]))) == pytest.approx(1.0, abs=0.12)
+
+
+def test_a_noise_model_states_its_size_too() -> None:
+    assert readings(noise=NoiseModel(5e-6, 0.01)).noise == NoiseStatement(5e-6, 0.01)
