@@ -76,17 +76,20 @@ def _settled(
 ) -> tuple[Selection, Named, float]:
     """Selection, names and score, once what they leave is what they were sought beside.
 
-    A round may take the noise for larger than stated; the next asks again whether it is.
+    A round may take the noise for larger than stated; the next asks again whether it is. Where one
+    set leads to another and that one back, what was confirmed beside its own model-form error is
+    not lost: of those with names the likeliest counts.
     """
-    before = set(names)
+    before, ends = set(names), list[tuple[Selection, Named, float]]()
     for _ in range(ROUNDS):
         tried = under(with_model_form(at))
         found, named = judged(tried, seed=seed, least=MARGIN)
+        ends.append((found, named, tried.total + found.scored.score - tried.scored.score))
         now = {finding.effect.id for finding in named.findings}
         if now == before:
-            break
+            return ends[-1]
         at, before = asked_anew(found.final, at), now
-    return found, named, tried.total + found.scored.score - tried.scored.score
+    return min(ends, key=lambda end: (not end[1].findings, end[2]))
 
 
 def _nearest(found: Selection) -> Effect | None:
