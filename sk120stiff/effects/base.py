@@ -83,8 +83,6 @@ class Effect(ABC):
             (class attribute).
         inexact: Share of what it explains by which real parts depart from its law (class
             attribute).
-        law_prior: Weight of this law among the less usual ones of its effect, before anything is
-            measured (class attribute).
         joint_spring: Its one parameter is the stiffness of the actuated joint at which it acts
             (class attribute).
         of_gear: It is a law of a joint's gear: what one such law leaves over looks like another
@@ -118,7 +116,6 @@ class Effect(ABC):
     random_effects: ClassVar[bool] = False
     bends_a_spring: ClassVar[bool] = False
     inexact: ClassVar[float] = 0.0
-    law_prior: ClassVar[float] = 1.0
     joint_spring: ClassVar[bool] = False
     of_gear: ClassVar[bool] = False
     twins: ClassVar[tuple[str, ...]] = ()
@@ -160,6 +157,11 @@ class Effect(ABC):
             'The base rocks on its foundation.'
         """
         return self.says.format(where=self.where)
+
+    @property
+    def law_prior(self) -> float:
+        """Weight of this law among the less usual ones of its effect, before any measurement."""
+        return 1.0
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:

@@ -92,7 +92,6 @@ class Nonlinear(Elastic):
     """
 
     full: tuple[float, ...] = ()
-    law_prior: ClassVar[float] = 0.2  # most bearings and bolted joints hardly depart from straight
     also: ClassVar[str] = ALSO
     straight: ClassVar[type[StraightPart]]
 
@@ -103,6 +102,11 @@ class Nonlinear(Elastic):
         cls.name, cls.place, cls.axes = straight.name, straight.place, straight.axes
         cls.equation = f"{straight.equation}, K going with the load"
         straight.nonlinear = cls
+
+    @property
+    def law_prior(self) -> float:
+        """Most bearings and bolted joints hardly depart from straight."""
+        return 0.2
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Effect:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -15,9 +15,10 @@ from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot
 
-# of the largest torque: over which teeth may take hold. Gear makers read lost motion off at 3 % of
-# the rated torque; what gives way over more of it is the gear's first stiffness (`hardening.py`)
-FLANKS = (0.02, 0.06)
+FLANKS = (0.02, 0.06, 0.15)  # of the largest torque: over which teeth may take hold
+# Gear makers read lost motion off at 3 % of the rated torque. What gives way over much more of it
+# is seldom play: most call it the gear's first stiffness (`hardening.py`).
+WIDE, SELDOM = 0.1, 0.1
 HALF, FLANK = "half_width", "_flank_"
 SIDES = {"": 0, "_positive": 1, "_negative": -1}  # end of a name → sign of the torque
 
@@ -33,10 +34,12 @@ class LostMotion(GearEffect, Switching):
     Attributes:
         flanks: Torques T [N·m] over which the flanks close; 0: at once.
         sided: The two sides of the play differ.
+        wide: A flank is beyond `WIDE` of the largest torque that was measured.
     """
 
     flanks: tuple[float, ...] = (0.0,)
     sided: bool = False
+    wide: bool = field(default=False, compare=False)
     name: ClassVar[str] = "lost_motion"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = (
@@ -105,14 +108,20 @@ class LostMotion(GearEffect, Switching):
         largest = self.largest_torque(load_cases)
         if largest <= 0.0:
             return ()
-        flanks = tuple(float(f"{share * largest:.3g}") for share in FLANKS)
-        smooth = [replace(self, flanks=(T,), sided=False) for T in (0.0, *flanks)]
-        unequal = [replace(self, flanks=(T,), sided=True) for T in (0.0, *flanks)]
-        free = [
-            replace(self, flanks=(0.0, *flanks), sided=False),
-            replace(self, flanks=(0.0, *flanks), sided=True),
+        flanks = {share: float(f"{share * largest:.3g}") for share in FLANKS}
+        narrow = tuple(T for share, T in flanks.items() if share <= WIDE)
+        every = tuple(flanks.values())
+        laws = [
+            replace(self, flanks=shape, sided=sided, wide=not {*shape} <= {0.0, *narrow})
+            for shape in (*((T,) for T in (0.0, *every)), (0.0, *narrow), (0.0, *every))
+            for sided in (False, True)
         ]
-        return tuple(law for law in (*smooth, *unequal, *free) if law != self)
+        return tuple(law for law in laws if law != self)
+
+    @property
+    def law_prior(self) -> float:
+        """Wide flanks are seldom those of play."""
+        return SELDOM if self.wide else 1.0
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`. A position has no zero reading to be subtracted."""

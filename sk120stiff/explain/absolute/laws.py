@@ -82,7 +82,7 @@ def by_best_laws(linear: Linear, chosen: tuple[int, ...], laws: Laws) -> Linear:
             tried: list[tuple[float, Block]] = []
             for place, law in enumerate(own):
                 count = len(own) - 1 if place else 1
-                price = 0.5 * price_of_law(count, usual=not place)
+                price = 0.5 * price_of_law(law[0], count, usual=not place)
                 other = now.by_law(k, *law)
                 tried.append((other.score(whole, noise) - price, law))
                 if law[0] == linear.candidates[e]:

@@ -196,17 +196,18 @@ def price_of_choice(regression: Regression, effect: int, variant: int, tied: boo
     if regression.usual[effect] == 0 and regression.tied[effect] > 0 and tied:
         usual.add(regression.tied[effect])
     others = len(regression.variants[effect]) - len(usual)
-    own = price_of_law(len(usual) if variant in usual else others, usual=variant in usual)
-    rare = -2.0 * float(np.log(regression.law(effect, variant).law_prior))
-    return own + rare + regression.unusual[effect]
+    count = len(usual) if variant in usual else others
+    law = regression.law(effect, variant)
+    return price_of_law(law, count, usual=variant in usual) + regression.unusual[effect]
 
 
-def price_of_law(count: int, *, usual: bool) -> float:
-    """What one of `count` laws pays: the usual ones nothing but for being several, any other twice.
+def price_of_law(law: Effect, count: int, *, usual: bool) -> float:
+    """What one of `count` laws pays: the usual ones nothing but for being several, any other twice,
+    and a rare one for that.
 
     So much must the misfit fall for it in units of the noise's variance.
     """
-    return 2.0 * float(np.log(count if usual else 2.0 * count))
+    return 2.0 * float(np.log((count if usual else 2.0 * count) / law.law_prior))
 
 
 def regression_at(
