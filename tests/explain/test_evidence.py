@@ -272,6 +272,31 @@ def test_names_that_nothing_tells_apart_share_one_piece_of_evidence():
     assert both.gain == pytest.approx(2.0 * np.log(0.75 / none))
 
 
+@pytest.mark.parametrize("start", ["springs", "springs and tilt"])
+def test_a_confirmed_name_is_not_lost_where_sets_lead_to_one_another(monkeypatch, start):
+    """Beside what the tilt leaves nothing stands, beside what springs leave it does: an odd number
+    of rounds must not decide, nor that the end without a name has the better score."""
+    tilt = effect(load_robot("motoman_sk120"), "joint_tilt", "joint_2_l")
+    finding = Finding(tilt, (), (), Evidence(9.0, 9.0, None, np.inf, SEEN, {}))
+
+    def judged(tried, *, seed, least):
+        names = (finding,) if tried.beside == "springs" else ()
+        final = "springs and tilt" if names else "springs"
+        return SimpleNamespace(final=final, scored=SimpleNamespace(score=0.0)), Named(names)
+
+    def under(noise):
+        total = -20.0 if noise == "springs and tilt" else 0.0
+        return SimpleNamespace(beside=noise, total=total, scored=SimpleNamespace(score=0.0))
+
+    monkeypatch.setattr(beside_form, "with_model_form", lambda fit: fit)
+    monkeypatch.setattr(beside_form, "asked_anew", lambda fit, at: fit)
+    monkeypatch.setattr(beside_form, "judged", judged)
+    names = {tilt.id} if "tilt" in start else set()
+    found, named, _ = beside_form._settled(start, under, names, 0)
+    assert named.findings == (finding,)
+    assert found.final == "springs and tilt"
+
+
 @pytest.mark.parametrize("better", [True, False])
 def test_where_nothing_is_named_the_search_begins_again_beside_the_nearest(monkeypatch, better):
     """The likelier end counts: an error that holds the cause, or the cause and a smaller error."""
