@@ -20,7 +20,7 @@ from sk120stiff.effects.base import LinearElastic, Options, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, passed_on
+from sk120stiff.robot.anatomy import ArmJoint, arm_joint, arm_links, last_link, passed_on
 from sk120stiff.robot.rotations import homogeneous
 
 TAPER = 0.3  # links get slimmer towards the wrist: share of its depth that a section loses
@@ -109,8 +109,8 @@ class LinkBending(LinearElastic):
 
     def special_case_of(self, robot: Robot) -> str | None:
         """What bends behind the last joint is the flange and what is bolted to it."""
-        last = arm_links(robot)[-1].link
-        return f"tool_compliance:{robot.tool_frame}" if self.where == last else None
+        behind = self.where == last_link(robot)
+        return f"tool_compliance:{robot.tool_frame}" if behind else None
 
     @property
     def _law(self) -> str:

@@ -215,7 +215,7 @@ class NoiseModel:
             said = f"The loaded one has {self.growth * 100:.3g} % of its displacement besides. "
         if self.zero == "shared":
             return f"{said}Rows that subtract the same zero reading share its error."
-        return f"{said}Each row subtracts a zero reading of its own, so errors are independent."
+        return f"{said}Each row subtracts a zero reading of its own, so rows err independently."
 
 
 def candidates(measurements: Measurements) -> list[NoiseModel]:

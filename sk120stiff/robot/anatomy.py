@@ -149,6 +149,11 @@ def arm_links(robot: Robot) -> tuple[ArmJoint, ...]:
     return tuple(joint for joint in arm_joints(robot) if joint.length > SHORTEST_LINK)
 
 
+def last_link(robot: Robot) -> str:
+    """The link behind the last joint: what yields there is the flange and what is bolted to it."""
+    return arm_joints(robot)[-1].link
+
+
 def arm_joint(robot: Robot, name: str) -> ArmJoint:
     """The joint of that name, or the joint that moves the link of that name."""
     return next(joint for joint in arm_joints(robot) if name in (joint.name, joint.link))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import InputError, Model, Refusal, ToolkitWarning, base_model, load_robot
-from sk120stiff.effects import effect, load_cases_of
+from sk120stiff.effects import CATALOGUE, effect, load_cases_of
 from sk120stiff.explain import explain
 from sk120stiff.explain.advise import consequences
 from sk120stiff.explain.candidates.aliases import exact_aliases
@@ -204,6 +204,16 @@ def test_what_bends_behind_the_last_joint_is_looked_for_as_the_tool(springs):
     behind = [each for each in every if "link_6_t" in each.name]
     assert behind
     assert all("tool_compliance" in each.frees for each in behind)  # none speaks against it
+
+
+def test_a_beam_that_ends_before_the_last_joint_is_its_own_name_wherever_the_tool_is():
+    """With the tool frame in the last joint there is no beam behind it, and none before is lost."""
+    robot = load_robot("motoman_sk120", tool="link_6_t")
+    beams = CATALOGUE["link_bending"].places(robot)
+    assert "link_6_t" not in beams
+    assert [effect(robot, "link_bending", link).special_case_of(robot) for link in beams] == [
+        None
+    ] * len(beams)
 
 
 @pytest.mark.parametrize("where", [1, 2])

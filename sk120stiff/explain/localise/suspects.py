@@ -17,7 +17,7 @@ from sk120stiff.effects import LoadCases
 from sk120stiff.explain.localise.drives import angles, drives, laws, waves
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.model import Model
-from sk120stiff.robot.anatomy import ArmJoint, arm_joints
+from sk120stiff.robot.anatomy import ArmJoint, arm_joints, last_link
 
 SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
 
@@ -106,8 +106,7 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     screws = load_cases.nominal
     yield from drives(load_cases)
     for joint in arm_joints(robot):
-        # what yields behind the last joint is the flange and what is bolted to it
-        behind = ("tool_compliance",) if joint is arm_joints(robot)[-1] else ()
+        behind = ("tool_compliance",) if joint.link == last_link(robot) else ()
         at = screws.origins[:, joint.index]
         frames = _frames(load_cases, joint)
         across = _rotation(load_cases, joint) @ np.stack(joint.tilt_axes(), axis=-1)
