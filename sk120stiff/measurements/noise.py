@@ -169,7 +169,7 @@ class NoiseModel:
         stated = axes = None
         if measurements.sigma is not None:
             stated = measurements.sigma**2
-            if measurements.along is not None:
+            if measurements.along is not None and np.isfinite(measurements.along).any():
                 stated, axes = in_axes_of_sight(measurements.along, measurements.sigma)
         own, zero = self._variances(measurements, sizes, stated)
         group = measurements.zero_group
