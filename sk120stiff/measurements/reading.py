@@ -23,7 +23,7 @@ from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
 from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
 from sk120stiff.measurements.subtraction import Displacements, displacements, undisplaced
 from sk120stiff.measurements.table import Table, read_table
-from sk120stiff.measurements.zero import of_displacement
+from sk120stiff.measurements.zero import of_one_reading
 
 if TYPE_CHECKING:
     from sk120stiff.measurements.settings import Settings, SettingsFile
@@ -156,7 +156,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         force_frame=settings.force.frame,
         displacement_frame=settings.displacement.frame,
         noise=noise,
-        sigma=None if rows.sigma is None else _of_one_reading(rows.sigma[kept], found, roles),
+        sigma=_sigma_of_rows(rows, found, roles),
         order=None if rows.order is None else rows.order[kept],
         time=None if rows.time is None else rows.time[kept],
         branch=None if branch is None else tuple(branch[i] for i in kept),
@@ -182,14 +182,11 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
     )
 
 
-def _of_one_reading(sigma: Array, found: Displacements, roles: Roles) -> Array:
-    """(N, 3) standard uncertainty of the loaded reading, from that of what the row states.
-
-    A displacement has that of two readings: its own, and the mean of its zero ones.
-    """
-    if roles.measured != columns.DISPLACEMENTS:
-        return sigma
-    return np.asarray(sigma / of_displacement(found.count))
+def _sigma_of_rows(rows: Rows, found: Displacements, roles: Roles) -> Array | None:
+    """(N, 3) of one loaded reading; a row that states a displacement states that of it."""
+    if rows.sigma is None or roles.measured != columns.DISPLACEMENTS:
+        return None if rows.sigma is None else rows.sigma[found.rows]
+    return of_one_reading(rows.sigma[found.rows], found.count)
 
 
 def _branch(rows: Rows) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:

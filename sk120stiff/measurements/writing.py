@@ -12,7 +12,7 @@ import yaml
 from numpy.typing import ArrayLike
 
 from sk120stiff import files, units
-from sk120stiff.arrays import Array, Integers
+from sk120stiff.arrays import Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.columns import (
     DISPLACEMENTS,
@@ -39,7 +39,7 @@ def write_measurements(
     """Write both files so that `read_measurements` gives the same readings back.
 
     Numbers carry all digits of a float. With ``angle="rad"`` and ``length="m"`` they come back
-    bit for bit; with other units, and uncertainties, within one rounding. Readings that came as
+    bit for bit; with other units within one rounding of the conversion. Readings that came as
     positions are written as displacements, with what they subtracted in the columns
     ``zero_group``, ``zero_count``, ``zero_order`` and ``zero_time[s]`` where that is not plain.
 
@@ -115,7 +115,7 @@ def columns_of(
             yield _numbers(name, m.wrench[:, 3 + k], "N*m", "moment")
     sigma = m.sigma
     if sigma is not None and m.displacement is not None and measured == DISPLACEMENTS:
-        sigma = _rounded(sigma * of_displacement(m.zero_count))
+        sigma = of_displacement(sigma, m.zero_count)
     for names, values in ((measured, m.displacement), (UNCERTAINTIES, sigma)):
         if values is not None:
             for k, name in enumerate(names):
@@ -160,11 +160,6 @@ def _zero_columns(m: Measurements) -> Iterable[_Column]:
 def _same_grouping(a: Integers, b: Integers) -> bool:
     pairs = len(set(zip(a.tolist(), b.tolist(), strict=True)))
     return pairs == len(np.unique(a)) == len(np.unique(b))
-
-
-def _rounded(values: Array) -> Array:
-    """To 15 digits: a second writing gives the same, where it multiplies what was divided."""
-    return np.array([float(f"{value:.15g}") for value in values.flat]).reshape(values.shape)
 
 
 def _numbers(name: str, values: ArrayLike, unit: str, kind: str) -> _Column:

@@ -91,9 +91,23 @@ def since_zero(clock: Array, zero: Array | None, group: Integers) -> Array:
     return since
 
 
-def of_displacement(zero_count: Integers) -> Array:
-    """(N, 1) standard uncertainty of a displacement over that of one reading.
+def of_one_reading(sigma: Array, zero_count: Integers) -> Array:
+    """(N, 3) standard uncertainty of a loaded reading, from that of the displacement (N, 3).
 
-    It is the difference of a loaded reading and the mean of `zero_count` (N,) others.
+    A displacement is the difference of it and the mean of `zero_count` (N,) others.
     """
-    return np.asarray(np.sqrt(1.0 + 1.0 / zero_count[:, None]))
+    return np.asarray(sigma / np.sqrt(1.0 + 1.0 / zero_count[:, None]))
+
+
+def of_displacement(sigma: Array, zero_count: Integers) -> Array:
+    """(N, 3) standard uncertainty of a displacement: what `of_one_reading` takes back to `sigma`.
+
+    To the last bit where there is such a number, as for all that came from a file; else within one
+    rounding. Of several the smallest, so that a second writing gives the same.
+    """
+    near = sigma * np.sqrt(1.0 + 1.0 / zero_count[:, None])
+    near = near + np.spacing(near) * np.arange(-2.0, 3.0)[:, None, None]
+    back = np.array([of_one_reading(each, zero_count) for each in near])
+    exact = (back == sigma).any(axis=0)
+    reached = back == np.where(exact, sigma, back[2])
+    return np.asarray(np.take_along_axis(near, reached.argmax(axis=0)[None], axis=0)[0])
