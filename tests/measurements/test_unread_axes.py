@@ -87,6 +87,8 @@ def test_weights_and_uncertainties_of_rows_go_with_blanks() -> None:
     stated = replace(m, sigma=np.where(m.read, 3.0 * SIGMA, np.nan))
     found = NoiseModel(SIGMA).whitener(stated).apply(x)
     assert squares(found) == pytest.approx(x[m.read] @ np.linalg.solve(9.0 * V, x[m.read]))
+    with pytest.raises(InputError, match=r"uncertainty s[xyz] is blank"):
+        replace(m, sigma=np.full(x.shape, np.nan))
 
 
 def test_repeats_count_the_axes_that_were_read_twice() -> None:
