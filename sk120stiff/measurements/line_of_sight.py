@@ -176,9 +176,10 @@ def _law(sight: Array) -> Array:
 
 def _parts(law: Array, variances: Array) -> Array:
     """(4,) squares that bring a law (3N, 4) next to variances (N, 3), by relative errors."""
-    weight = 1.0 / variances.ravel()
-    values, _ = optimize.nnls(law * weight[:, None], np.ones(len(weight)))
-    return np.asarray(values)
+    columns = law / variances.reshape(-1, 1)
+    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    values, _ = optimize.nnls(columns / size, np.ones(len(columns)))
+    return np.asarray(values / size)
 
 
 def _starts(points: Array) -> Iterator[Array]:
