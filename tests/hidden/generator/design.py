@@ -125,6 +125,9 @@ def plan(
     torque = np.zeros_like(forces)
     if moments:
         torque = 0.08 * full * rng.normal(size=forces.shape)
+        for row in np.flatnonzero(np.array(repeat) > 1):  # a repeat has the same load
+            first = (np.array(index) == index[row]) & (forces == forces[row]).all(axis=1)
+            torque[row] = torque[np.argmax(first & (np.array(branch) == branch[row]))]
     index = np.array(index)
     point = np.zeros(3) if point is None else np.asarray(point, float)
     return Rows(
