@@ -237,8 +237,14 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/select/score.py", *_tests("explain", "regression"),
-        sizes_for_nothing=("price_of_sizes(gains / variance, mine.sum(axis=1), n).sum", "(0.0 * gains).sum"),
         looking_for_nothing=("score += price_of_looking(regression, n) *", "score += 0.0 *"),
+    ),
+    *_of(
+        "explain/select/size_prices.py", *_tests("explain", "regression", "size_prices"),
+        sizes_for_nothing=("np.asarray(prices.sum(axis=1))", "np.asarray(0.0 * prices.sum(axis=1))"),
+        dearer_for_a_hair=("np.argwhere(least < prices)", "np.argwhere(least < -1.0)"),
+        rigid_axes_for_nothing=(" + 2.0 * np.log(comb(count, held))", ""),
+        held_alone=("        values -= scatter[k] * (values[k] / scatter[k, k])\n", ""),
     ),
     *_of(
         "explain/judge/imitation.py", *_tests("explain", "imitation"),

@@ -14,7 +14,7 @@ from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Confirmation
 from sk120stiff.explain.options import candidates_for
 from sk120stiff.explain.select.outliers import outlying_rows
-from sk120stiff.explain.select.score import price_of_sizes
+from sk120stiff.explain.select.size_prices import price_of_sizes
 from sk120stiff.identify import fit
 from tests.explain.readings import SIGMA, base_fit, hidden
 from tests.hidden.generator.causes_detail import WarmUp

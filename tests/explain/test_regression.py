@@ -15,9 +15,9 @@ from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, gains, 
 from sk120stiff.explain.select.score import (
     _deviance,
     price_of_looking,
-    price_of_sizes,
     score_set,
 )
+from sk120stiff.explain.select.size_prices import price_of_sizes
 from sk120stiff.robot import load_robot
 
 POSES, AXES = 12, 15

@@ -9,7 +9,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.judge.budget import brought
 from sk120stiff.explain.localise.localisation import OwnAtPoses
 from sk120stiff.explain.localise.places import localise
-from sk120stiff.explain.select.score import price_of_sizes
+from sk120stiff.explain.select.size_prices import price_of_sizes
 from sk120stiff.explain.select.stepwise import Selection, refit
 
 ALONG = 0.75  # share of draws' square along one direction, of which chance gives a third

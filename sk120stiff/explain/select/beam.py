@@ -9,7 +9,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import Solved, Sums
-from sk120stiff.explain.select.score import Scored, price_of_sizes, score_set, score_sets
+from sk120stiff.explain.select.score import Scored, score_set, score_sets
+from sk120stiff.explain.select.size_prices import price_of_sizes
 
 BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants

@@ -165,7 +165,7 @@ def _searched(
 
 
 def _strewn(out: Sequence[int], clear: Sequence[int], shifts: Sequence[_Shifts]) -> bool:
-    """Whether a large crowd is one of slips: clear ones, while every pose keeps half its readings."""
+    """Whether a large crowd is one of slips: clear, while every pose keeps half its readings."""
     count = sum(len(each.readings) for each in shifts)
     few = len(out) - len(clear) <= LARGEST_SHARE * count and len(out) <= LARGEST_CLEAR * count
     return few and all(

@@ -4,11 +4,7 @@ Models are scored by an extended Bayesian information criterion (after Chen & Ch
 misfit, plus a price for every parameter that moves, plus a price for every effect, which pays for
 having looked at so many candidates.
 
-A parameter of the base model costs ln R. The k parameters of an effect together cost what their
-marginal likelihood asks for when they are drawn from one distribution whose width the readings
-tell: k (1 + ln(G/k)), with G the misfit that the effect takes away (MacKay 1992), and never more
-than k ln R. So six weak parameters of one sensor may be seen where they are significant together,
-and the level of a chance finding is the same for an effect of one parameter and for one of six.
+What the sizes of parameters cost is told in `size_prices.py`.
 """
 
 from __future__ import annotations
@@ -17,11 +13,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
 from sk120stiff.explain.candidates.sums import Solutions, Solved, Sums, solve_sets
+from sk120stiff.explain.select.size_prices import price_of_sizes, prices_of_sizes
 
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
 PRICED = 50  # rounds in which a fall and its own price agree; each gains a digit
@@ -154,7 +150,7 @@ def _with_parts(
     # A spring of the base model is there whether it moves or not: none is cheaper for being rigid.
     score = _deviance(regression, sums, solved) + len(base) * np.log(n)
     score += price_of_looking(regression, n) * np.array([len(parts) for parts in several])
-    score += _sizes(regression, sums, solved, several)
+    score += prices_of_sizes(regression, sums, solved, several)
     return list(zip(solved.each(), score.tolist(), strict=True))
 
 
@@ -209,32 +205,6 @@ def price_of_looking(regression: Regression, rows: float) -> float:
     return max(needed - float(price_of_sizes(needed, 1, rows)), FLOOR)
 
 
-def _sizes(
-    regression: Regression, sums: Sums, solved: Solutions, several: Sequence[Sequence[Index]]
-) -> Array:
-    """What the sizes of the effects' parameters cost in each of several models.
-
-    An effect's gain is counted as if it stood alone beside the base model: two effects that undo
-    each other's work at large sizes pay for these sizes.
-    """
-    n, base = max(sums.count, 2.0), regression.base
-    known = regression.sigma_known and regression.form is None
-    variance = 1.0 if known else np.maximum(solved.rss, 1e-300)[:, None] / n
-    own, moves = solved.columns[:, len(base) :], solved.moves[:, len(base) :]
-    lengths = [[len(part) for part in parts] for parts in several]
-    owner = np.full(own.shape, -1)
-    for row, each in zip(owner, lengths, strict=True):
-        row[: sum(each)] = np.repeat(np.arange(len(each)), each)
-    most = max(len(each) for each in lengths)
-    mine = (owner[:, :, None] == np.arange(most)) & moves[:, :, None]  # (m, k, effects)
-    members = mine * solved.values[:, len(base) :, None]
-    within = sums.gram[own[:, :, None], own[:, None, :]] @ members
-    across = sums.gram[base[:, None], own[:, None, :]] @ members
-    inverse = np.stack([sums.inverse(base, some) for some in solved.moves[:, : len(base)]])
-    gains = (members * within).sum(axis=1) - (across * (inverse @ across)).sum(axis=1)
-    return np.asarray(price_of_sizes(gains / variance, mine.sum(axis=1), n).sum(axis=1))
-
-
 def entry_fall(regression: Regression, effect: int) -> float:
     """Fall of the misfit, in noise variances, at which an effect joins a model with all its sizes.
 
@@ -248,9 +218,3 @@ def entry_fall(regression: Regression, effect: int) -> float:
     for _ in range(PRICED):  # the price of sizes grows with the logarithm of the fall
         fall = rest + float(price_of_sizes(fall, count, rows))
     return fall
-
-
-def price_of_sizes(gain: ArrayLike, count: ArrayLike, rows: float) -> Array:
-    """What `count` parameters cost that take `gain` away from the misfit of `rows` readings."""
-    each = np.maximum(gain / np.maximum(count, 1), 1.0)
-    return np.asarray(count * np.minimum(np.log(rows), 1.0 + np.log(each)))

@@ -1,0 +1,89 @@
+"""What the sizes of an effect's parameters cost, with values that may lie on their bound."""
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from scipy.special import comb
+
+from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.explain.candidates.sums import solve_sets
+from sk120stiff.explain.select.size_prices import _held_in_turn, price_of_sizes, prices_of_sizes
+from tests.explain.test_regression import regression
+
+PARTS = np.array([2, 3, 4])
+
+
+def priced(found: Regression) -> float:
+    """Price of one effect of three columns beside a base of two."""
+    sums = found.sums()
+    solved = solve_sets(sums, [np.arange(5)], found.lower, found.plausible)
+    return float(prices_of_sizes(found, sums, solved, [[PARTS]])[0])
+
+
+def misfit(found: Regression, columns: list[int]) -> float:
+    return float(np.linalg.lstsq(found.X[:, columns], found.y, rcond=None)[1][0])
+
+
+def positive(weak: float, *, known: bool = True) -> Regression:
+    """Three positive values of one effect that go together, two of them hardly seen."""
+    found = regression(known=known)
+    rng = np.random.default_rng(5)
+    X = found.X.copy()
+    X[:, 3] += 0.6 * X[:, 4]
+    y = X[:, :5] @ np.array([4.0, 3.0, 2.0, weak, weak]) + rng.normal(size=len(X))
+    return replace(found, X=X, y=y, lower=np.zeros(X.shape[1]))
+
+
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("weak", [0.1, 0.15, 0.2, 0.3, 1.5])
+def test_a_value_is_held_at_zero_where_that_is_cheaper(weak: float, known: bool):
+    found = positive(weak, known=known)
+    whole, base = misfit(found, [0, 1, 2, 3, 4]), misfit(found, [0, 1])
+    rows = len(found.y)
+    unit = 1.0 if known else whole / rows
+    ways = [price_of_sizes((base - whole) / unit, 3, rows)]
+    for kept in (1, 2):  # of each number the best choice, which is the greedy one here
+        left = min(misfit(found, [0, 1, *own]) for own in combinations((2, 3, 4), kept))
+        price = price_of_sizes((base - left) / unit, kept, rows)
+        ways.append((left - whole) / unit + price + 2.0 * np.log(comb(3, kept)))
+    assert priced(found) == pytest.approx(min(ways), abs=1e-4)
+    if weak == 1.5:
+        assert priced(found) == pytest.approx(ways[0], abs=1e-4)
+
+
+def test_values_without_a_bound_are_priced_as_they_are():
+    found = positive(0.1)
+    free = replace(found, lower=np.full(found.X.shape[1], -np.inf))
+    gain = misfit(free, [0, 1]) - misfit(free, [0, 1, 2, 3, 4])
+    assert priced(free) == pytest.approx(float(price_of_sizes(gain, 3, len(free.y))), abs=1e-4)
+    assert priced(found) < priced(free)
+
+
+def test_a_hair_above_zero_costs_as_much_as_zero_but_for_the_choice():
+    found = positive(0.0)
+    noise = found.y - found.X[:, :5] @ np.array([4.0, 3.0, 2.0, 0.0, 0.0])
+    away = noise - found.X[:, :5] @ np.linalg.lstsq(found.X[:, :5], noise, rcond=None)[0]
+    prices = []
+    for hair in (-1e-3, 1e-3):  # just beyond the bound and just within
+        y = found.X[:, :5] @ np.array([4.0, 3.0, 2.0, hair, 1.0]) + away
+        prices.append(priced(replace(found, y=y)))
+    assert prices[1] - prices[0] == pytest.approx(2.0 * np.log(3.0), abs=0.05)
+
+
+def test_growth_is_that_of_refits_one_after_the_other():
+    rng = np.random.default_rng(2)
+    X = rng.normal(size=(60, 5)) @ rng.normal(size=(5, 5))
+    values = np.linalg.lstsq(X, rng.normal(size=60), rcond=None)[0]
+    y = X @ values
+    grown = _held_in_turn(np.linalg.inv(X.T @ X), values, np.array([1, 3, 4]))
+    left, kept = [1, 3, 4], [0, 1, 2, 3, 4]
+    for total in grown:
+        tried = {
+            k: np.linalg.lstsq(X[:, [c for c in kept if c != k]], y, rcond=None)[1][0] for k in left
+        }
+        worst = min(tried, key=tried.__getitem__)
+        assert total == pytest.approx(tried[worst], rel=1e-8)
+        left.remove(worst)
+        kept.remove(worst)
