@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.linalg import cho_solve
+from scipy.linalg import cho_solve, solve_triangular
 from scipy.linalg.lapack import dposv, dtrtrs
 
 from sk120stiff.arrays import Array, Index, Mask
@@ -32,7 +32,7 @@ class Sums:
     square: float
     count: float
     form: Sums | None = None
-    _marginals: dict[tuple[bytes, float], Marginal] = field(default_factory=dict)
+    _marginals: dict[tuple[bytes, float, bytes], Marginal] = field(default_factory=dict)
     _inverses: dict[bytes, Array] = field(default_factory=dict)
     scores: dict[bytes, Any] = field(default_factory=dict)
 
@@ -55,23 +55,28 @@ class Sums:
             self._inverses[key] = out
         return self._inverses[key]
 
-    def marginal(self, members: Index, size: float) -> Marginal:
+    def marginal(self, members: Index, size: float, columns: Index | None = None) -> Marginal:
         """The sums with columns integrated out whose values are draws of one size τ.
 
         With y = X v + Z u + noise and u ~ N(0, τ²), Z u joins the noise.
+
+        Args:
+            members: The columns that are integrated out.
+            size: τ, in typical sizes.
+            columns: Columns of which the sums are asked, those of others are zero; default: all.
         """
-        key = (members.tobytes(), size)
+        some: Any = slice(None) if columns is None else columns
+        block: Any = (some, some) if columns is None else np.ix_(some, some)
+        key = (members.tobytes(), size, b"" if columns is None else columns.tobytes())
         if key not in self._marginals:
             inner = self.gram[np.ix_(members, members)] + np.eye(len(members)) / size**2
             factor: Array = np.asarray(np.linalg.cholesky(inner), dtype=float)
-            half = np.linalg.solve(factor, self.gram[members])
-            right = np.linalg.solve(factor, self.moment[members])
-            sums = Sums(
-                self.gram - half.T @ half,
-                self.moment - half.T @ right,
-                self.square - float(right @ right),
-                self.count,
-            )
+            half = solve_triangular(factor, self.gram[members][:, some], lower=True)
+            right = solve_triangular(factor, self.moment[members], lower=True)
+            gram, moment = np.zeros_like(self.gram), np.zeros_like(self.moment)
+            gram[block] = self.gram[block] - half.T @ half
+            moment[some] = self.moment[some] - half.T @ right
+            sums = Sums(gram, moment, self.square - float(right @ right), self.count)
             price = 2.0 * float(np.log(np.diag(factor)).sum() + len(members) * np.log(size))
             self._marginals[key] = Marginal(sums, price, members, factor)
         return self._marginals[key]

@@ -16,7 +16,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
-from sk120stiff.explain.candidates.sums import Solutions, Solved, Sums, solve_sets
+from sk120stiff.explain.candidates.sums import Marginal, Solutions, Solved, Sums, solve_sets
 from sk120stiff.explain.select.size_prices import price_of_sizes, prices_of_sizes
 
 FLOOR = 2.0  # least difference of scores for which an effect joins a model
@@ -179,20 +179,22 @@ def _with_draws(
     members = np.concatenate([regression.columns[e] for e in drawn])
     flat = len(drawn) * (regression.least_fall + FLOOR)
 
-    def at(size: float, several: Sequence[Sequence[Index]]) -> list[tuple[Solved, float]]:
-        left = sums.marginal(members, size)
+    def at(left: Marginal, several: Sequence[Sequence[Index]]) -> list[tuple[Solved, float]]:
         price = left.price + flat
         return [
             (rest, score + price) for rest, score in _with_parts(regression, left.sums, several)
         ]
 
     # The size hardly goes with the laws of the other effects: the first of as many tells it.
+    first = np.concatenate([regression.base, *several[0]])
     key = b"size" + np.append(members, len(several[0])).tobytes()
     if key not in sums.scores:
-        sums.scores[key] = min(DRAWN_SIZES, key=lambda size: at(size, several[:1])[0][1])
-    size = sums.scores[key]
-    whole = sums.marginal(members, size)
-    return [(whole.joined(sums, rest), score) for rest, score in at(size, several)]
+        sums.scores[key] = min(
+            DRAWN_SIZES,
+            key=lambda size: at(sums.marginal(members, size, first), several[:1])[0][1],
+        )
+    whole = sums.marginal(members, sums.scores[key])
+    return [(whole.joined(sums, rest), score) for rest, score in at(whole, several)]
 
 
 def price_of_looking(regression: Regression, rows: float) -> float:
