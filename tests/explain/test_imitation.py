@@ -204,7 +204,28 @@ def test_beside_model_form_error_a_name_is_at_few_places(springs):
         found = select(springs, hidden(TILT), noise, candidates, max_effects=1, alpha=0.01)
         findings, _ = findings_of(found, seed=0)
         many = replace(findings[0], alternatives=tuple(each.id for each in candidates))
-        assert (objection(found, many, [], -np.inf) is None) == stands
+        assert (objection(found, [many], 0, -np.inf) is None) == stands
+
+
+@pytest.mark.parametrize(("gains", "falls"), [((20.0, 600.0), True), ((200.0, 600.0), False)])
+def test_of_two_laws_of_one_gear_the_one_the_misfit_hardly_misses_falls(springs, gains, falls):
+    """Whatever stands first: play takes more micrometres where the curve bends anyway."""
+    tilts = [effect(springs.robot, "joint_tilt", "joint_2_l")]
+    found = select(springs, hidden(TILT), NOISE, tilts, max_effects=1, alpha=0.01)
+    finding = findings_of(found, seed=0)[0][0]
+    play, bend = (
+        replace(
+            finding,
+            effect=effect(springs.robot, name, "joint_2_l"),
+            evidence=replace(finding.evidence, misfit_gain=gain),
+        )
+        for name, gain in zip(("lost_motion", "gear_hardening"), gains, strict=True)
+    )
+    said = objection(found, [play, bend], 0, -np.inf)
+    assert (said is not None and said.misspecification) == falls
+    assert objection(found, [play, bend], 1, -np.inf) is None
+    elsewhere = replace(bend, effect=effect(springs.robot, "gear_hardening", "joint_3_u"))
+    assert objection(found, [play, elsewhere], 0, -np.inf) is None
 
 
 def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(springs):

@@ -62,20 +62,6 @@ def test_slips_at_single_readings_are_outliers_wherever_they_are(rows: list[int]
     assert after == rows
 
 
-def test_a_large_crowd_is_one_of_slips_where_every_pose_keeps_half_of_its_readings():
-    readings = hidden(poses=36)
-    count = readings.n_readings
-    loads = count // 36
-    strewn = [pose * loads + pose % loads for pose in range(0, 30, 2)]
-    assert 0.06 < len(strewn) / count < 0.1
-    assert set_aside(off(readings, strewn, 40 * SIGMA))[1] == strewn
-    assert set_aside(off(readings, list(range(15)), 40 * SIGMA))[1] == []  # whole poses
-    assert set_aside(off(readings, strewn, 6 * SIGMA))[1] != strewn  # not beyond doubt
-    many = sorted({*strewn, *(row + 2 for row in strewn[:6])})
-    assert len(many) > 0.1 * count
-    assert set_aside(off(readings, many, 40 * SIGMA))[1] == []
-
-
 def test_a_slip_is_found_beside_a_tracker_that_warms_up():
     readings = off(warming(hidden(poses=36), 3.0, 40 * SIGMA), [90], 25 * SIGMA)
     assert set_aside(readings)[1] == [90]

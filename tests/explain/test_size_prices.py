@@ -9,7 +9,7 @@ from scipy.special import comb
 
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import solve_sets
-from sk120stiff.explain.select.size_prices import _held_in_turn, price_of_sizes, prices_of_sizes
+from sk120stiff.explain.select.size_prices import _Held, price_of_sizes, prices_of_sizes
 from tests.explain.test_regression import regression
 
 PARTS = np.array([2, 3, 4])
@@ -76,14 +76,40 @@ def test_growth_is_that_of_refits_one_after_the_other():
     rng = np.random.default_rng(2)
     X = rng.normal(size=(60, 5)) @ rng.normal(size=(5, 5))
     values = np.linalg.lstsq(X, rng.normal(size=60), rcond=None)[0]
-    y = X @ values
-    grown = _held_in_turn(np.linalg.inv(X.T @ X), values, np.array([1, 3, 4]))
-    left, kept = [1, 3, 4], [0, 1, 2, 3, 4]
-    for total in grown:
-        tried = {
-            k: np.linalg.lstsq(X[:, [c for c in kept if c != k]], y, rcond=None)[1][0] for k in left
-        }
-        worst = min(tried, key=tried.__getitem__)
-        assert total == pytest.approx(tried[worst], rel=1e-8)
-        left.remove(worst)
-        kept.remove(worst)
+    y, variance, total = X @ values, 2.5, 0.0
+    ways, kept = _Held(np.linalg.inv(X.T @ X), values, variance), [0, 1, 2, 3, 4]
+    for place in (3, 1, 4):
+        kept.remove(place)
+        total += variance * ways.growth(place)
+        ways.hold(place)
+        assert total == pytest.approx(np.linalg.lstsq(X[:, kept], y, rcond=None)[1][0], rel=1e-8)
+
+
+def test_two_effects_that_do_each_others_work_are_not_both_spared():
+    rng = np.random.default_rng(7)
+    found = regression()
+    X = found.X.copy()
+    X[:, 5] = X[:, 3] + 0.15 * rng.normal(size=len(X))
+    y = X[:, :6] @ np.array([4.0, 3.0, 2.0, 0.25, 2.0, 0.0]) + rng.normal(size=len(X))
+    both = replace(found, X=X, y=y, lower=np.zeros(X.shape[1]))
+    whole = misfit(both, list(range(6)))
+    sums = both.sums()
+    solved = solve_sets(sums, [np.arange(6)], both.lower, both.plausible)
+    assert solved.moves.all()
+    for place in (3, 5):  # each alone is nearly for nothing, both together are not
+        assert misfit(both, [k for k in range(6) if k != place]) - whole < 4.0
+    assert misfit(both, [0, 1, 2, 4]) - whole > 8.0
+    parts = [np.array([2, 3]), np.array([4, 5])]
+    rows, prices = len(y), []
+    for held in ((), (3,), (5,), (3, 5)):
+        left = misfit(both, [k for k in range(6) if k not in held])
+        own = [[k for k in part if k not in held] for part in parts]
+        price = left - whole + 2.0 * np.log(2.0) * len(held)
+        for mine in own:
+            rest = [k for k in range(2, 6) if k not in held and k not in mine]
+            alone = misfit(both, [0, 1]) - misfit(both, [0, 1, *mine])
+            assert rest or not alone
+            price += float(price_of_sizes(alone, len(mine), rows))
+        prices.append(price)
+    found_price = float(prices_of_sizes(both, sums, solved, [parts])[0])
+    assert found_price > min(prices) - 1.0  # sparing both would lie far below every model

@@ -32,7 +32,7 @@ class Sums:
     square: float
     count: float
     form: Sums | None = None
-    _marginals: dict[tuple[bytes, float, bytes], Marginal] = field(default_factory=dict)
+    _marginals: dict[tuple[bytes, float, bytes | None], Marginal] = field(default_factory=dict)
     _inverses: dict[bytes, Array] = field(default_factory=dict)
     scores: dict[bytes, Any] = field(default_factory=dict)
 
@@ -67,7 +67,7 @@ class Sums:
         """
         some: Any = slice(None) if columns is None else columns
         block: Any = (some, some) if columns is None else np.ix_(some, some)
-        key = (members.tobytes(), size, b"" if columns is None else columns.tobytes())
+        key = (members.tobytes(), size, None if columns is None else columns.tobytes())
         if key not in self._marginals:
             inner = self.gram[np.ix_(members, members)] + np.eye(len(members)) / size**2
             factor: Array = np.asarray(np.linalg.cholesky(inner), dtype=float)

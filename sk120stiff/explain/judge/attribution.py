@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,13 +18,12 @@ from sk120stiff.explain.judge.posterior import posterior
 from sk120stiff.explain.judge.random_effects import is_constant, joint_that_turns
 from sk120stiff.explain.select.beam import exchanged, in_its_place
 from sk120stiff.explain.select.score import Scored, score_set
-from sk120stiff.explain.select.stepwise import Selection, laws_of, with_effects
+from sk120stiff.explain.select.stepwise import Selection, laws_of, positions, with_effects
 from sk120stiff.robot.anatomy import arm_joints
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
-MISSPECIFICATION = (
-    0.35  # size beside a stronger effect of the same gear that the choice of law explains
-)
+MISSPECIFICATION = 0.35  # of what is explained that may be left where a law of one gear fell
+CURVE = 0.15  # of a gear's twist to which no law of it is exact: a second law may mend the first
 NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
@@ -142,7 +141,7 @@ def findings_of(
     order = by_weight(found.regression, found.scored)
     findings = [_finding(found, effect) for effect in order]
     for place in reversed(range(len(order))):
-        objection = _objection(found, findings[place], findings[:place], least)
+        objection = _objection(found, findings, place, least)
         if objection is None:
             findings[place] = _confirmed(found, order[place], findings[place], seed)
             if findings[place].evidence.confirmation.holds:
@@ -153,11 +152,12 @@ def findings_of(
 
 
 def _objection(
-    found: Selection, finding: Finding, before: list[Finding], least: float
+    found: Selection, findings: list[Finding], place: int, least: float
 ) -> Fallen | None:
-    """Why an effect may not be named beside the stronger ones; None if it may."""
+    """Why an effect may not be named beside the others, the strongest first; None if it may."""
+    finding, before = findings[place], findings[:place]
     name = finding.effect.id
-    stronger = _stronger(found, finding, before)
+    stronger = _stronger(found, findings, place)
     if stronger is not None:
         return Fallen(
             name,
@@ -238,21 +238,29 @@ def _unconfirmed(finding: Finding) -> str:
     )
 
 
-def _stronger(found: Selection, finding: Finding, before: list[Finding]) -> Finding | None:
+def _stronger(found: Selection, findings: list[Finding], place: int) -> Finding | None:
     """The stronger effect whose law leaves over what this one explains.
 
-    No gear follows a cubic to the last digit; what is left looks like play or friction there. No
-    link is as thick at its end as at its root; what is left looks like a tilting bearing.
+    No gear follows a cubic to the last digit; what is left looks like play or friction there. Which
+    of two laws of one gear is the stronger is told by what the misfit loses without each, not by
+    the micrometres of each: play takes more of these, and hardly any where the curve bends anyway.
+    No link is as thick at its end as at its root; what is left looks like a tilting bearing.
     """
+    finding = findings[place]
     gain = np.sqrt(max(finding.evidence.misfit_gain, 0.0))
-    for other in before:
-        if gain < _of_one_gear(finding, other) * np.sqrt(max(other.evidence.misfit_gain, 0.0)):
-            return other
+    for other in findings:
+        both = finding.effect.of_gear and other.effect.of_gear
+        weaker = finding.evidence.misfit_gain < other.evidence.misfit_gain
+        if both and weaker and finding.effect.where == other.effect.where:
+            without = [each.effect for each in findings if each is not finding]
+            if gain < CURVE * _length(found, other.effect, without):
+                return other
+    for other in findings[:place]:
         share = other.effect.inexact
         if (
             share
             and _beside(found, finding.effect, other.effect)
-            and gain < share * _length_alone(found, other.effect) + CHANCE
+            and gain < share * _length(found, other.effect, [other.effect]) + CHANCE
         ):
             return other
     return None
@@ -272,20 +280,15 @@ def _beside(found: Selection, effect: Effect, link: Effect) -> bool:
     return both and abs(place[effect.where] - place[link.where]) <= NEIGHBOURS
 
 
-def _length_alone(found: Selection, effect: Effect) -> float:
-    """Fall of the misfit that one effect alone brings, as a length √λ in units of the noise."""
+def _length(found: Selection, effect: Effect, among: Sequence[Effect]) -> float:
+    """Fall of the misfit that an effect brings among some, as a length √λ in units of the noise."""
     regression, sums = found.regression, found.regression.sums()
-    place = next(k for k, e in enumerate(regression.candidates) if e.id == effect.id)
-    whole = found.scored
-    alone = score_set(regression, sums, (place,), start=whole.by_variant).solved.rss
-    fall = (score_set(regression, sums, ()).solved.rss - alone) / unit(regression, whole)
-    return float(np.sqrt(max(fall, 0.0)))
-
-
-def _of_one_gear(finding: Finding, other: Finding) -> float:
-    """`MISSPECIFICATION` if both effects are laws of one gear."""
-    gears = finding.effect.of_gear and other.effect.of_gear
-    return MISSPECIFICATION if gears and finding.effect.where == other.effect.where else 0.0
+    chosen = set(positions(regression, among))
+    place = positions(regression, [effect])[0]
+    start = found.scored.by_variant
+    with_it = score_set(regression, sums, chosen, start=start).solved.rss
+    without = score_set(regression, sums, chosen - {place}, start=start).solved.rss
+    return float(np.sqrt(max((without - with_it) / unit(regression, found.scored), 0.0)))
 
 
 def _finding(found: Selection, effect: int) -> Finding:

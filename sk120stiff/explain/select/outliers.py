@@ -17,8 +17,6 @@ NEXT = 3.7  # the same once one outlier is certain
 LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to tell of the noise
 ROUNDING = 1e-10  # of the most that a shift has of its own
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
-CLEAR = 2.0  # times NEXT, from which on a slip is one beyond doubt
-LARGEST_CLEAR = 0.1  # share of clear slips that is a crowd still, where they are strewn over poses
 
 
 def outlying_rows(
@@ -31,8 +29,7 @@ def outlying_rows(
     The catalogue is fitted with every parameter drawn towards zero by its plausible range, which is
     flexible enough for any cause like those in it. A reading stands out if a shift of one of its
     axes would still take more than `LIMIT` standard errors (`NEXT`, once one was found). The worst
-    is taken out first, and the rest judged again. Slips beyond doubt may be more, as long as every
-    pose keeps half of its readings: causes strike poses, slips strike readings.
+    is taken out first, and the rest judged again.
 
     An outlier is a slip at a single reading. Where readings stand out, each of the `courses` is
     fitted beside the catalogue too: if it leaves less than the shifts do, each at the price of its
@@ -129,7 +126,6 @@ def _searched(
     A shift that joins the fit adds rows to `half`, with which halfᵀ half is the fit again.
     """
     out: list[int] = []
-    clear: list[int] = []
     count = 1 + max((int(each.readings.max()) for each in shifts), default=-1)
     half = _half(X, prior)
     residual = y - half.T @ (half @ y)
@@ -138,7 +134,7 @@ def _searched(
     for each in shifts:
         total[each.readings] = (each.columns**2).sum(0)
         left[each.readings] = total[each.readings] - (each.along(half) ** 2).sum(0)
-    while True:
+    while len(out) <= LARGEST_SHARE * len(total):
         size = noise
         if size is None:
             size = 1.0 if sigma_known else robust_scale(residual, leverage)
@@ -152,25 +148,13 @@ def _searched(
             left_over = float(y @ residual) / size**2
             return _Searched(np.array(sorted(out), dtype=np.intp), left_over, size)
         out.append(worst)
-        if score[worst].max() > CLEAR * NEXT:
-            clear.append(worst)
-        if len(out) > LARGEST_SHARE * count and not _strewn(out, clear, shifts):
-            return _Searched(np.zeros(0, dtype=np.intp), np.inf, np.nan)
         new = _beyond(half, next(each for each in shifts if worst in each.readings), worst)
         half = np.vstack([half, new])
         residual = residual - new.T @ (new @ y)
         leverage += (new**2).sum(0)
         for each in shifts:
             left[each.readings] -= (each.along(new) ** 2).sum(0)
-
-
-def _strewn(out: Sequence[int], clear: Sequence[int], shifts: Sequence[_Shifts]) -> bool:
-    """Whether a large crowd is one of slips: clear, while every pose keeps half its readings."""
-    count = sum(len(each.readings) for each in shifts)
-    few = len(out) - len(clear) <= LARGEST_SHARE * count and len(out) <= LARGEST_CLEAR * count
-    return few and all(
-        2 * int(np.isin(each.readings, out).sum()) <= len(each.readings) for each in shifts
-    )
+    return _Searched(np.zeros(0, dtype=np.intp), np.inf, np.nan)
 
 
 def _beyond(half: Array, shifts: _Shifts, reading: int) -> Array:

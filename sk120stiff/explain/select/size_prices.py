@@ -8,8 +8,7 @@ and the level of a chance finding is the same for an effect of one parameter and
 
 A value that is physically bounded, as a compliance is, may lie on its bound of zero. Whether it
 does or stays a hair above is chance where the readings do not show it, so it is held at zero where
-the misfit grows by less than the price falls, that of the choice among an effect's values included:
-no model is dearer than its neighbour for a hair.
+the misfit grows by less than the price falls, which includes the choice among an effect's values.
 """
 
 from __future__ import annotations
@@ -56,42 +55,68 @@ def prices_of_sizes(
     gains = (members * within).sum(axis=1) - (across * (inverse @ across)).sum(axis=1)
     gains, counts = gains / variance, mine.sum(axis=1)
     prices = price_of_sizes(gains, counts, n)
-    bounded = mine & (regression.lower[own] == 0.0)[:, :, None] & (counts > 1)[:, None, :]
-    scatter = _scatter(regression, sums, solved)
-    growth = solved.values**2 / np.diagonal(scatter, axis1=1, axis2=2) / variance
-    least = np.where(bounded, growth[:, len(base) :, None], np.inf).min(axis=1, initial=np.inf)
-    for row, effect in np.argwhere(least < prices):
-        places = len(base) + np.flatnonzero(bounded[row, :, effect])
-        spent = _held_in_turn(scatter[row], solved.values[row], places) / variance[row]
-        count, held = counts[row, effect], np.arange(1, len(spent) + 1)
-        spent, held = spent[held < count], held[held < count]
-        gain = np.maximum(gains[row, effect] - spent, 0.0)
-        fewer = spent + price_of_sizes(gain, count - held, n) + 2.0 * np.log(comb(count, held))
-        prices[row, effect] = min(prices[row, effect], fewer.min())
+    if regression.form is None:  # else rows of two kinds count by two sizes
+        bounded = mine & (regression.lower[own] == 0.0)[:, :, None]
+        for row in np.flatnonzero((bounded.any(axis=1) & (counts > 1)).any(axis=1)):
+            ways = _Held.of(regression, sums, solved, int(row), float(variance[row, 0]))
+            for effect in np.flatnonzero(bounded[row].any(axis=0) & (counts[row] > 1)):
+                places = (len(base) + np.flatnonzero(bounded[row, :, effect])).tolist()
+                price = float(prices[row, effect])
+                prices[row, effect] = ways.cheaper(
+                    places, price, float(gains[row, effect]), int(counts[row, effect]), n
+                )
     return np.asarray(prices.sum(axis=1))
 
 
-def _scatter(regression: Regression, sums: Sums, solved: Solutions) -> Array:
-    """(m, k, k) covariance of the values that move, in units of the noise; else the identity."""
-    columns, moves = solved.columns, solved.moves
-    gram = sums.gram[columns[:, :, None], columns[:, None, :]]
-    gram[~(moves[:, :, None] & moves[:, None, :])] = 0.0
-    each = np.arange(columns.shape[1])
-    gram[:, each, each] += np.where(moves, regression.plausible[columns] ** -2.0, 1.0)
-    scale = 1.0 / np.sqrt(gram[:, each, each])
-    both = scale[:, :, None] * scale[:, None, :]
-    return np.asarray(np.linalg.inv(gram * both) * both)
+class _Held:
+    """One solution, some of whose values are held at zero, the others moving on."""
 
+    def __init__(self, scatter: Array, values: Array, variance: float) -> None:
+        self._scatter, self._values, self._variance = scatter, values.copy(), variance
 
-def _held_in_turn(scatter: Array, values: Array, places: Index) -> Array:
-    """Growth of the misfit as values at some places are held at zero, the least first, the others
-    moving on."""
-    scatter, values, left = scatter.copy(), values.copy(), list(places)
-    growth = []
-    while left:
-        each = [values[k] ** 2 / scatter[k, k] for k in left]
-        k = left.pop(int(np.argmin(each)))
-        growth.append(min(each))
-        values -= scatter[k] * (values[k] / scatter[k, k])
-        scatter -= np.outer(scatter[k], scatter[k]) / scatter[k, k]
-    return np.cumsum(growth)
+    @classmethod
+    def of(
+        cls, regression: Regression, sums: Sums, solved: Solutions, row: int, variance: float
+    ) -> _Held:
+        """Solution `row` of several, the covariance of its values with their beliefs."""
+        moves, columns = solved.moves[row], solved.columns[row]
+        gram = sums.gram[columns[:, None], columns] * np.outer(moves, moves)
+        gram.flat[:: len(columns) + 1] += np.where(
+            moves, regression.plausible[columns] ** -2.0, 1.0
+        )
+        scale = 1.0 / np.sqrt(gram.diagonal())
+        both = scale[:, None] * scale
+        return cls(np.linalg.inv(gram * both) * both, solved.values[row], variance)
+
+    def growth(self, place: int) -> float:
+        """Of the misfit, in noise variances, when one more value is held."""
+        return float(self._values[place] ** 2 / self._scatter[place, place] / self._variance)
+
+    def hold(self, place: int) -> None:
+        """Let the other values move to where the misfit is least."""
+        along = self._scatter[place] / self._scatter[place, place]
+        self._values -= along * self._values[place]
+        self._scatter = self._scatter - np.outer(along, self._scatter[place])
+
+    def cheaper(
+        self, places: Sequence[int], price: float, gain: float, count: int, rows: float
+    ) -> float:
+        """Price of one effect, values at `places` held one after the other while that is cheaper.
+
+        The growth of the misfit is part of the price. What is held stays so for the other effects:
+        two that can do each other's work may not both be spared.
+        """
+        left, spent, held = list(places), 0.0, 0
+        while left and held + 1 < count:
+            place = min(left, key=self.growth)
+            more = spent + self.growth(place)
+            fewer = more + float(
+                price_of_sizes(max(gain - more, 0.0), count - held - 1, rows)
+                + 2.0 * np.log(comb(len(places), held + 1))
+            )
+            if fewer >= price:
+                break
+            self.hold(place)
+            left.remove(place)
+            price, spent, held = fewer, more, held + 1
+        return price
