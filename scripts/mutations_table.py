@@ -242,9 +242,9 @@ FAULTS: tuple[Fault, ...] = (
     *_of(
         "explain/select/size_prices.py", *_tests("explain", "regression", "size_prices"),
         sizes_for_nothing=("np.asarray(prices.sum(axis=1))", "np.asarray(0.0 * prices.sum(axis=1))"),
-        dearer_for_a_hair=("np.argwhere(least < prices)", "np.argwhere(least < -1.0)"),
-        rigid_axes_for_nothing=(" + 2.0 * np.log(comb(count, held))", ""),
-        held_alone=("        values -= scatter[k] * (values[k] / scatter[k, k])\n", ""),
+        rigid_axes_for_nothing=("+ 2.0 * np.log(comb(len(places), held + 1))", "+ 0.0"),
+        held_alone=("        self._values -= along * self._values[place]\n", ""),
+        spared_twice=("            self.hold(place)\n", ""),
     ),
     *_of(
         "explain/judge/imitation.py", *_tests("explain", "imitation"),

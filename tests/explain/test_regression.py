@@ -65,6 +65,17 @@ def test_sums_over_poses_are_the_whole():
     assert np.allclose(twice.gram, 2.0 * sums.gram)
 
 
+def test_draws_integrated_out_of_some_columns_are_those_of_all():
+    sums, members, some = regression().sums(), np.arange(5, 5 + POSES), np.array([0, 3, 6])
+    whole, part = sums.marginal(members, 1.5), sums.marginal(members, 1.5, some)
+    pick = np.ix_(some, some)
+    assert np.allclose(part.sums.gram[pick], whole.sums.gram[pick])
+    assert np.allclose(part.sums.moment[some], whole.sums.moment[some])
+    assert (part.price, part.sums.square) == (whole.price, whole.sums.square)
+    none = sums.marginal(members, 1.5, np.zeros(0, dtype=np.intp))
+    assert not none.sums.gram.any() and sums.marginal(members, 1.5).sums.gram.any()
+
+
 def test_free_columns_are_least_squares():
     found = regression()
     pick = np.array([0, 1, 2])
