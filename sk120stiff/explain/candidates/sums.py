@@ -73,7 +73,7 @@ class Sums:
             factor: Array = np.asarray(np.linalg.cholesky(inner), dtype=float)
             half = solve_triangular(factor, self.gram[members][:, some], lower=True)
             right = solve_triangular(factor, self.moment[members], lower=True)
-            gram, moment = np.zeros_like(self.gram), np.zeros_like(self.moment)
+            gram, moment = np.zeros(self.gram.shape), np.zeros(self.moment.shape)
             gram[block] = self.gram[block] - half.T @ half
             moment[some] = self.moment[some] - half.T @ right
             sums = Sums(gram, moment, self.square - float(right @ right), self.count)
