@@ -25,10 +25,10 @@ the reason that stands beside it in its file. Made by `python scripts/thresholds
 when that number alone is half as large or twice (a right answer brings one point, a wrong name
 costs one), over those cases in which code that reads it runs; their number is beside. A number
 between a third and one is not doubled, but goes half the way to one. `scripts/thresholds_effect.py`
-makes them. Where nothing stands it was not tried, or is no other number when halved. So far ten
-cases (L0.plans, L1.plans, L3, L4, L6, L7, L9, L10, L11, L12; seed 777003) tried the search, the
-judgement, and most of solving and localising: few cases show what hangs on a number, not that
-nothing does.
+makes them. Where nothing stands it was not tried, or is no other number when halved. Ten
+cases (L0.plans, L1.plans, L3, L4, L6, L7, L9, L10, L11, L12; seed 777003) tried all but several
+numbers at once: few cases show what hangs on a number, not that nothing does. Of no case is what
+does not run while readings are explained, as the pilot.
 
 | name | value | file | what it is | halved | doubled | cases |
 |---|---|---|---|---|---|---|

@@ -239,6 +239,18 @@ def test_noise_scatters_as_its_covariance_says(shared: bool) -> None:
     assert bool(expected[0, 3]) is shared
 
 
+@pytest.mark.parametrize("schedule", ["repeated", "reloads"])
+def test_a_repeat_has_the_load_of_the_first_time(schedule: str) -> None:
+    rows = rows_for(sk120(), schedule=schedule, moments=True)
+    again = np.flatnonzero(rows.repeat > 1)
+    assert len(again)
+    for row in again:
+        alike = (rows.pose == rows.pose[row]) & (rows.force == rows.force[row]).all(axis=1)
+        assert (rows.moment[alike] == rows.moment[row]).all() and alike.sum() > 1
+    first = rows.moment[rows.repeat == 1]
+    assert len(np.unique(first, axis=0)) == len(first)
+
+
 def test_random_arms_differ_and_move() -> None:
     rng = np.random.default_rng(5)
     seen = set()
