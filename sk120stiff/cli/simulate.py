@@ -14,7 +14,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, model_for, open_data
 from sk120stiff.cli.options import ModelArgument, SeedOption
 from sk120stiff.errors import InputError
-from sk120stiff.measurements import NoiseModel, write_measurements
+from sk120stiff.measurements import Instrument, Measurements, NoiseModel, write_measurements
 from sk120stiff.plan import Schedule, as_positions, simulate
 from sk120stiff.units import parse_size
 
@@ -55,7 +55,8 @@ def command(
     Args:
         plan (PLAN): Poses and loads: measurements without displacements (others are not looked at).
         out (CSV): Where to write them.
-        noise (LENGTH): Standard uncertainty of one reading per axis, e.g. '10 um'. [default: none]
+        noise (LENGTH): Standard uncertainty of one reading per axis, e.g. '10 um'; or 'stated':
+            what the plan's YAML file says, an instrument's ray too. [default: none]
         zero: One zero reading for all loads of a pose, or one for each.
         growth: Noise that grows with the displacement: its share.
         schedule: Each load alone, in steps up to it, or up and down.
@@ -70,7 +71,7 @@ def command(
     made = simulate(
         believed,
         readings,
-        noise=_noise(noise, growth, zero),
+        noise=_noise(noise, growth, zero, readings),
         schedule=Schedule(schedule.value, levels, repeats, zero.value),
         outliers=outliers,
         seed=seed,
@@ -103,7 +104,9 @@ def command(
     return Answer(document, [said, f"Written to {out} and {out.with_suffix('.yaml')}."])
 
 
-def _noise(text: str | None, growth: float, zero: Zero) -> NoiseModel | None:
+def _noise(
+    text: str | None, growth: float, zero: Zero, plan: Measurements
+) -> NoiseModel | Instrument | None:
     if text is None:
         if growth:
             raise InputError(
@@ -112,5 +115,21 @@ def _noise(text: str | None, growth: float, zero: Zero) -> NoiseModel | None:
                 remedy="Give --noise too, e.g. --noise '10 um'.",
             )
         return None
-    sigma = parse_size(text, "length", where="--noise", like="10 um")
-    return NoiseModel(sigma, growth, zero.value)
+    if text != "stated":
+        sigma = parse_size(text, "length", where="--noise", like="10 um")
+        return NoiseModel(sigma, growth, zero.value)
+    said = plan.noise
+    if growth:
+        raise InputError(
+            "what is stated has its own growth", where="--growth", remedy="Leave out --growth."
+        )
+    if said.instrument is not None:
+        return said.instrument
+    if said.sigma is None:
+        raise InputError(
+            "the plan states no noise",
+            where="--noise stated",
+            remedy="Write noise.sigma or noise.instrument into the YAML file beside the plan, or "
+            "give a length, e.g. --noise '10 um'.",
+        )
+    return NoiseModel(said.sigma, said.growth or 0.0, zero.value)

@@ -12,7 +12,7 @@ from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.noise_statement import NoiseStatement
+from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.model import Model
 from sk120stiff.plan.schedule import Schedule, scheduled
 
@@ -52,7 +52,7 @@ def simulate(
     model: Model,
     plan: Measurements,
     *,
-    noise: NoiseModel | None = None,
+    noise: NoiseModel | Instrument | None = None,
     schedule: Schedule | None = None,
     outliers: float = 0.0,
     seed: int = 0,
@@ -67,7 +67,7 @@ def simulate(
         plan: Poses and loads; displacements in it are not looked at.
         noise: What one reading is worth; None: readings without noise. Rows that state their own
             uncertainty (sx, sy, sz) are drawn with that. Whether zero readings are shared says the
-            schedule.
+            schedule. An instrument is sharp along its ray and duller across it.
         schedule: Load steps, repeats and zero readings; by default every row as given, zeros
             shared.
         outliers: Share of the loaded readings that are off by 5 to 20 times their noise in a random
@@ -75,7 +75,8 @@ def simulate(
         seed: Of the draw.
 
     Raises:
-        InputError: A plan without loads, or a share that is none.
+        InputError: A plan without loads, a share that is none, or an instrument for displacements
+            in axes of the tool.
         Refusal: The springs cannot hold a load.
 
     Examples:
@@ -100,18 +101,23 @@ def simulate(
     hit = np.zeros(count, dtype=bool)
     if noise is not None:
         rng = np.random.default_rng(seed)
-        own, zero = noise.variances(readings, np.linalg.norm(exact, axis=1))
         group = readings.zero_group
-        draws = rng.normal(size=(int(group.max()) + 1, 3))[group]
-        zero_error = draws * np.sqrt(zero)
-        error = rng.normal(size=(count, 3)) * np.sqrt(own)
+        zero_draws = rng.normal(size=(int(group.max()) + 1, 3))[group]
+        draws = rng.normal(size=(count, 3))
+        if isinstance(noise, Instrument):
+            own, zero_error, error = _seen(noise, model, readings, zero_draws, draws)
+        else:
+            own, zero = noise.variances(readings, np.linalg.norm(exact, axis=1))
+            zero_error, error = zero_draws * np.sqrt(zero), draws * np.sqrt(own)
         hit = rng.random(count) < outliers
         direction = rng.normal(size=(count, 3))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
         size = rng.uniform(*OUTLIER, count) * np.sqrt(own.mean(axis=1))
         error += (hit * size)[:, None] * direction
     stated = NoiseStatement()
-    if noise is not None:
+    if isinstance(noise, Instrument):
+        stated = NoiseStatement(instrument=noise)
+    elif noise is not None:
         stated = NoiseStatement(noise.sigma, noise.growth or None)
     made = replace(
         readings,
@@ -123,6 +129,32 @@ def simulate(
         notes=(),
     )
     return Simulated(made, exact, zero_error, hit)
+
+
+def _seen(
+    instrument: Instrument, model: Model, readings: Measurements, zero_draws: Array, draws: Array
+) -> tuple[Array, Array, Array]:
+    """Variances along the axes (N, 3), and the errors of zero and loaded readings (N, 3).
+
+    Args:
+        zero_draws, draws: (N, 3) standard normal numbers.
+    """
+    if readings.displacement_frame != "base":
+        raise InputError(
+            "an instrument has its rays in axes of the base, the plan says 'tool'",
+            where=str(readings.path or "plan"),
+            remedy="Write 'displacement: {frame: base}' into the YAML file.",
+        )
+    points = model.robot.screws(readings.joints, point=readings.point).position
+    rays, along, across = instrument.at(points)
+    sharper = (along - across)[:, None]
+
+    def errors(normal: Array) -> Array:
+        onto = (rays * normal).sum(axis=1, keepdims=True)
+        return np.asarray(across[:, None] * normal + sharper * onto * rays)
+
+    own = across[:, None] ** 2 + (along**2 - across**2)[:, None] * rays**2
+    return own, errors(zero_draws), errors(draws)
 
 
 def as_positions(model: Model, simulated: Simulated) -> Measurements:

@@ -45,6 +45,28 @@ def test_the_springs_come_back(run, tmp_path: Path) -> None:
         assert found["lack_of_fit"]["probability"] > 1e-3
 
 
+def test_noise_as_the_plan_states_it(run, tmp_path: Path) -> None:
+    plan, out = tmp_path / "plan.csv", tmp_path / "made.csv"
+    run("simulate", MODEL, PLAN, "--out", str(plan))
+    silent = run("simulate", MODEL, str(plan), "--noise", "stated", "--out", str(out), "--json")
+    assert silent.code == 2
+    assert "states no noise" in silent.document["error"]["message"]
+    assert not out.exists()
+    settings = plan.with_suffix(".yaml")
+    said = settings.read_text(encoding="utf-8")
+    ray = "{xyz: [3.4, -2.7, 0.9], unit: m, along: 4, across: 9, across_per_m: 3}"
+    settings.write_text(f"{said}noise: {{unit: um, instrument: {ray}}}\n", encoding="utf-8")
+    run("simulate", MODEL, str(plan), "--noise", "stated", "--seed", "3", "--out", str(out))
+    made = read_measurements(out)
+    assert made.noise.instrument is not None
+    assert made.noise.instrument.across_per_m == pytest.approx(3e-6)
+    found = run("identify", str(out), "--json").document
+    assert found["lack_of_fit"]["probability"] > 1e-3
+    both = run("simulate", MODEL, str(plan), "--noise", "stated", "--growth", "0.01",
+               "--out", str(out))  # fmt: skip
+    assert both.code == 2
+
+
 def test_without_noise_the_gap_is_nothing(run, tmp_path: Path) -> None:
     out = str(tmp_path / "made.csv")
     run("simulate", MODEL, PLAN, "--out", out)

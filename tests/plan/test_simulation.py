@@ -8,7 +8,12 @@ from scipy import stats
 
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError
-from sk120stiff.measurements import NoiseModel, read_measurements, write_measurements
+from sk120stiff.measurements import (
+    Instrument,
+    NoiseModel,
+    read_measurements,
+    write_measurements,
+)
 from sk120stiff.plan import Schedule, as_positions, scheduled, simulate
 
 STEPS = Schedule("ascending", 4)
@@ -20,6 +25,28 @@ def test_without_noise_it_is_the_prediction(springs, plan) -> None:
     expected = springs.predict(load_cases_of(springs.robot, readings))
     np.testing.assert_array_equal(made.measurements.displacement, expected)
     assert made.measurements.noise.sigma is None
+
+
+def test_an_instrument_errs_along_its_ray_and_across_it(springs, plan, tmp_path) -> None:
+    tracker = Instrument((3.0, -2.0, 0.5), 5e-6, 20e-6, across_per_m=3e-6)
+    many = Schedule("as-given", repeats=200, zero="separate")
+    made = simulate(springs, plan, noise=tracker, schedule=many, seed=4)
+    readings = made.measurements
+    points = springs.robot.screws(readings.joints, point=readings.point).position
+    rays, along, across = tracker.at(points)
+    error = readings.displacement - made.exact  # of a loaded and of a zero reading
+    onto = (error * rays).sum(axis=1)
+    rest = error - onto[:, None] * rays
+    count = len(onto)
+    assert np.mean((onto / along) ** 2) / 2 == pytest.approx(1.0, abs=4 * np.sqrt(2 / count))
+    size = np.mean((rest**2).sum(axis=1) / across**2) / 4
+    assert size == pytest.approx(1.0, abs=4 * np.sqrt(1 / count))
+    write_measurements(readings, tmp_path / "made.csv")
+    back = read_measurements(tmp_path / "made.csv", springs.robot.actuated)
+    assert back.noise.instrument == tracker
+    assert back.sigma is None
+    with pytest.raises(InputError, match="axes of the base"):
+        simulate(springs, replace(plan, displacement_frame="tool"), noise=tracker)
 
 
 def test_seeds_decide(springs, plan) -> None:
