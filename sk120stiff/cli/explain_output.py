@@ -118,6 +118,7 @@ def parts(
 ) -> list[object]:
     """The answer for people; `report` is where the report was written, if it was."""
     shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
+    shown += answer.known_together
     rows = [(s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6) for s in answer.steps]
     shown.append(table("Gap [µm rms per axis]", ["model", "fitted", "held out"], rows))
     shown += [*plain_words(answer), *held_out_words(answer)]

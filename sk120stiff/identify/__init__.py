@@ -11,7 +11,12 @@ from sk120stiff.identify.checks.held_out import (
     refitted,
 )
 from sk120stiff.identify.checks.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
-from sk120stiff.identify.checks.null_space import unseen_reasons, weak_directions, why_unseen
+from sk120stiff.identify.checks.null_space import (
+    known_together,
+    unseen_reasons,
+    weak_directions,
+    why_unseen,
+)
 from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
 from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
@@ -39,6 +44,7 @@ __all__ = [
     "fit_report",
     "held_out",
     "known_model",
+    "known_together",
     "lack_of_fit",
     "likelier",
     "pose_parts",

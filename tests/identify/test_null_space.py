@@ -1,14 +1,17 @@
 """What a fit says it does not know."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from sk120stiff.effects import effect
-from sk120stiff.identify import Problem, fit, solve, weak_directions
+from sk120stiff.identify import Problem, fit, known_together, solve, weak_directions
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
 from tests.identify.conftest import readings_of
 
 NOISE = NoiseModel(10e-6)
+TILT = "joint_tilt:joint_2_l"
 
 
 def test_a_good_fit_has_nothing_to_say(springs, table2) -> None:
@@ -39,6 +42,9 @@ def test_an_exact_alias_is_one_sum(springs, robot) -> None:
     pair = [s for s in said if "move together: only" in s and "link torsion" in s]
     assert len(pair) == 1
     assert "joint tilt along (joint_2_l)" in pair[0]
+    told = known_together(replace(found, selection_uncertainty=found.problem.span), {TILT})
+    assert [s for s in told if "move together: only" in s] == pair
+    assert known_together(found, {"joint_springs:joint_1_s"}) == ()
     lost = {p.name for p, ok in zip(found.parameters, found.identifiable, strict=True) if not ok}
     assert lost == {"link_torsion:link_2_l.GJ", "joint_tilt:joint_2_l.stiffness_along"}
     # what is known of them: tilt compliance + length / GJ

@@ -8,7 +8,7 @@ import yaml
 
 from sk120stiff.effects import effect, load_case, load_cases_of
 from sk120stiff.identify import fit, known_model
-from sk120stiff.measurements import NoiseStatement
+from sk120stiff.measurements import ModelForm, NoiseStatement
 from sk120stiff.model import (
     Model,
     joint_spring_model,
@@ -43,6 +43,32 @@ def test_the_covariance_is_that_of_the_fit(truth: Model) -> None:
     np.testing.assert_allclose(known.std, [p.internal_std for p in found.parameters])
     assert known.freedom is None and len(known.unseen) == 0
     assert known.remainder is not None and not known.remainder.significant
+
+
+def test_what_other_models_make_of_the_values_leaves_the_readings_predicted(truth: Model) -> None:
+    """Large moves of single values count as far as the readings allow them together."""
+    found = fit(truth, stated(truth))
+    scale, before = found.problem.scale, known_model(found).uncertainty.covariance
+    J = found.jacobian / scale
+    seen = np.einsum("ij,jk,ik->i", J, before, J)
+    errors = np.sqrt(np.diag(before)) / scale
+    for size in (30.0, 300.0):
+        moved = replace(found, selection_uncertainty=size * errors)
+        after = known_model(moved).uncertainty.covariance
+        ratio = np.einsum("ij,jk,ik->i", J, after, J) / seen
+        assert (ratio > 3.5).all() and (ratio < 4.0 + 1e-6).all()  # 1 + AS_WELL
+    little = replace(found, selection_uncertainty=1e-3 * errors)
+    more = known_model(little).uncertainty.covariance - before
+    np.testing.assert_allclose(
+        more, np.diag((1e-3 * errors * scale) ** 2), rtol=1e-5, atol=1e-6 * more.max()
+    )
+    apart = known_model(replace(found, left_out=2.0 * errors)).uncertainty.covariance
+    np.testing.assert_allclose(apart - before, np.diag((2.0 * errors * scale) ** 2), atol=1e-20)
+    beside = replace(found.problem.noise, form=ModelForm(0.01, 1e-6))
+    formed = replace(found, problem=replace(found.problem, noise=beside))
+    formed = replace(formed, selection_uncertainty=30.0 * errors)
+    wide = known_model(formed).uncertainty.std
+    assert (wide > 29.0 * errors * scale).all()
 
 
 def test_a_remainder_is_found_with_its_size(truth: Model) -> None:

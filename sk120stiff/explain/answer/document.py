@@ -76,6 +76,7 @@ def verdict_document(
         ],
         "best_guess": BEST_GUESS if answer.guess is not None else None,
         "not_named": list(answer.unnamed),
+        "known_together": list(answer.known_together),
         "limits": list(answer.limits),
         "noise": {
             "model": noise_sentence(answer.final),

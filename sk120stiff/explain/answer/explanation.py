@@ -14,7 +14,7 @@ from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, S
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.budget import error_budget, joint_budget
 from sk120stiff.explain.judge.remainder import Remainder
-from sk120stiff.identify import Fit, Yardstick, yardstick
+from sk120stiff.identify import Fit, Yardstick, known_together, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Share
 
@@ -97,6 +97,11 @@ class Explanation:
     def noise_floor(self) -> float | None:
         """Rms per axis that noise alone would give the gap [m]; None where nothing tells it."""
         return self.yardstick.floor
+
+    @cached_property
+    def known_together(self) -> tuple[str, ...]:
+        """What of the named effects only shows together with others, in sentences."""
+        return known_together(self.final, {finding.effect.id for finding in self.findings})
 
     @cached_property
     def budget(self) -> tuple[Share, ...]:

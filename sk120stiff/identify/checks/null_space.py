@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,18 +35,9 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
     those that are strongly correlated, those on a bound, those that are larger than is plausible,
     and single values that are vague.
     """
-    said: list[str] = []
-    told: set[int] = set()
-    for overlay in fit.overlays:
-        said.append(overlaid_sentence(fit, overlay))
-        told.update(overlay.members)
-    for group, size in _null_groups(fit):
-        if not told.issuperset(group):
-            said.append(_unseen(fit, group, size))
-            told.update(group)
-    for first, second in _correlated(fit):
-        if not told.issuperset((first, second)):
-            said.append(_correlation(fit, first, second))
+    said = [sentence for _, sentence in _together(fit)]
+    told = {k for overlay in fit.overlays for k in overlay.members}
+    told |= {k for group, _ in _null_groups(fit) for k in group}
     said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound & fit.held)]
     far = (np.abs(fit.x) > fit.problem.span) & fit.identifiable
     said += [_implausible(fit.parameters[k]) for k in np.flatnonzero(far)]
@@ -65,6 +57,35 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
                 f"{parameter.spec.unit} (standard error {share:.0f} %)."
             )
     return tuple(said)
+
+
+def known_together(fit: Fit, effects: Collection[str]) -> tuple[str, ...]:
+    """Sentences on values of some effects that the readings tell together with others alone.
+
+    By the noise of the readings: what other models would make of single values is left out.
+
+    Args:
+        fit: A fit of a model with these effects.
+        effects: Their ids.
+    """
+    fit = replace(fit, selection_uncertainty=None, left_out=None)
+    own = {k for k, each in enumerate(fit.parameters) if each.effect.id in effects}
+    return tuple(said for members, said in _together(fit) if len(members) > 1 and members & own)
+
+
+def _together(fit: Fit) -> Iterator[tuple[set[int], str]]:
+    """Parameters of which only combinations are known, or that no reading shows, and sentences."""
+    told: set[int] = set()
+    for overlay in fit.overlays:
+        yield set(overlay.members), overlaid_sentence(fit, overlay)
+        told.update(overlay.members)
+    for group, size in _null_groups(fit):
+        if not told.issuperset(group):
+            yield set(group), _unseen(fit, group, size)
+            told.update(group)
+    for pair in _correlated(fit):
+        if not told.issuperset(pair):
+            yield set(pair), _correlation(fit, *pair)
 
 
 def overlaid_sentence(fit: Fit, group: Overlay) -> str:

@@ -18,6 +18,7 @@ from sk120stiff.model.uncertainty import load_size
 from sk120stiff.robot.anatomy import arm_length
 
 COUNTS = 0.05  # probability of noise alone below which the remainder counts in predictions
+AS_WELL = 3.0  # of the noise's variance: other models fit worse by up to 10 in χ², evenly spread
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 
 
@@ -55,7 +56,7 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     size = span * scale
     per_noise = (V / singular) * size[:, None]
     covariance = fit.unit**2 * per_noise @ per_noise.T
-    covariance = covariance + np.diag((fit.beside_noise * scale) ** 2)
+    covariance = covariance + _beside_noise(fit, covariance)
     unseen = np.where(lost[:, None], null * size[:, None], 0.0).T
     nothing = np.sqrt(np.diag(covariance)) < ROUNDING * np.abs(unseen).max(axis=0, initial=0.0)
     covariance = np.where(nothing | nothing[:, None], 0.0, covariance)
@@ -68,6 +69,30 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
         freedom=None if np.isinf(fit.freedom) else float(fit.freedom),
         source=source,
     )
+
+
+def _beside_noise(fit: Fit, covariance: Array) -> Array:
+    """What is not of the readings' noise, of the internal values.
+
+    Another model that explains the readings as well moves the estimates, each by so much, and yet
+    together to where the readings are predicted nearly alike: of independent moves with the
+    covariance M those that readings of a few times the noise allow have the parallel sum of M and
+    a Σ, M − M (M + a Σ)⁻¹ M. Beside model-form error a foreign cause has moved them, and readings
+    need not agree.
+    """
+    scale, none = fit.problem.scale, np.zeros(len(fit.x))
+    left_out, moved = (
+        (none if each is None else each) * scale
+        for each in (fit.left_out, fit.selection_uncertainty)
+    )
+    if fit.problem.noise.form:
+        return np.diag(left_out**2 + moved**2)
+    both = AS_WELL * covariance + np.diag(moved**2)
+    size = np.sqrt(np.maximum(np.diag(both), 1e-300))
+    alike = np.asarray(np.linalg.pinv(both / np.outer(size, size), hermitian=True))
+    inverse = alike / np.outer(size, size)
+    together = np.diag(moved**2) - (moved**2)[:, None] * inverse * moved**2
+    return np.asarray(np.diag(left_out**2) + 0.5 * (together + together.T))
 
 
 def _source(fit: Fit, noise: Yardstick) -> str:

@@ -62,7 +62,7 @@ def _set_aside(answer: Explanation, readings: Measurements) -> Note:
 
 def blind_section(answer: Explanation) -> Section:
     """Effects that never show here, and the smallest size of the others that would have."""
-    blocks: list[Block] = []
+    blocks: list[Block] = [*answer.known_together]
     if answer.not_observable:
         blocks.append(
             "At no plausible size would these have shown in these readings. They may be there."
