@@ -9,7 +9,8 @@ from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import explain
-from sk120stiff.explain.judge.beside_suspect import _holds, nuisance
+from sk120stiff.explain.judge.attribution import Fallen, Named
+from sk120stiff.explain.judge.beside_suspect import _holds, _with_the_last_fallen, nuisance
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseStatement
@@ -55,6 +56,18 @@ def test_what_other_readings_do_not_tell_moves_nothing_there():
     assert not free.offsets(unordered).any()
     with pytest.raises(InputError, match="do not tell of the moon"):
         nuisance("the moon", base_fit(readings))
+
+
+def test_a_name_that_fell_and_came_back_is_not_added_twice(springs: Model):
+    ways = [effect(springs.robot, "gear_hardening", f"joint_{k}") for k in ("1_s", "2_l")]
+    found = select(springs, hidden(GEAR), NOISE, ways, max_effects=1, alpha=0.01)
+    assert [each.id for each in found.effects] == ["gear_hardening:joint_1_s"]
+    for name, fits in (("gear_hardening:joint_1_s", []), ("gear_hardening:joint_2_l", [2])):
+        fallen = Named((), (Fallen(name, "so"),))
+        beside = _with_the_last_fallen(found, fallen)
+        assert [len({p.effect.id for p in fit.parameters} & {each.id for each in ways})
+                for fit in beside] == fits  # fmt: skip
+    assert _with_the_last_fallen(found, Named((), ())) == []
 
 
 def test_a_suspect_takes_from_a_fit_what_it_stands_for():

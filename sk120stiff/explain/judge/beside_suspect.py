@@ -221,9 +221,13 @@ def _holds(suspect: Nuisance, effect: Effect, found: Selection) -> bool:
 
 
 def _with_the_last_fallen(found: Selection, named: Named) -> list[Fit]:
-    """The fit with the name that stood longest: beside it a suspect may show that hides without."""
-    last = named.fallen[-1].id if named.fallen else None
-    effects = [each for each in found.regression.candidates if each.id == last]
+    """The fit with the name that stood longest: beside it a suspect may show that hides without.
+
+    A name that fell and came back in another's place is in the fit already.
+    """
+    inside = {each.id for each in found.effects}
+    last = {each.id for each in named.fallen[-1:]} - inside
+    effects = [each for each in found.regression.candidates if each.id in last]
     try:
         return [refit(found.base, [*found.effects, *effects])] if effects else []
     except Refusal:
