@@ -12,8 +12,9 @@ from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.judge import beside_form, imitation
+from sk120stiff.explain.judge.attribution import CURVE, findings_of
+from sk120stiff.explain.judge.attribution import _length as length
 from sk120stiff.explain.judge.attribution import _objection as objection
-from sk120stiff.explain.judge.attribution import findings_of
 from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.imitation import _Lineup as Lineup
 from sk120stiff.explain.judge.imitation import _precision as precision
@@ -26,6 +27,7 @@ from sk120stiff.measurements import Measurements, ModelForm
 from tests.explain.readings import NOISE, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.hidden.generator.causes_foreign import QuadraticMount, TrackerStand
+from tests.hidden.generator.causes_joint import GearHardening
 from tests.hidden.generator.causes_sensor import ForceBias, ForceCrosstalk
 
 ROUGH = replace(NOISE, form=ModelForm(0.01, 0.0))
@@ -207,25 +209,28 @@ def test_beside_model_form_error_a_name_is_at_few_places(springs):
         assert (objection(found, [many], 0, -np.inf) is None) == stands
 
 
-@pytest.mark.parametrize(("gains", "falls"), [((20.0, 600.0), True), ((200.0, 600.0), False)])
-def test_of_two_laws_of_one_gear_the_one_the_misfit_hardly_misses_falls(springs, gains, falls):
+@pytest.mark.parametrize(("gain", "falls"), [(8.0, True), (50.0, False)])
+def test_a_second_law_of_a_gear_must_show_by_more_than_its_law_is_inexact(springs, gain, falls):
     """Whatever stands first: play takes more micrometres where the curve bends anyway."""
-    tilts = [effect(springs.robot, "joint_tilt", "joint_2_l")]
-    found = select(springs, hidden(TILT), NOISE, tilts, max_effects=1, alpha=0.01)
-    finding = findings_of(found, seed=0)[0][0]
-    play, bend = (
-        replace(
-            finding,
-            effect=effect(springs.robot, name, "joint_2_l"),
-            evidence=replace(finding.evidence, misfit_gain=gain),
-        )
-        for name, gain in zip(("lost_motion", "gear_hardening"), gains, strict=True)
-    )
-    said = objection(found, [play, bend], 0, -np.inf)
+    gear = GearHardening("joint_2_l", {"cubic": 0.8}, {"T": 700.0})
+    kinds = [("gear_hardening", "joint_2_l"), ("lost_motion", "joint_2_l"),
+             ("lost_motion", "joint_3_u")]  # fmt: skip
+    bend, play, elsewhere = (effect(springs.robot, *where) for where in kinds)
+    found = select(springs, hidden(gear), NOISE, [bend, play, elsewhere],
+                   max_effects=1, alpha=0.01)  # fmt: skip
+    assert [each.id for each in found.effects] == [bend.id]
+    first = findings_of(found, seed=0)[0][0]
+    whole = length(found, bend, [bend])
+    assert whole == pytest.approx(np.sqrt(first.evidence.misfit_gain), rel=1e-6)
+    assert np.sqrt(8.0) < CURVE * whole < np.sqrt(50.0)
+    slight, strong = (replace(first.evidence, misfit_gain=g) for g in (gain, 60.0))
+    second = replace(first, effect=play, evidence=slight)
+    first = replace(first, evidence=strong)
+    said = objection(found, [second, first], 0, -np.inf)
     assert (said is not None and said.misspecification) == falls
-    assert objection(found, [play, bend], 1, -np.inf) is None
-    elsewhere = replace(bend, effect=effect(springs.robot, "gear_hardening", "joint_3_u"))
-    assert objection(found, [play, elsewhere], 0, -np.inf) is None
+    assert objection(found, [second, first], 1, -np.inf) is None
+    apart = replace(second, effect=elsewhere)
+    assert objection(found, [apart, first], 0, -np.inf) is None
 
 
 def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(springs):
