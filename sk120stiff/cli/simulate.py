@@ -125,6 +125,9 @@ def _noise(
         )
     if said.instrument is not None:
         return said.instrument
+    if plan.sigma is not None:  # rows are drawn with their own
+        usual = said.sigma or float(np.nanmedian(plan.sigma))
+        return NoiseModel(usual, said.growth or 0.0, zero.value)
     if said.sigma is None:
         raise InputError(
             "the plan states no noise",

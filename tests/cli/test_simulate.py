@@ -62,6 +62,14 @@ def test_noise_as_the_plan_states_it(run, tmp_path: Path) -> None:
     assert made.noise.instrument.across_per_m == pytest.approx(3e-6)
     found = run("identify", str(out), "--json").document
     assert found["lack_of_fit"]["probability"] > 1e-3
+    header, *rows = plan.read_text(encoding="utf-8").splitlines()
+    told = [f"{header},sx[um],sy[um],sz[um]", *(f"{row},5,5,20" for row in rows)]
+    columns = tmp_path / "columns.csv"
+    columns.write_text("\n".join(told) + "\n", encoding="utf-8")
+    columns.with_suffix(".yaml").write_text(said, encoding="utf-8")
+    drawn = run("simulate", MODEL, str(columns), "--noise", "stated", "--out", str(out))
+    assert drawn.code == 0, drawn.stderr
+    assert (read_measurements(out).sigma[:, 2] > 3 * read_measurements(out).sigma[:, 0]).all()
     both = run("simulate", MODEL, str(plan), "--noise", "stated", "--growth", "0.01",
                "--out", str(out))  # fmt: skip
     assert both.code == 2
