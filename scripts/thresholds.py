@@ -25,9 +25,10 @@ the reason that stands beside it in its file. Made by `python scripts/thresholds
 when that number alone is half as large or twice (a right answer brings one point, a wrong name
 costs one), over those cases in which code that reads it runs; their number is beside. A number
 between a third and one is not doubled, but goes half the way to one. `scripts/thresholds_effect.py`
-makes them. Where nothing stands it was not tried, or is no other number when halved. Ten
-cases (L0.plans, L1.plans, L3, L4, L6, L7, L9, L10, L11, L12; seed 777003) tried all but several
-numbers at once: few cases show what hangs on a number, not that nothing does. Of no case is what
+makes them; of several numbers at once each is changed. Where nothing stands it is no other number
+when halved, or no case reaches it. Ten
+cases (L0.plans, L1.plans, L3, L4, L6, L7, L9, L10, L11, L12; seed 777003) tried all of them: few
+cases show what hangs on a number, not that nothing does. Of no case is what
 does not run while readings are explained, as the pilot.
 
 | name | value | file | what it is | halved | doubled | cases |
@@ -52,13 +53,18 @@ class Number:
         """Where it is defined."""
         return "sk120stiff." + self.file.removesuffix(".py").replace("/", ".")
 
-    def times(self, factor: float) -> float:
-        """The number at another size, of the same kind."""
-        assert not isinstance(self.value, tuple)
-        if isinstance(self.value, int):
-            return max(round(self.value * factor), 1)
-        moved = self.value * factor
-        return min(moved, 0.5 * (1.0 + self.value)) if self.value < 1.0 else moved
+    def times(self, factor: float) -> float | tuple[float, ...]:
+        """The number, or each of several, at another size and of the same kind."""
+        if isinstance(self.value, tuple):
+            return tuple(_times(each, factor) for each in self.value)
+        return _times(self.value, factor)
+
+
+def _times(value: float, factor: float) -> float:
+    if isinstance(value, int):
+        return max(round(value * factor), min(value, 1))
+    moved = value * factor
+    return min(moved, 0.5 * (1.0 + value)) if value < 1.0 else moved
 
 
 def numbers() -> list[Number]:

@@ -1,6 +1,6 @@
 """What each number that steers `explain` does to the blind score, halved and doubled.
 
-    python scripts/thresholds_effect.py CASES --out RUNS [--jobs 2] [--places explain] [--only N]
+    python scripts/thresholds_effect.py CASES --out RUNS [--jobs 2] [--places explain] [--only N] [--blank]
 
 CASES: sealed cases (`python -m tests.hidden.make_cases`). Every case is answered as it is, and it
 is noted which functions ran; then each number is changed alone, in the cases in which a function
@@ -41,7 +41,7 @@ FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 class _Changed(importlib.abc.MetaPathFinder):
     """Imports one module with another number in it: so defaults of arguments change too."""
 
-    def __init__(self, module: str, name: str, value: float) -> None:
+    def __init__(self, module: str, name: str, value: float | tuple[float, ...]) -> None:
         self.module, self.name, self.value = module, name, value
 
     def find_spec(
@@ -59,7 +59,9 @@ class _Changed(importlib.abc.MetaPathFinder):
 class _Rewritten(importlib.machinery.SourceFileLoader):
     """A source file in which one number is another."""
 
-    def __init__(self, fullname: str, path: str, name: str, value: float) -> None:
+    def __init__(
+        self, fullname: str, path: str, name: str, value: float | tuple[float, ...]
+    ) -> None:
         super().__init__(fullname, path)
         self.number, self.value = name, value
 
@@ -72,7 +74,7 @@ class _Rewritten(importlib.machinery.SourceFileLoader):
     def _replaced(self, node: ast.stmt) -> bool:
         if not isinstance(node, ast.Assign):
             return False
-        target, new = node.targets[0], ast.Constant(self.value)
+        target, new = node.targets[0], ast.parse(repr(self.value), mode="eval").body
         if isinstance(target, ast.Name) and target.id == self.number:
             node.value = new
             return True
@@ -87,8 +89,10 @@ class _Rewritten(importlib.machinery.SourceFileLoader):
 def serve(changed: Sequence[str]) -> None:
     """Answer cases as `tests.hidden.batch` does, with one number changed, and say what ran."""
     if changed:
-        module, name, value = changed
-        sys.meta_path.insert(0, _Changed(module, name, json.loads(value)))
+        module, name, text = changed
+        value = json.loads(text)
+        several = tuple(value) if isinstance(value, list) else value
+        sys.meta_path.insert(0, _Changed(module, name, several))
     from tests.hidden.batch import once
 
     ran: set[CodeType] = set()
@@ -301,6 +305,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--places", nargs="*", default=list(PLACES))
     parser.add_argument("--only", nargs="*", default=[])
+    parser.add_argument("--blank", action="store_true", help="only what was never tried")
     parser.add_argument("--serve", nargs="*")
     asked = parser.parse_args(arguments)
     if asked.serve is not None:
@@ -325,9 +330,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     wanted = [
         number
         for number in numbers()
-        if not isinstance(number.value, tuple)
-        and any(number.file.startswith(place) for place in asked.places)
+        if any(number.file.startswith(place) for place in asked.places)
         and (not asked.only or number.name in asked.only)
+        and not (asked.blank and (number.file, number.name, shown(number.value)) in rows)
     ]
     with ThreadPoolExecutor(asked.jobs) as pool:
         for number, count, (half, twice) in pool.map(tried, wanted):
