@@ -1,6 +1,6 @@
 """What each number that steers `explain` does to the blind score, halved and doubled.
 
-    python scripts/thresholds_effect.py CASES --out RUNS [--jobs 2] [--places explain] [--only N] [--blank]
+    python scripts/thresholds_effect.py CASES --out RUNS [--jobs 2] [--places explain] [--blank]
 
 CASES: sealed cases (`python -m tests.hidden.make_cases`). Every case is answered as it is, and it
 is noted which functions ran; then each number is changed alone, in the cases in which a function
