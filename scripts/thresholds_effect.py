@@ -123,15 +123,14 @@ def serve(changed: Sequence[str]) -> None:
 class _Served:
     """A process that answers cases, one line each; another takes its place where it ends."""
 
-    def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
-        self.command, self.environment = command, environment
+    def __init__(self, command: Sequence[str]) -> None:
+        self.command = command
         self.ran: set[str] = set()
         self.process = self._begun()
 
     def _begun(self) -> subprocess.Popen[str]:
         return subprocess.Popen(
-            self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT,
-            env=self.environment,
+            self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT
         )  # fmt: skip
 
     def call(self, out: Path, err: Path, arguments: list[str]) -> tuple[int | None, float]:
@@ -246,7 +245,7 @@ class Bench:
         """Points of each case, and the functions that ran where nothing was changed."""
         from tests.hidden.answers import read_answer
         from tests.hidden.judge import mark
-        from tests.hidden.run import ENVIRONMENT, answer
+        from tests.hidden.run import answer
 
         target = self.out / label
         target.mkdir(parents=True, exist_ok=True)
@@ -257,7 +256,7 @@ class Bench:
         known = json.loads(note.read_text("utf-8")) if note.exists() else {}
         if missing := [case for case in cases if case not in known]:
             command = [sys.executable, __file__, "--serve", *changed]
-            runner = _Served(command, ENVIRONMENT)
+            runner = _Served(command)
             for case in missing:
                 runner.ran.clear()
                 shutil.rmtree(target / "answers" / case, ignore_errors=True)  # broken off

@@ -1,7 +1,15 @@
 """Arrays by what they hold, so that a signature says it in one word; their size in one number."""
 
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 Array = NDArray[np.float64]
 """Real numbers, in SI units unless a docstring says otherwise."""
@@ -23,3 +31,18 @@ def largest(values: Array) -> float:
     """Largest of what is finite; NaN where nothing is."""
     finite = values[np.isfinite(values)]
     return float(finite.max()) if len(finite) else float("nan")
+
+
+def on_one_thread(function: Callable[P, T]) -> Callable[P, T]:
+    """Linear algebra on one thread while the function runs.
+
+    Arrays of readings have some hundred rows: to hand their parts to other threads and to wait for
+    them takes longer than the work. Afterwards the process has as many threads as before.
+    """
+
+    @wraps(function)
+    def alone(*args: P.args, **kwargs: P.kwargs) -> T:
+        with threadpool_limits(limits=1, user_api="blas"):
+            return function(*args, **kwargs)
+
+    return alone

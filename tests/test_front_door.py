@@ -144,3 +144,20 @@ def test_a_plan_has_a_positive_force_and_noise() -> None:
     for wrong in ({"force": -1.0}, {"sigma": 0.0}):
         with pytest.raises(sk.InputError, match="positive"):
             sk.plan(model, 3, **wrong)
+
+
+def test_explain_takes_one_thread_for_its_algebra() -> None:
+    """Handing small matrices to threads trebled the time; what the caller had set stands again."""
+    from threadpoolctl import threadpool_info, threadpool_limits
+
+    def threads() -> set[int]:
+        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+    model = sk.base_model(sk.load_robot("ur5e"))
+    data = sk.simulate(model, sk.plan(model, 6, force=50.0), seed=1).measurements
+    seen: list[set[int]] = []
+    with threadpool_limits(limits=2, user_api="blas"):
+        sk.explain(model, data, progress=lambda *step: seen.append(threads()))
+        assert threads() == {2}
+    assert seen
+    assert all(each == {1} for each in seen)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.arrays import on_one_thread
 from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError, ToolkitWarning
@@ -52,6 +53,7 @@ TOLD = 2  # sentences on where the remainder lives
 Progress = Callable[[str, float], None]
 
 
+@on_one_thread
 def explain(
     model: Model,
     measurements: Measurements,

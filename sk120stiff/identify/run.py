@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from sk120stiff.arrays import on_one_thread
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.absolute.weighing import pounds
@@ -18,6 +19,7 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
 
+@on_one_thread
 def fit(
     model: Model,
     measurements: Measurements,

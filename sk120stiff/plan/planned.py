@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, on_one_thread
 from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify import why_unseen
@@ -106,6 +106,7 @@ class Plan(Measurements):
 TOO_LITTLE = "these readings tell less of it than is plausible of any arm"
 
 
+@on_one_thread
 def plan(
     model: Model,
     count: int | None = None,

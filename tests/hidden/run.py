@@ -15,7 +15,6 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -29,7 +28,6 @@ from threading import local
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = [sys.executable, "-m", "sk120stiff"]
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 SAID = ("verdict.json", "next_poses.csv", "predicted.csv")
 ANSWER_FILES = ("verdict.json", "model.yaml", "next_poses.csv", "predicted.csv", "run.json")
 
@@ -63,7 +61,7 @@ class Separate:
             try:
                 done = subprocess.run(
                     [*COMMAND, *arguments], stdout=stdout, stderr=stderr, cwd=ROOT,
-                    timeout=self.timeout, env=ENVIRONMENT, stdin=subprocess.DEVNULL, check=False,
+                    timeout=self.timeout, stdin=subprocess.DEVNULL, check=False,
                 )  # fmt: skip
                 code: int | None = done.returncode
             except subprocess.TimeoutExpired:
@@ -83,7 +81,7 @@ class Batched(Separate):
         if process is None or process.poll() is not None:
             process = self.own.process = subprocess.Popen(
                 [sys.executable, "-m", "tests.hidden.batch"], stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE, text=True, cwd=ROOT, env=ENVIRONMENT,
+                stdout=subprocess.PIPE, text=True, cwd=ROOT,
             )  # fmt: skip
         process.stdin.write(json.dumps([str(out), str(err), *arguments]) + "\n")
         process.stdin.flush()
