@@ -22,7 +22,7 @@ Evaluate = Callable[[Array], tuple[Array, Array]]
 
 FAINTEST = 0.1  # a change by all that is plausible that shows by less of the noise is not seen
 STEPS = 100  # of Newton, at most; four more for every parameter
-PATIENCE = 20  # steps after which the misfit must have fallen
+PATIENCE = 20  # evaluations of the model after which the misfit must have fallen
 FALLEN = 1e-4  # by more than this share of what one reading adds to it
 FINE = 1e-12  # relative step at which nothing is left to gain
 LEARNED = 1e-6  # relative step below which rounding hides the curvature
@@ -76,12 +76,13 @@ def polish(
     """
     x = _snapped(start, bounds)
     residual, jacobian = evaluate(x)
-    count, last = 1, np.inf
+    count, last, due = 1, np.inf, 1
     held = _pushed_out(x, residual, jacobian, bounds)
     curvature = np.zeros((len(x), len(x)))
     misfit = np.inf
-    for number in range(STEPS + 4 * len(x)):
-        if number % PATIENCE == 0:  # a law with jumps lets the steps creep on for ever
+    for _ in range(STEPS + 4 * len(x)):
+        if count >= due:  # a law with jumps lets the steps creep on for ever
+            due = count + PATIENCE
             fallen, misfit = misfit - float(residual @ residual), float(residual @ residual)
             if fallen < FALLEN * misfit / max(len(residual), 1):
                 break

@@ -19,7 +19,7 @@ from sk120stiff.identify.solve.polish import (
 
 Method = Literal["trf", "lm"]
 
-TOLERANCE = 1e-9  # of the two algorithms; the last digits come from the polish
+TOLERANCE = 1e-4  # of the two algorithms; the last digits come from the polish
 EVALUATIONS = 200  # after which the polish must be near enough
 
 
