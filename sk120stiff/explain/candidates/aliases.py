@@ -15,6 +15,7 @@ from sk120stiff.plan import random_pool
 
 SHARES_OF_LOAD = (1.0, 0.25, 0.05)  # tried until the model holds the load at every pose
 SAME = 1e-3  # share of the signature that may differ
+FAINT = 1e-10  # share of the largest singular value below which a direction is rounding
 
 
 def exact_aliases(
@@ -28,6 +29,8 @@ def exact_aliases(
         others: Contenders.
         point: (3,) measured point in the tool frame [m].
     """
+    if not others:
+        return ()
     pool = random_pool(model.robot, poses=150, directions=3, force=300.0, point=point, seed=1)
     # Where the effect is absent: in its presence a gain of the sensor holds it already.
     absent = [0.0 if p.effect.id == effect.id else p.internal for p in model.parameters]
@@ -44,13 +47,13 @@ def exact_aliases(
     owner = np.array([parameter.effect.id for parameter in full.parameters])
     values = model.values[[p.effect.id == effect.id for p in model.parameters]]
     values = values / typical[owner == effect.id]
-    signature = X[:, owner == effect.id] @ values
-    base = X[:, np.isin(owner, list(present - {effect.id}))]
-    reference = max(float(np.linalg.norm(_without(base, signature))), 1e-300)
+    base = _directions(_unit(X[:, np.isin(owner, list(present - {effect.id}))]))
+    signature = _without(base, X[:, owner == effect.id] @ values)
+    same = SAME * max(float(np.linalg.norm(signature)), 1e-300)
     found = []
     for other in others:
-        both = np.hstack([base, X[:, owner == other.id]])
-        if np.linalg.norm(_without(both, signature)) <= SAME * reference:
+        own = _directions(_without(base, _unit(X[:, owner == other.id])))
+        if np.linalg.norm(_without(own, signature)) <= same:
             found.append(other.id)
     return tuple(found)
 
@@ -91,7 +94,17 @@ def aliases_by_design(
     return tuple(found)
 
 
-def _without(columns: Array, y: Array) -> Array:
+def _unit(columns: Array) -> Array:
+    """Columns of length one, without those that are zero."""
     norms = np.linalg.norm(columns, axis=0)
-    kept = columns[:, norms > 0.0] / norms[norms > 0.0]
-    return np.asarray(y - kept @ np.linalg.lstsq(kept, y, rcond=1e-10)[0])
+    return np.asarray(columns[:, norms > 0.0] / norms[norms > 0.0])
+
+
+def _directions(columns: Array) -> Array:
+    """(R, r) orthonormal directions of columns, each of length one at most."""
+    vectors, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(vectors[:, sizes > FAINT * sizes.max(initial=1.0)])
+
+
+def _without(directions: Array, y: Array) -> Array:
+    return np.asarray(y - directions @ (directions.T @ y))
