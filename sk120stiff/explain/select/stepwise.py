@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from sk120stiff.arrays import Index
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Effect
 from sk120stiff.effects.reading_drift import warm_ups
 from sk120stiff.errors import Refusal
@@ -171,18 +171,38 @@ def _fitted_with(base: Fit, effects: Sequence[Effect]) -> Fit:
     for effect in effects:
         model = model + effect
     problem = Problem(model, base.problem.measurements, base.problem.noise)
-    residual, jacobian = problem.first_order
-    size = np.linalg.norm(jacobian, axis=0)
-    seen = size > ROUNDING * size.max(initial=0.0)  # a misread displacement shows once there is one
-    if not seen.all():
-        return solve(problem)
-    bounds = (problem.bounds[0] * size, problem.bounds[1] * size)
-    try:  # from the best first-order values, most of them on their bounds, it is not far
-        with np.errstate(invalid="ignore"):  # scipy asks how far it is to a bound at infinity
-            start = lsq_linear(jacobian / size, -residual, bounds).x / size
-        return solve_near(problem, start)
+    try:
+        return solve_near(problem, _near(problem))
     except Refusal:
         return solve(problem)
+
+
+def _near(problem: Problem) -> Array:
+    """(P_free,) the best values to first order, most of them on their bounds.
+
+    About an arm that does not move; a misread displacement shows once there is one, and is seen
+    about what the base model makes of it.
+
+    Raises:
+        Refusal: There is a parameter that shows in neither.
+    """
+    x = np.zeros(len(problem.free))
+    residual, jacobian = problem.first_order
+    if not _sizes(jacobian).all():
+        x = np.clip(problem.start, *problem.bounds)
+        residual, jacobian = problem.evaluate(x)
+    size = _sizes(jacobian)
+    if not size.all():
+        raise Refusal("a parameter does not show to first order")
+    bounds = tuple((bound - x) * size for bound in problem.bounds)
+    with np.errstate(invalid="ignore"):  # scipy asks how far it is to a bound at infinity
+        return np.asarray(x + lsq_linear(jacobian / size, -residual, bounds).x / size)
+
+
+def _sizes(jacobian: Array) -> Array:
+    """(P,) lengths of the columns; zero where one is rounding beside the others."""
+    size = np.linalg.norm(jacobian, axis=0)
+    return np.asarray(np.where(size > ROUNDING * size.max(initial=0.0), size, 0.0))
 
 
 def positions(regression: Regression, effects: Sequence[Effect]) -> tuple[int, ...]:
