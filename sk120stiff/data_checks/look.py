@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.data_checks.efforts import efforts_doubt
 from sk120stiff.data_checks.passive import Passive
 from sk120stiff.data_checks.scale import Scale, scale_doubt
 from sk120stiff.data_checks.search import SPARE, Slip, as_it_stands, find_slip
@@ -32,17 +33,20 @@ class DataChecks:
         slip: What was written down wrongly beyond doubt, or None.
         scale: Everything yields far too much or too little, or None.
         limits: Readings beyond the joint limits, in a sentence, or None.
+        efforts: Loads beyond what the motors hold, in a sentence, or None.
     """
 
     slip: Slip | None = None
     scale: Scale | None = None
     limits: str | None = None
+    efforts: str | None = None
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """All of it as warnings."""
         found = [None if self.slip is None else f"{self.slip.said}. {self.slip.remedy}"]
-        found += [None if self.scale is None else f"{self.scale.sentence}.", self.limits]
+        found += [None if self.scale is None else f"{self.scale.sentence}."]
+        found += [self.limits, self.efforts]
         return tuple(said for said in found if said is not None)
 
     def refuse_to_explain(self, where: str) -> None:
@@ -67,7 +71,9 @@ def look(model: Model, measurements: Measurements) -> DataChecks:
     """
     slip = find_slip(model.robot, measurements)
     scale = None if slip is not None else scale_doubt(model, measurements)
-    return DataChecks(slip, scale, limits_doubt(model.robot, measurements))
+    robot = model.robot
+    efforts = None if slip is not None else efforts_doubt(robot, measurements)
+    return DataChecks(slip, scale, limits_doubt(robot, measurements), efforts)
 
 
 def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurements) -> None:

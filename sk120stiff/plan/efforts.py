@@ -14,12 +14,6 @@ from sk120stiff.robot import Robot
 PLACEHOLDER = 0.5  # share of poses whose weight alone is too much: then no such motors are built in
 
 
-def effort_limits(robot: Robot) -> Array:
-    """(n,) largest efforts of the actuated joints [N·m or N]; infinite where none is stated."""
-    stated = {joint.name: joint.effort for joint in robot.document.joints}
-    return np.array([stated.get(name) or np.inf for name in robot.actuated])
-
-
 @dataclass(frozen=True, eq=False)
 class Held:
     """Loads that the motors can hold.
@@ -41,7 +35,7 @@ def held_loads_of(robot: Robot, cell: Cell, a: Array, wrench: Array, point: Arra
     Raises:
         Refusal: The motors cannot hold the arm's weight at any of the poses.
     """
-    share = _holdable_share(robot, a, wrench, point, cell.effort_share * effort_limits(robot))
+    share = _holdable_share(robot, a, wrench, point, cell.effort_share * robot.efforts)
     fallen = share == 0.0
     if fallen.mean() > PLACEHOLDER:
         raise Refusal(
@@ -92,7 +86,7 @@ def _holdable_share(robot: Robot, a: Array, wrench: Array, point: Array, efforts
 
 def unknown_efforts(robot: Robot) -> list[str]:
     """What of efforts and masses nobody stated, in sentences."""
-    known = np.isfinite(effort_limits(robot))
+    known = np.isfinite(robot.efforts)
     if not known.any():
         return ["The URDF states no efforts: that the motors can hold these loads was not checked."]
     said = []

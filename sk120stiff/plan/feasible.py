@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.plan.cell import Cell
-from sk120stiff.plan.efforts import effort_limits, weight_torques
+from sk120stiff.plan.efforts import weight_torques
 from sk120stiff.plan.rig import unit
 from sk120stiff.plan.surroundings import scene_of
 from sk120stiff.robot import Robot
@@ -190,7 +190,7 @@ def _of_loads(
     robot: Robot, cell: Cell, a: Array, wrench: Array, point: Array
 ) -> list[tuple[Mask, Words]]:
     screws = robot.screws(a, point=point)
-    limit = effort_limits(robot)
+    limit = robot.efforts
     asked = np.abs(screws.torques(wrench) + weight_torques(robot, a))
     over = asked > cell.effort_share * limit * (1.0 + 1e-6) + ROUNDING
 

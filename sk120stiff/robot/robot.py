@@ -220,6 +220,12 @@ class Robot:
         return {name: q[..., k] for k, name in enumerate(self.tree.joint_names)}
 
     @cached_property
+    def efforts(self) -> Array:
+        """(n,) largest efforts of the actuated joints [N·m or N]; infinite where none is stated."""
+        stated = {joint.name: joint.effort for joint in self.document.joints}
+        return np.array([stated.get(name) or np.inf for name in self.actuated])
+
+    @cached_property
     def gravity_in_base(self) -> Array:
         """(3,) acceleration of gravity in base axes at the rest position [m/s²]."""
         body, T_body_base = self.tree.body(self.base_frame)

@@ -1,10 +1,17 @@
 """Units of everything at once: told where the springs that follow are implausible, no finding."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from sk120stiff.data_checks import find_slip, look
+from sk120stiff.data_checks.efforts import efforts_doubt
 from sk120stiff.data_checks.scale import USUAL, usual_stiffness
-from tests.data_checks.readings import ARMS, SCALES, loads_as_if
+from sk120stiff.effects import load_cases_of
+from sk120stiff.measurements import Measurements
+from sk120stiff.robot import Robot
+from tests.data_checks.readings import ARMS, SCALES, Arm, loads_as_if
 
 
 @pytest.mark.parametrize(("factor", "unit"), SCALES)
@@ -40,3 +47,37 @@ def test_the_paper_lies_in_the_table() -> None:
     springs = known.model.joint_stiffness()[:3]
     softest, stiffest = usual_stiffness(2.87)
     assert softest < springs.min() and springs.max() < stiffest
+
+
+def test_loads_that_no_motor_of_the_arm_holds_are_told() -> None:
+    """A force in N labelled lbf passes every check of the springs; the URDF's efforts know more."""
+    known = ARMS["ur5"]()
+    assert look(known.model, known.readings).efforts is None
+    said = look(known.model, _loaded(known, 2.5)).efforts
+    assert said is not None
+    assert "the loads ask 2.5 times of" in said
+
+
+def test_efforts_of_no_motors_say_nothing_of_loads() -> None:
+    known = ARMS["ur5"]()
+    heavy = _loaded(known, 2.5)
+    assert efforts_doubt(_with_efforts(known.robot, 1.0), heavy) is None  # all alike
+    assert efforts_doubt(_with_efforts(known.robot, 1.0, 0.1), heavy) is None  # they cannot stand
+    assert efforts_doubt(_with_efforts(known.robot, 9e3, 9e4), heavy) is None
+
+
+def _loaded(known: Arm, times: float) -> Measurements:
+    """The same readings under loads that ask so many times the effort of one joint."""
+    load_cases = load_cases_of(known.robot, known.readings)
+    screws = known.robot.screws(load_cases.a, point=load_cases.force_point)
+    asked = float((np.abs(screws.torques(load_cases.wrench)) / known.robot.efforts).max())
+    return replace(known.readings, wrench=known.readings.wrench * times / asked)
+
+
+def _with_efforts(robot: Robot, *efforts: float) -> Robot:
+    """The robot with these efforts in turn in its URDF."""
+    joints = [
+        replace(joint, effort=efforts[k % len(efforts)])
+        for k, joint in enumerate(robot.document.joints)
+    ]
+    return replace(robot, document=replace(robot.document, joints=tuple(joints)))
