@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 REPEATS = "repeat a few readings (same pose and load), so that the noise is known from them"
 LARGE = 2.0  # times what noise alone makes
+VAGUE = 0.5  # of its size, by which it is known, from where on a share is no advice
 
 
 def next_step(answer: Explanation) -> str:
@@ -126,11 +127,18 @@ def _largest(answer: Explanation) -> list[str]:
     mine = [share for share in answer.budget if share.name in named]
     if not mine:
         return []
-    first = mine[0]
+    known = [share for share in mine if share.std is None or share.std < VAGUE * share.rms]
+    if not known:
+        return [
+            "How much each of what was named brings by itself these readings do not tell: before "
+            "the arm is mended, read at poses that tell them apart."
+        ]
+    first = known[0]
     error = "" if first.std is None else f" (± {microns(first.std)})"
     names = " or ".join((first.name, *named[first.name].alternatives))
+    most = "what was named" if first is mine[0] else "what is well known"
     return [
-        f"At the measured loads {names} brings the most of what was named, "
+        f"At the measured loads {names} brings the most of {most}, "
         f"{microns(first.rms)}{error} rms per axis: look there first if the arm is to be mended."
     ]
 
