@@ -129,10 +129,10 @@ def test_a_step_that_has_no_answer_is_told_together_with_the_next(springs, monke
     more = [effect(springs.robot, name, where) for name, where in
             (("base_rocking", "base_link"), ("joint_tilt", "joint_2_l"))]  # fmt: skip
 
-    def stubborn(base, effects):
+    def stubborn(base, effects, near=None):
         if len(effects) == 1:
             raise Refusal("the least-squares fit did not converge")
-        return refit(base, effects)
+        return refit(base, effects, near)
 
     monkeypatch.setattr(steps, "refit", stubborn)
     told = gap_steps(searched(springs, readings, *more), more, None, seed=0)

@@ -44,7 +44,7 @@ def is_constant(found: Selection, effect: Effect) -> bool:
     """
     rest = [other for other in found.effects if other != effect]
     try:
-        without = refit(found.base, rest)
+        without = refit(found.base, rest, found.final)
     except Refusal:
         return True  # the other effects need it beside them, so there is nothing to compare
     own = {each.name: each for each in localise(without).own}

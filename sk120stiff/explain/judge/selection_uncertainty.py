@@ -50,7 +50,7 @@ def with_selection_uncertainty(
     others = [] if beside is None else [beside]
     for effects in _others(found, findings):
         try:
-            other = with_settled_sizes(refit(found.base, effects))
+            other = with_settled_sizes(refit(found.base, effects, found.final))
         except Refusal:
             continue
         if _deviance(other) - _deviance(final) <= REFUTED:

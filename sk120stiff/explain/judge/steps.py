@@ -12,6 +12,7 @@ from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
+from sk120stiff.explain.judge.confirm import FOLDS
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
@@ -44,7 +45,7 @@ def gap_steps(
         if count:
             joined.append(f"+ {effects[count - 1].id}")
         try:
-            fits.append(with_settled_sizes(refit(found.base, effects[:count])))
+            fits.append(with_settled_sizes(refit(found.base, effects[:count], *fits[-1:])))
         except Refusal:
             if count == len(effects):
                 raise
@@ -135,7 +136,9 @@ def _on_file(found: Fit, holdout: Measurements) -> float:
 def _on_poses_left_out(found: Selection, counts: Sequence[int], seed: int) -> list[float]:
     """Gap on poses left out in turn, per axis [m]; NaN where the others do not hold the model."""
     try:
-        errors = held_out(found.base.problem.measurements, nested(found, counts), seed=seed)
+        errors = held_out(
+            found.base.problem.measurements, nested(found, counts), folds=FOLDS, seed=seed
+        )
     except (InputError, Refusal):
         return [float("nan")] * len(counts)
     return [error.rms for error in errors]

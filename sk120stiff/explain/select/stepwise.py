@@ -131,7 +131,7 @@ def with_own_sizes(base: Fit, regression: Regression) -> tuple[Fit, Regression]:
 def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
     """The same selection with other effects chosen, refitted and linearised there."""
     ids = tuple(effect.id for effect in found.base.model.effects)
-    final = refit(found.base, effects)
+    final = refit(found.base, effects, found.final)
     linear = found.regression
     regression = regression_at(
         final, found.candidates, ids,
@@ -149,15 +149,21 @@ def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
     )
 
 
-def refit(base: Fit, effects: Sequence[Effect]) -> Fit:
+def refit(base: Fit, effects: Sequence[Effect], near: Fit | None = None) -> Fit:
     """The base model with effects added, fitted at exact equilibrium to the same readings.
+
+    Args:
+        base: Fit of the base model.
+        effects: What joins it.
+        near: A fit with most of them, about whose values theirs are sought; without one they are
+            sought from the readings to first order in load.
 
     Raises:
         Refusal: No equilibrium was found, or two effects undo each other without end.
     """
     if not effects:
         return base
-    found = _fitted_with(base, effects)
+    found = _fitted_with(base, effects, near)
     for parameter in found.parameters:
         if parameter.effect in effects and not abs(parameter.internal) < (
             BOUNDLESS * parameter.spec.plausible
@@ -166,29 +172,35 @@ def refit(base: Fit, effects: Sequence[Effect]) -> Fit:
     return found
 
 
-def _fitted_with(base: Fit, effects: Sequence[Effect]) -> Fit:
+def _fitted_with(base: Fit, effects: Sequence[Effect], near: Fit | None) -> Fit:
     model = base.model
     for effect in effects:
         model = model + effect
     problem = Problem(model, base.problem.measurements, base.problem.noise)
-    try:
-        return solve_near(problem, _near(problem))
-    except Refusal:
-        return solve(problem)
+    for about in (None,) if near is None else (near, None):
+        try:
+            return solve_near(problem, _start(problem, about))
+        except Refusal:
+            continue
+    return solve(problem)
 
 
-def _near(problem: Problem) -> Array:
+def _start(problem: Problem, near: Fit | None) -> Array:
     """(P_free,) the best values to first order, most of them on their bounds.
 
-    About an arm that does not move; a misread displacement shows once there is one, and is seen
-    about what the base model makes of it.
+    About the values of a fit that is near, or about an arm that does not move; a misread
+    displacement shows once there is one, and is seen about what the base model makes of it.
 
     Raises:
         Refusal: There is a parameter that shows in neither.
     """
     x = np.zeros(len(problem.free))
-    residual, jacobian = problem.first_order
-    if not _sizes(jacobian).all():
+    if near is not None:
+        known = {parameter.name: parameter.internal for parameter in near.parameters}
+        own = [known.get(p.name, p.internal) for p in problem.model.parameters]
+        x = np.clip(np.array(own)[problem.free] / problem.scale, *problem.bounds)
+    residual, jacobian = problem.evaluate(x)
+    if near is None and not _sizes(jacobian).all():
         x = np.clip(problem.start, *problem.bounds)
         residual, jacobian = problem.evaluate(x)
     size = _sizes(jacobian)
@@ -234,7 +246,7 @@ def _settle(
         if set(laws_of(regression, ranked[0])) == set(effects):
             break
         before = effects
-        effects, final = _first_that_fits(base, regression, ranked)
+        effects, final = _first_that_fits(base, regression, ranked, final)
         if number and set(effects) == set(before):  # what ranks higher has no fit
             break
         regression = regression_at(
@@ -251,7 +263,7 @@ def laws_of(regression: Regression, scored: Scored) -> list[Effect]:
 
 
 def _first_that_fits(
-    base: Fit, regression: Regression, ranked: Sequence[Scored]
+    base: Fit, regression: Regression, ranked: Sequence[Scored], near: Fit
 ) -> tuple[list[Effect], Fit]:
     """The best model that can be fitted at exact equilibrium too."""
     refused, most = 0, max((len(model.effects) for model in ranked), default=0)
@@ -260,7 +272,7 @@ def _first_that_fits(
             continue
         effects = laws_of(regression, model)
         try:
-            return effects, refit(base, effects)
+            return effects, refit(base, effects, near if near is not base else None)
         except Refusal:
             refused += 1
             if refused >= TRIED:  # what is so large does not converge, whatever is in it
