@@ -104,12 +104,14 @@ def explain_positions(
     tell("fitting exactly", 0.5)
     final = _exactly(base, seen, linear, found, readings, catalogue)
     for _ in range(ROUNDS):
-        before, seen = _picked(linear, found), final
-        linear, found, laws, hidden = _selected(base, seen, options, catalogue)
-        again = _picked(linear, found)
-        if set(again) == set(before):
+        about = _selected(base, final, options, catalogue)
+        if set(_picked(*about[:2])) == set(_picked(linear, found)):
+            seen, (linear, found, laws, hidden) = final, about
             break
-        final = _exactly(base, seen, linear, found, readings, catalogue)
+        again = _exactly(base, final, *about[:2], readings, catalogue)
+        if _less_likely(again, final):
+            break
+        seen, (linear, found, laws, hidden), final = final, about, again
     tell("what is left", 0.85)
     final, guess = with_model_form(final), None
     suspects: tuple[Contender, ...] = ()
@@ -191,6 +193,17 @@ def _exactly(
     values = [known.get(p.name, p.internal) for p in with_values_of(wide, seen.model).parameters]
     again = refined(base, picked, readings, wide.with_values(np.array(values)), catalogue)
     return min(final, again, key=_left)
+
+
+def _less_likely(again: Calibration, before: Calibration) -> bool:
+    """Does a set that was chosen anew say less of the readings, its parameters counted (BIC)?
+
+    About a fit a name may show that acts through others alone, as a payload does through springs:
+    where they are not chosen beside it, nothing comes of it.
+    """
+    numbers = len(before.residual)
+    gain = numbers * np.log(_left(before) ** 2 / _left(again) ** 2)
+    return bool(gain < (len(again.x) - len(before.x)) * np.log(numbers))
 
 
 def _left(found: Calibration) -> float:

@@ -20,7 +20,7 @@ from sk120stiff.effects.thermal_growth import ThermalGrowth
 from sk120stiff.model import Model
 
 KNOWN = 3.0  # standard errors that what is plausible must hold
-EXACT = 1e-6  # share of a column left beside the earlier ones that is rounding
+EXACT = 2e-3  # share of a column left beside the earlier ones that rounding brings: pi as 3.14
 NAMED = 0.25  # share of a column that a parameter must carry to be named for it
 MOST = 4  # names for one frozen parameter
 MAY_FREEZE = (JointFrame, MarkerShift, ThermalGrowth)
