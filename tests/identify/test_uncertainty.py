@@ -71,6 +71,19 @@ def test_what_other_models_make_of_the_values_leaves_the_readings_predicted(trut
     assert (wide > 29.0 * errors * scale).all()
 
 
+def test_moves_of_all_sizes_leave_a_covariance_that_readings_can_have(truth: Model) -> None:
+    """The difference of two large matrices was negative by rounding: `explain` ended at saving."""
+    found = fit(truth, stated(truth))
+    errors = np.sqrt(np.diag(known_model(found).uncertainty.covariance)) / found.problem.scale
+    rng = np.random.default_rng(4)
+    for _ in range(40):
+        moves = errors * 10.0 ** rng.uniform(-6.0, 9.0, len(errors))
+        moves[rng.random(len(errors)) < 0.2] = 0.0
+        told = known_model(replace(found, selection_uncertainty=moves)).uncertainty
+        size = np.maximum(told.std, 1e-300)
+        assert np.linalg.eigvalsh(told.covariance / np.outer(size, size)).min() > -1e-10
+
+
 def test_a_remainder_is_found_with_its_size(truth: Model) -> None:
     """A base that rocks is left out of the model; held against refits at poses left out."""
     rocking = truth + effect(truth.robot, "base_rocking")

@@ -88,8 +88,8 @@ def aliases_by_design(
     for other, own in zip(others, columns, strict=True):
         if other.name not in effect.twins or other.where != effect.where:
             continue
-        cosine = signature @ own[:, 0] / (np.linalg.norm(signature) * np.linalg.norm(own[:, 0]))
-        if abs(cosine) > 1.0 - SAME:
+        size = float(np.linalg.norm(signature) * np.linalg.norm(own[:, 0]))
+        if size > 0.0 and abs(float(signature @ own[:, 0])) > (1.0 - SAME) * size:
             found.append(other.id)
     return tuple(found)
 
