@@ -201,7 +201,7 @@ def _judged(
         named,
         under=under,
         complete=lambda tried, said, noise: (
-            not tried.final.exceeds and _explains(tried, said, noise)
+            not (tried.final.exceeds or _drawn(said)) and _explains(tried, said, noise)
         ),
         seed=seed,
     )
@@ -295,9 +295,22 @@ def _as_written(final: Fit, noise: NoiseModel) -> Fit:
 
 
 def _explains(found: Selection, named: Named, noise: NoiseModel) -> bool:
-    """Do these names leave no more than names may leave?"""
+    """Do these names leave no more than names may leave?
+
+    Draws of single poses take on part of any cause: beside them nothing may be left at all.
+    """
     left = _adequacy(found, noise)
+    if _drawn(named):
+        return not left.lacking
     return not _too_much(left, MISSPECIFICATION if named.misspecified else LEFT_OVER)
+
+
+def _drawn(named: Named) -> bool:
+    """Has something a name whose values are draws of single poses?
+
+    With a suspect beside them draws explain everything: such an account says nothing.
+    """
+    return any(finding.effect.random_effects for finding in named.findings)
 
 
 def _too_much(left: Adequacy, allowed: float) -> bool:
