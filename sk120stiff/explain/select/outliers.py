@@ -14,6 +14,7 @@ from sk120stiff.measurements.poses import rows_by_label
 
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
 NEXT = 3.7  # the same once one outlier is certain
+ALONE = 8.0  # robust sizes of what no catalogue explains: no smooth cause is so much at one reading
 LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to tell of the noise
 ROUNDING = 1e-10  # of the most that a shift has of its own
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
@@ -35,6 +36,9 @@ def outlying_rows(
     fitted beside the catalogue too: if it leaves less than the shifts do, each at the price of its
     parameters (BIC), no slip is needed for what it explains.
 
+    Where so many readings are farther off than the stated noise that no catalogue explains them,
+    what is left of the others is the noise that an outlier has to stand out of.
+
     Args:
         regression: The readings linearised at the base model.
         whitener: Their noise.
@@ -45,6 +49,8 @@ def outlying_rows(
     axes = np.bincount(whitener.reading)  # (N,) how many were read
     shifts = _shift_columns(whitener, regression.group)
     found = _searched(X, prior, y, shifts, regression.sigma_known)
+    if found.left == np.inf and regression.sigma_known:
+        found = _searched(X, prior, y, shifts, sigma_known=False, limits=(ALONE, ALONE))
     if not len(found.rows):
         return found.rows
     each = np.log(len(y))  # the price of a parameter
@@ -120,8 +126,11 @@ def _searched(
     shifts: Sequence[_Shifts],
     sigma_known: bool,
     noise: float | None = None,
+    limits: tuple[float, float] = (LIMIT, NEXT),
 ) -> _Searched:
     """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,).
+
+    They do by so many standard errors (`limits`): the first, and those after it.
 
     A shift that joins the fit adds rows to `half`, with which halfᵀ half is the fit again.
     """
@@ -144,7 +153,7 @@ def _searched(
         score[left <= LEAST_LEFT * total] = 0.0
         score[out] = 0.0
         worst = int(score.max(axis=1).argmax())
-        if score[worst].max() <= (NEXT if out else LIMIT):
+        if score[worst].max() <= limits[bool(out)]:
             left_over = float(y @ residual) / size**2
             return _Searched(np.array(sorted(out), dtype=np.intp), left_over, size)
         out.append(worst)
