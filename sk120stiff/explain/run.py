@@ -201,11 +201,13 @@ def _judged(
         named,
         under=under,
         complete=lambda tried, said, noise: (
-            not (tried.final.exceeds or _drawn(said)) and _explains(tried, said, noise)
+            not tried.final.exceeds and _explains(tried, said, noise)
         ),
         seed=seed,
     )
-    return (found, named, None) if account is None else (account.selection, account.named, account)
+    if account is None or (_drawn(account.named) and _adequacy(account.selection, noise).lacking):
+        return found, named, None
+    return account.selection, account.named, account
 
 
 def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:
@@ -295,10 +297,7 @@ def _as_written(final: Fit, noise: NoiseModel) -> Fit:
 
 
 def _explains(found: Selection, named: Named, noise: NoiseModel) -> bool:
-    """Do these names leave no more than names may leave?
-
-    Draws of single poses take on part of any cause: beside them nothing may be left at all.
-    """
+    """Do these names leave no more than names may leave?"""
     left = _adequacy(found, noise)
     if _drawn(named):
         return not left.lacking
@@ -308,7 +307,8 @@ def _explains(found: Selection, named: Named, noise: NoiseModel) -> bool:
 def _drawn(named: Named) -> bool:
     """Has something a name whose values are draws of single poses?
 
-    With a suspect beside them draws explain everything: such an account says nothing.
+    Draws take on part of any cause, and with a suspect beside them they explain everything: such
+    names stand where they leave nothing by themselves.
     """
     return any(finding.effect.random_effects for finding in named.findings)
 

@@ -26,6 +26,7 @@ from sk120stiff.model import Model
 TRIED = 1  # models whose fit may be refused before smaller ones are tried
 ROUNDS = 4  # of linearising, searching and refitting
 BOUNDLESS = 1e3  # times its plausible size: that is no size, the other effects undo it
+MORE = 1.2  # times the misfit as to first order: the fit went another way
 ROUNDING = 1e-12  # of the largest column: what is smaller is no first-order effect of a parameter
 
 
@@ -179,14 +180,17 @@ def _fitted_with(base: Fit, effects: Sequence[Effect], near: Fit | None) -> Fit:
     problem = Problem(model, base.problem.measurements, base.problem.noise)
     for about in (None,) if near is None else (near, None):
         try:
-            return solve_near(problem, _start(problem, about))
+            x, foretold = _start(problem, about)
+            found = solve_near(problem, x)
         except Refusal:
             continue
+        if _misfit(found.residual) <= MORE * foretold:
+            return found
     return solve(problem)
 
 
-def _start(problem: Problem, near: Fit | None) -> Array:
-    """(P_free,) the best values to first order, most of them on their bounds.
+def _start(problem: Problem, near: Fit | None) -> tuple[Array, float]:
+    """(P_free,) the best values to first order, most of them on their bounds; the misfit there.
 
     About the values of a fit that is near, or about an arm that does not move; a misread
     displacement shows once there is one, and is seen about what the base model makes of it.
@@ -208,7 +212,12 @@ def _start(problem: Problem, near: Fit | None) -> Array:
         raise Refusal("a parameter does not show to first order")
     bounds = tuple((bound - x) * size for bound in problem.bounds)
     with np.errstate(invalid="ignore"):  # scipy asks how far it is to a bound at infinity
-        return np.asarray(x + lsq_linear(jacobian / size, -residual, bounds).x / size)
+        step = lsq_linear(jacobian / size, -residual, bounds).x / size
+    return x + step, _misfit(residual + jacobian @ step)
+
+
+def _misfit(residual: Array) -> float:
+    return float(residual @ residual)
 
 
 def _sizes(jacobian: Array) -> Array:
