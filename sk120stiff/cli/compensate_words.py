@@ -97,14 +97,13 @@ def standing_words(model: Model, uncertainty: StandingUncertainty | None) -> lis
 
 
 def point_words(model: Model) -> tuple[str, ...]:
-    """Which point is brought onto the path, where a fit found it elsewhere than it was stated."""
+    """That the point of the path is the stated one, where the marker was found elsewhere."""
     off = [p.internal for p in model.parameters if p.effect.name == "tool_offset"]
     if not off or np.linalg.norm(off) < FAR_OFF:
         return ()
     return (
-        f"The model has the measured point {1e3 * np.linalg.norm(off):.4g} mm off its stated place "
-        "(tool_offset): it is that point, where the marker sat, that is brought onto the path, and "
-        "what it is off before counts this way too. For another point take tool_offset out.",
+        f"The marker sat {1e3 * np.linalg.norm(off):.4g} mm off its stated place (tool_offset): "
+        "that is a matter of the measurement. What is brought onto the path is the stated point.",
     )
 
 

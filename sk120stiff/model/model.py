@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import (
     Effect,
+    Geometric,
     LoadCases,
     LoadError,
     ReadingError,
@@ -332,7 +333,7 @@ class Model:
         return self.physical().predict(load_cases)
 
     def physical(self) -> Model:
-        """The arm alone: the model without load and reading errors.
+        """The arm alone: without load and reading errors, and without where the marker sat on it.
 
         Examples:
             >>> import sk120stiff as sk
@@ -344,7 +345,10 @@ class Model:
         return replace(
             self,
             parameters=tuple(
-                p for p in self.parameters if not isinstance(p.effect, LoadError | ReadingError)
+                p
+                for p in self.parameters
+                if not isinstance(p.effect, LoadError | ReadingError)
+                and not (isinstance(p.effect, Geometric) and p.effect.of_marker)
             ),
         )
 

@@ -136,6 +136,7 @@ def linear_at(
         row=rows,
         fold=fold[rows],
         stated=seen.sigma_known,
+        seen=tuple(e for e, each in enumerate(shown) if each.id in fitted),
     )
     return linear, tuple(hidden)
 

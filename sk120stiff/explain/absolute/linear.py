@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import Effect
+from sk120stiff.effects import Effect, Elastic, LoadError
 
 FAINT = 1e-9  # share of a column left beside the base below which it is rounding
 
@@ -32,6 +32,7 @@ class Linear:
         sizes: (K,) usual size of each parameter, internal units.
         candidates: The effects that the columns belong to.
         slices: The part of the columns of each candidate.
+        seen: Candidates that the model has about which it is linearised.
         row: (M,) reading that each number belongs to.
         fold: (M,) part that it is left out with.
         stated: The size of the noise was stated.
@@ -49,6 +50,7 @@ class Linear:
     row: Index
     fold: Index
     stated: bool
+    seen: tuple[int, ...] = ()
     independent: float | None = None
     smooth: float = 0.0
 
@@ -83,14 +85,25 @@ class Linear:
             if each.bends_a_spring and each.where in springs
         }
 
+    @cached_property
+    def needs(self) -> dict[int, frozenset[int]]:
+        """Candidate → those without which it is not what its columns say.
+
+        What bends a spring needs that spring. A load moves what yields: its columns are those of
+        all that yields in the model about which it is linearised.
+        """
+        yields = frozenset(e for e in self.seen if isinstance(self.candidates[e], Elastic))
+        loads = {e: yields for e, x in enumerate(self.candidates) if isinstance(x, LoadError)}
+        return {**loads, **{e: frozenset({spring}) for e, spring in self.bent.items()}}
+
     def may_join(self, chosen: tuple[int, ...]) -> list[int]:
-        """Candidates that are not chosen; what bends a spring only where that is."""
+        """Candidates that are not chosen, where what they need is."""
         others = (e for e in range(len(self.candidates)) if e not in chosen)
-        return [e for e in others if self.bent.get(e, e) in (e, *chosen)]
+        return [e for e in others if self.needs.get(e, frozenset()) <= set(chosen)]
 
     def less(self, chosen: tuple[int, ...], e: int) -> tuple[int, ...]:
-        """The chosen without one, and without what bends it."""
-        return tuple(c for c in chosen if c != e and self.bent.get(c) != e)
+        """The chosen without one, and without what needs it."""
+        return tuple(c for c in chosen if c != e and e not in self.needs.get(c, ()))
 
     def picked(self, chosen: tuple[int, ...]) -> Index:
         """Columns of the chosen candidates, numbered behind those of the base."""
@@ -111,6 +124,7 @@ class Linear:
             sizes=self.sizes[keep],
             candidates=tuple(self.candidates[e] for e in chosen),
             slices=tuple(slice(int(a), int(b)) for a, b in pairwise(ends)),
+            seen=tuple(k for k, e in enumerate(chosen) if e in self.seen),
         )
 
     def by_law(self, e: int, law: Effect, sizes: Array, block: Array) -> Linear:

@@ -59,8 +59,11 @@ def settings_for(
     places = draft.markers[1]
     if len(places) > 1:
         settings["points"] = {name: _point_entry(place) for name, place in places.items()}
+    elif mode == "positions" and not known:
+        # a model holds what was found beyond the stated place: one that every file states alike
+        settings["point"] = _point_entry(np.zeros(3), fit=True)
     else:
-        settings["point"] = _point_entry(xyz, fit=mode == "positions" and not known)
+        settings["point"] = _point_entry(xyz)
     if mode != "positions" or (draft.loads.payload is None and np.any(draft.loads.wrench)):
         settings["force"] = {"frame": "base"}
     if mode == "positions":
