@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array, largest, rms
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
+from sk120stiff.effects import Viewpoint
 from sk120stiff.errors import InputError, warn
 from sk120stiff.model import Model
 from sk120stiff.model.predicted import blame_reason
@@ -98,10 +99,18 @@ def standing_words(model: Model, uncertainty: StandingUncertainty | None) -> lis
 
 def point_words(model: Model) -> tuple[str, ...]:
     """That the point of the path is the stated one, where the marker was found elsewhere."""
+    said: tuple[str, ...] = ()
+    if any(isinstance(effect, Viewpoint) for effect in model.effects):
+        said = (
+            "The base is where the fit put it in the tracker's frame, with what no reading tells "
+            "apart from its place counted there: how far that is from the base of the robot's "
+            "controller is in no ±; register the base of the cell anew, or measure and correct it.",
+        )
     off = [p.internal for p in model.parameters if p.effect.name == "tool_offset"]
     if not off or np.linalg.norm(off) < FAR_OFF:
-        return ()
+        return said
     return (
+        *said,
         f"The marker sat {1e3 * np.linalg.norm(off):.4g} mm off its stated place (tool_offset): "
         "that is a matter of the measurement. What is brought onto the path is the stated point.",
     )

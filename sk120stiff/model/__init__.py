@@ -7,6 +7,7 @@ from sk120stiff.model.compliance import (
     model_compliance,
     probing_poses,
     seen_from,
+    without_marker,
 )
 from sk120stiff.model.file import (
     base_model,
@@ -67,5 +68,6 @@ __all__ = [
     "typical_parameters",
     "warn_of_far_bend",
     "with_own_errors",
+    "without_marker",
     "write_model",
 ]

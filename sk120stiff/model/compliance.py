@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.effects import Elastic, LinearElastic, LoadCases, load_case
+from sk120stiff.effects import Elastic, Geometric, LinearElastic, LoadCases, load_case
 from sk120stiff.errors import InputError, warn
 from sk120stiff.model.model import Model
 from sk120stiff.robot import Mechanism, Robot
@@ -162,6 +162,13 @@ def seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
         at = robot.placement(robot.rest, frame, point)
         return model, (np.linalg.inv(robot.placement(robot.rest)) @ at)[:3, 3]
     return replace(model, robot=replace(robot, tool_frame=frame)), point
+
+
+def without_marker(model: Model) -> Model:
+    """The arm alone, `Model.physical`, without where on its tool the measured marker sat."""
+    arm = model.physical()
+    marks = {e for e in arm.effects if isinstance(e, Geometric) and e.of_marker}
+    return replace(arm, parameters=tuple(p for p in arm.parameters if p.effect not in marks))
 
 
 def probing_poses(robot: Robot) -> Array:

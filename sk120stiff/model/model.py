@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import (
     Effect,
-    Geometric,
     LoadCases,
     LoadError,
     ReadingError,
@@ -333,7 +332,7 @@ class Model:
         return self.physical().predict(load_cases)
 
     def physical(self) -> Model:
-        """The arm alone: without load and reading errors, and without where the marker sat on it.
+        """The arm alone: the model without load and reading errors.
 
         Examples:
             >>> import sk120stiff as sk
@@ -345,10 +344,7 @@ class Model:
         return replace(
             self,
             parameters=tuple(
-                p
-                for p in self.parameters
-                if not isinstance(p.effect, LoadError | ReadingError)
-                and not (isinstance(p.effect, Geometric) and p.effect.of_marker)
+                p for p in self.parameters if not isinstance(p.effect, LoadError | ReadingError)
             ),
         )
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import load_case
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.model import Model, seen_from
+from sk120stiff.model import Model, seen_from, without_marker
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
 from sk120stiff.stiffness.wrench import wrenches
@@ -113,7 +113,7 @@ def compensate(
         True
     """
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
+    physical, at = seen_from(without_marker(model), frame or model.robot.tool_frame, at)
     given = np.atleast_2d(physical.robot.coordinates(a))
     load = wrenches(wrench, len(given))
     if not np.isfinite(load).all():
@@ -146,7 +146,7 @@ def standing(
     With another model than the one that corrected the commands this shows what a wrong model costs.
     """
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
+    physical, at = seen_from(without_marker(model), frame or model.robot.tool_frame, at)
     robot = physical.robot
     a, goal = np.atleast_2d(robot.coordinates(commanded)), np.atleast_2d(robot.coordinates(meant))
     load = wrenches(wrench, len(a))

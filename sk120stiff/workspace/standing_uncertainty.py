@@ -15,7 +15,15 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import load_case
 from sk120stiff.errors import Refusal
-from sk120stiff.model import Model, Share, held_loads, joint_shares, seen_from, shares
+from sk120stiff.model import (
+    Model,
+    Share,
+    held_loads,
+    joint_shares,
+    seen_from,
+    shares,
+    without_marker,
+)
 from sk120stiff.model.predicted import blamed
 from sk120stiff.model.uncertainty import spread
 
@@ -150,7 +158,7 @@ def _seen(
 ) -> tuple[Model, Array, Array, Array]:
     """The arm up to a frame, commands (N, n), loads (N, 6), and the point in its tool frame."""
     at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(model.physical(), frame or model.robot.tool_frame, at)
+    physical, at = seen_from(without_marker(model), frame or model.robot.tool_frame, at)
     a = np.atleast_2d(physical.robot.coordinates(commanded))
     return physical, a, np.broadcast_to(np.asarray(wrench, dtype=float), (len(a), 6)), at
 

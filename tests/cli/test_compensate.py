@@ -55,8 +55,8 @@ def test_the_written_commands_put_the_loaded_tool_in_place(run: Run, tmp_path: P
         assert np.linalg.norm(where[0] + moved - where[1]) < 1e-8
 
 
-def test_a_point_that_a_fit_found_elsewhere_is_told(run: Run, tmp_path: Path) -> None:
-    """The marker sat 50 mm off the flange: whoever drives the flange along a path has to know."""
+def test_where_a_marker_sat_moves_no_tool(run: Run, tmp_path: Path) -> None:
+    """Of a model from positions: the marker sat 50 mm off, and the flange was led there."""
     text = Path(MODEL).read_text()
     off = zip("xyz", (0.03, 0.0, 0.04), strict=True)
     offset = ", ".join(f"offset_{axis}: {{value: {size}, unit: m}}" for axis, size in off)
@@ -64,12 +64,15 @@ def test_a_point_that_a_fit_found_elsewhere_is_told(run: Run, tmp_path: Path) ->
     model.write_text(
         f"{text}  - name: tool_offset\n    where: tool0\n    parameters: {{{offset}}}\n"
     )
+    written = set()
     for used, told in ((str(model), True), (MODEL, False)):
-        path = joint_path(tmp_path)
-        found = run("compensate", used, str(path), "--out", str(tmp_path / "out.csv"), "--json")
+        path, out = joint_path(tmp_path), tmp_path / "out.csv"
+        found = run("compensate", used, str(path), "--out", str(out), "--json")
         assert found.code == 0, found.stderr
         said = " ".join(found.document["assumed"])
-        assert ("has the measured point 50 mm off its stated place" in said) == told
+        assert ("marker sat 50 mm off its stated place" in said) == told
+        written.add(out.read_bytes())
+    assert len(written) == 1
 
 
 def test_positions_and_orientation(run: Run, tmp_path: Path) -> None:
