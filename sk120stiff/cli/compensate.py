@@ -54,6 +54,7 @@ from sk120stiff.files import will_write
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import feasible
 from sk120stiff.programs import language_of
+from sk120stiff.programs.building import convention
 from sk120stiff.programs.placing import TOOL_DOWN
 from sk120stiff.units import parse_size
 from sk120stiff.workspace import (
@@ -202,6 +203,8 @@ def command(
     if given.joints is not None and given.position is not None:
         facts = (*facts, "Its joints are driven; the positions beside them agree.")
     facts = (*facts, *(point_words(believed) if at in (None, robot.tool_frame) else ()))
+    if language is not None and not robot.controller.axes:
+        facts = (*facts, f"In the program {convention(robot)}.")
     assumed = assumed_at_work(robot, around)
     held_at = given.wrench if at in (None, robot.tool_frame) else None
     wrong = infeasible(robot, around, nominal, given, held_at)

@@ -26,6 +26,7 @@ REST = 1e-10  # rad or m: after a correction smaller than this nothing is left t
 DAMPING = 1e-9  # of squared singular values of J: directions below are left alone
 ENOUGH = 1e-8  # m and rad: what remains counts as nothing
 BLOCK = 1024  # points solved together
+NEAR_SINGULAR = "near a singular pose, some direction cannot be corrected"
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +208,14 @@ def _compensated(
     lost = ~now.exists & held
     if lost.any():
         now = _replaced(now, np.flatnonzero(lost), _picked(before, lost))
-    return Compensation(a, before, now, _reasons(model, a, now, held, lost, orientation, moves))
+    worse = now.distance > before.distance + ENOUGH  # beside a singular pose steps lead away
+    if worse.any():
+        a[worse] = given[worse]
+        now = _replaced(now, np.flatnonzero(worse), _picked(before, worse))
+    reasons = _reasons(model, a, now, held, lost, orientation, moves)
+    told = "its correction would lead away, so it stays as it was: " + NEAR_SINGULAR
+    reasons = tuple(told if off else why for off, why in zip(worse, reasons, strict=True))
+    return Compensation(a, before, now, reasons)
 
 
 def _step(
@@ -282,7 +290,7 @@ def _reasons(
         elif moves.sum() < wanted:
             reasons[k] = f"{moves.sum()} joints cannot correct {wanted} directions"
         else:
-            reasons[k] = "near a singular pose, some direction cannot be corrected"
+            reasons[k] = NEAR_SINGULAR
     return tuple(reasons)
 
 
