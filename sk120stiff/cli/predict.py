@@ -83,7 +83,11 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
     columns = prediction_table(readings, predicted)
     if out is not None:
         write_atomically(out, csv_text(columns.items()))
-    document: dict[str, object] = {"rows": rows_of(columns), "out": out}
+    document: dict[str, object] = {
+        "rows": rows_of(columns),
+        "uncertainty": uncertainty_keys(model),
+        "out": out,
+    }
     parts: list[object] = []
     gauge = np.array(columns.get("gap_d[um]", []), dtype=float)
     if gauge.size and np.isfinite(gauge[readings.use]).any():
@@ -99,6 +103,8 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
             f"Gap over {len(gap)} positions: {left:.4g} µm rms per axis, "
             f"{far:.4g} µm mean distance."
         )
+    ways = predicted.std_parameters, predicted.std_remainder
+    parts += sentences(model, *ways, what="a position")
     if out is not None:
         parts.append(f"Written to {out}.")
     return Answer(document, parts)

@@ -44,7 +44,12 @@ def plus_minus(value: float, std: float, digits: int = 5) -> str:
     return f"{value:.{digits}g} ± {std:.2g}"
 
 
-def sentences(model: Model, std_parameters: Array | None, std_remainder: Array | None) -> list[str]:
+def sentences(
+    model: Model,
+    std_parameters: Array | None,
+    std_remainder: Array | None,
+    what: str = "a deflection",
+) -> list[str]:
     """± of deflections [m] in words: from the parameters, and from what the model lacks."""
     known = model.uncertainty
     if known is None or std_parameters is None:
@@ -55,7 +60,7 @@ def sentences(model: Model, std_parameters: Array | None, std_remainder: Array |
     said = []
     if finite.any():
         said.append(
-            "Uncertainty of a deflection, standard deviation per axis: "
+            f"Uncertainty of {what}, standard deviation per axis: "
             f"{1e6 * rms(std_parameters):.2g} µm from the parameters"
             f"{_of_remainder(model, std_remainder)}. 95 %: ± {known.reach(0.95):.3g} times the "
             "whole; the noise of a reading comes on top."

@@ -23,6 +23,7 @@ BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
 FEWER = 50  # rows that sums of joints are looked for in: there are many
 TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
 MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
+COMPUTED = 2e-6  # m; no arm is built, and no tracker reads, as well as that
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +107,12 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         found, kept = stated, at
     if said.frame == "base":
         _refuse_other_axes(found, cloud, spread, readings)
+    if found.rms < COMPUTED:
+        notes.append(
+            f"These positions follow the rigid robot of the URDF to {1e6 * found.rms:.2g} µm, "
+            "nearer than any instrument reads and than any arm is built: they look computed, as a "
+            "controller shows them, not measured. Check which columns are the measurement."
+        )
     distance = np.full(readings.n_readings, np.nan)
     distance[whole] = cloud.left(found)
     wild = np.zeros(readings.n_readings, dtype=bool)

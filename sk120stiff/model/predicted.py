@@ -110,7 +110,7 @@ class Predicted:
 def predict(model: Model, measurements: Measurements) -> Predicted:
     """What a model says of every row of measurements, or of a plan; ± where that is known.
 
-    Of absolute readings it is where the marker stands; the ± is that of displacements alone.
+    Of absolute readings it is where the marker stands.
 
     Args:
         model: Robot, effects, and their uncertainty if it is known.
@@ -148,13 +148,19 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
 
 
 def predict_positions(model: Model, load_cases: LoadCases) -> Predicted:
-    """Where the marker stands at every reading, as the instrument sees it.
+    """Where the marker stands at every reading, as the instrument sees it; ± if that is known.
 
     Raises:
         Refusal: The springs cannot hold the arm's weight or a load.
     """
-    seen = read_poses(model, load_cases)
-    return Predicted(model.predict(load_cases), position=seen.position, rotation=seen.rotation)
+    known = model.uncertainty
+    seen = read_poses(model, load_cases, derivative=known is not None)
+    moved = model.predict(load_cases)
+    if known is None:
+        return Predicted(moved, position=seen.position, rotation=seen.rotation)
+    std, blame = _spread_of(known, model.names, seen.columns[:, :3])
+    left = remainder_std(known, load_cases)
+    return Predicted(moved, std, left, blame, seen.position, seen.rotation)
 
 
 def predict_with_uncertainty(model: Model, load_cases: LoadCases) -> Predicted:
@@ -174,16 +180,19 @@ def predict_with_uncertainty(model: Model, load_cases: LoadCases) -> Predicted:
     if known is None:
         return Predicted(model.predict(load_cases))
     displacement, derivative = model.predict_with_sensitivities(load_cases)
-    L, B = known.factors(model.names)
+    std, blame = _spread_of(known, model.names, derivative)
+    return Predicted(displacement, std, remainder_std(known, load_cases), blame)
+
+
+def _spread_of(
+    known: Uncertainty, names: tuple[str, ...], derivative: Array
+) -> tuple[Array, tuple[tuple[str, ...], ...]]:
+    """(N, 3) standard uncertainty of what has a derivative (N, 3, P), and whom it is unknown by."""
+    L, B = known.factors(names)
     std = spread(derivative @ L, derivative @ B, known.floor)
-    return Predicted(
-        displacement,
-        std,
-        remainder_std(known, load_cases),
-        tuple(
-            blamed(known, model.names, derivative[k]) if lost else ()
-            for k, lost in enumerate(np.atleast_1d(np.isinf(std).any(axis=1)))
-        ),
+    lost = np.atleast_1d(np.isinf(std).any(axis=1))
+    return std, tuple(
+        blamed(known, names, own) if out else () for own, out in zip(derivative, lost, strict=True)
     )
 
 

@@ -9,6 +9,7 @@ from scipy import stats
 
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.model_form import ModelForm
+from sk120stiff.model.uncertainty import Remainder
 
 LEVEL = 0.01  # probability of noise alone below which what is left is significant
 ENDS = (0.975, 0.025)  # of an interval that holds 95 %
@@ -55,6 +56,25 @@ def chance_of_noise(final: Calibration) -> float | None:
     return None if final.form is None else final.form.chance
 
 
+def remainder_at_other_poses(final: Calibration) -> Remainder | None:
+    """What is left, as predictions need it: as large whatever hangs on the arm; None: unknown."""
+    size, chance = left_beyond_noise(final), chance_of_noise(final)
+    if size is None or chance is None or not len(final.problem.lengths):
+        return None
+    best, _, high = size
+    more = (best**2 + 0.5 * (high**2 - best**2)) ** 0.5  # half of an interval: a standard error
+    return Remainder(
+        rms=np.full(3, best),
+        upper=np.full(3, more),
+        freedom=np.full(3, max(final.degrees_of_freedom, 0) / 3.0),
+        load=1.0,
+        length=1.0,
+        grows=False,
+        probability=chance,
+        significant=chance < LEVEL,
+    )
+
+
 def remainder_entry(final: Calibration) -> dict[str, Any]:
     """What is left as callers rely on it."""
     size, chance = left_beyond_noise(final), chance_of_noise(final)
@@ -74,7 +94,16 @@ def remainder_sentences(final: Calibration) -> list[str]:
     size = left_beyond_noise(final)
     if size is None:
         return []
-    return [in_words(size, final.problem.unit, stated=final.sigma_known)]
+    said = [in_words(size, final.problem.unit, stated=final.sigma_known)]
+    chance = chance_of_noise(final)
+    if final.sigma_known and final.form is None and chance is not None and chance < LEVEL:
+        square, freedom = final.judged
+        said.append(
+            "It has no smooth course over the joints, as an error of the model has: rather the "
+            f"stated σ is {(square / max(freedom, 1)) ** 0.5:.2g} times too small. Repeat some "
+            "poses, and the noise is known from them."
+        )
+    return said
 
 
 def in_words(size: Size, unit: str, *, stated: bool) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from sk120stiff.effects import Elastic, Viewpoint
 from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.gauge import Frozen
+from sk120stiff.identify.absolute.remainder import remainder_at_other_poses
 from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.identify.uncertainty.known_model import known_estimates
 from sk120stiff.measurements import Measurements
@@ -32,7 +34,8 @@ def known_calibration(found: Calibration) -> Model:
     problem = found.problem
     sigma = problem.stated_sigma or found.rms if len(problem.lengths) else None
     source = f"{found.problem.load_cases.count} readings of positions"
-    return found.model.known(known_estimates(found, sigma, source))
+    known = known_estimates(found, sigma, source)
+    return found.model.known(replace(known, remainder=remainder_at_other_poses(found)))
 
 
 def gap_sentence(found: Calibration) -> str:
