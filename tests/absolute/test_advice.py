@@ -94,6 +94,8 @@ def test_a_payload_that_nobody_stated_is_named_from_a_rigid_start(tmp_path: Path
     found = explained(tmp_path, a, arm.stands(a)[0])
     ids = {item.effect.id for item in found.findings}
     assert "payload:tool" in ids, ids
+    assert {"joint_springs:j2", "joint_springs:j3"} < ids, ids  # it acts through them alone
+    assert found.final.rms < 2.0 * SIGMA
 
 
 def test_play_under_weight_is_named(tmp_path: Path) -> None:
