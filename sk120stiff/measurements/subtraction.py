@@ -135,7 +135,8 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
     else:
         group = rows.pose_index
     axes = np.isfinite(rows.measured).sum(axis=1)
-    found = find_zero_readings(group, rows.loaded, rows.use, axes)
+    copies = _copied_zeros(rows, group)
+    found = find_zero_readings(group, rows.loaded, rows.use & ~copies, axes)
     orphans = np.flatnonzero(rows.loaded & (found.count == 0))
     if orphans.size:
         first = int(orphans[0])
@@ -151,7 +152,12 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
         f"{int(found.counted.sum())} rows without load are the zero readings of the "
         f"{kept.size} loaded rows, each the mean of {_span(used)}."
     ]
-    lesser = find_zero_readings(group, rows.loaded, rows.use).counted & ~found.counted
+    if copies.any():
+        notes.append(
+            f"{int(copies.sum())} rows without load repeat others of their pose to the last digit: "
+            "a zero reading that was written down again counts once."
+        )
+    lesser = find_zero_readings(group, rows.loaded, rows.use & ~copies).counted & ~found.counted
     if lesser.any():
         notes.append(
             f"{int(lesser.sum())} rows without load lack an axis that others of their pose have; "
@@ -178,6 +184,23 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
         notes=tuple(notes),
         zero_joints=found.mean(rows.joints)[kept] if jitter(rows) > SAME_JOINT else None,
     )
+
+
+def _copied_zeros(rows: Rows, group: Integers) -> Mask:
+    """(N,) rows without load that repeat one of their zero reading to the last digit.
+
+    Sheets with columns for both write the unloaded position beside every load. Rows that the file
+    itself tells apart, by order, time or repeat, are readings of their own.
+    """
+    copied = np.zeros(len(rows.pose), dtype=bool)
+    if rows.measured is None or any(x is not None for x in (rows.order, rows.time, rows.repeat)):
+        return copied
+    known: set[tuple[int, bytes]] = set()
+    for row in np.flatnonzero(~rows.loaded & rows.use & np.isfinite(rows.measured).all(axis=1)):
+        key = int(group[row]), rows.measured[row].tobytes()
+        copied[row] = key in known
+        known.add(key)
+    return copied
 
 
 def jitter(rows: Rows) -> float:

@@ -54,6 +54,24 @@ A,0,0,0,0,99,0,0,7
 """
 
 
+def test_a_zero_reading_that_was_written_down_again_counts_once(tmp_path: Path) -> None:
+    """Sheets have the unloaded position beside every load: that is no mean of three."""
+    rows = """
+A,0,0,0,0,1000.25,500.5,0.125
+A,0,5,0,0,1003,500,1
+A,0,0,0,0,1000.25,500.5,0.125
+A,0,9,0,0,1004,500,2
+A,0,0,0,0,1000.75,500.5,0.125
+"""
+    m = read(tmp_path, HEAD + rows)
+    np.testing.assert_array_equal(m.zero_count, [2, 2])
+    np.testing.assert_allclose(m.displacement[:, 0], [2.5e-3, 3.5e-3])
+    assert any("written down again counts once" in note for note in m.notes)
+    ordered = [f"{row},{k}" for k, row in enumerate(rows.split())]
+    m = read(tmp_path, "\n".join([f"{HEAD},order", *ordered]))  # three readings, and it says so
+    np.testing.assert_array_equal(m.zero_count, [3, 3])
+
+
 def test_separate_zeros_are_those_taken_last_before(tmp_path: Path) -> None:
     m = read(tmp_path, RUNS, "displacement: {zero: separate}")
     np.testing.assert_allclose(m.displacement[:, 0], [1e-3, 2e-3, 2e-3])

@@ -12,6 +12,7 @@ import pytest
 from sk120stiff.effects import effect
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation, Finding, explain
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.absorbed import absorbed
 from sk120stiff.explain.findings import Contender
 from sk120stiff.identify import LackOfFit
@@ -21,7 +22,7 @@ from sk120stiff.show import scene_html
 from sk120stiff.show.stories import explain_report, explain_scene
 from sk120stiff.show.stories.explain_report import _left
 from sk120stiff.show.stories.pictures import ArmView, exaggeration, gap_vectors, suspect_panels
-from sk120stiff.show.stories.verdicts import lead_of
+from sk120stiff.show.stories.verdicts import lead_of, title_of
 from sk120stiff.show.wording import number, percent, said_as, um, unit_of, with_error
 from tests.explain.readings import base_fit, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
@@ -193,6 +194,10 @@ def test_none_does_not_claim_a_gap_closed() -> None:
     doubt = replace(answer("none"), adequacy=replace(named().adequacy, whole=little))
     assert lead_of(sure).startswith("Nothing is missing that these readings could show.")
     assert "not enough to claim" in lead_of(doubt)
+    open_ = replace(sure, odds={"none": 0.4, "friction_hysteresis:joint_2_l": 0.55})
+    assert "nothing is missing is not sure" in lead_of(open_)
+    assert "friction_hysteresis:joint_2_l 0.55" in next_step(open_)
+    assert title_of(open_) == "No effect can be named"
 
 
 def test_detectable_sizes_are_grouped_by_effect() -> None:

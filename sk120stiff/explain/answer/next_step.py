@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff.errors import listed
+from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted
 from sk120stiff.explain.localise.words import microns
 
@@ -30,6 +31,11 @@ def _none(answer: Explanation) -> list[str]:
         return [f"Before anything is concluded, state the noise or {REPEATS}, and run this again."]
     if left.understated is not None:
         return [*_of_the_noise(answer), "The model itself may be used as it is."]
+    if nothing(answer) < EVEN:
+        return [
+            f"That nothing is missing is not sure ({unsettled(answer)}): measure at more poses, or "
+            "with larger loads, append the readings to the file and run this again."
+        ]
     return [
         "Use model.yaml as it is.",
         "What could still hide, and how large it would have to be, stands in the report and in "

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Kind = Literal["named", "instead", "further", "none", "something_else"]
 SOMETHING_ELSE = "something_else"
+EVEN = 0.5  # probability of nothing below which nobody is told that nothing is missing
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,13 @@ def nothing(answer: Explanation) -> float:
     for finding in answer.findings:
         share *= nothing_in_its_place(finding)
     return share
+
+
+def unsettled(answer: Explanation) -> str:
+    """What may be missing where nothing is named, in words."""
+    others = [each for each in probabilities(answer) if each.kind != "none"]
+    said = f"its probability is {nothing(answer):.2f}"
+    return f"{said}, that of {others[0].name} {others[0].probability:.2f}" if others else said
 
 
 def nothing_in_its_place(finding: Finding) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
+from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.findings import likely
 from sk120stiff.show.wording import chance, counted, um
 
@@ -24,7 +25,8 @@ def _title_of_none(answer: Explanation) -> str:
     left = answer.adequacy
     if left.understated is not None:
         return "Nothing structured is missing, but σ looks too small"
-    if answer.noise_floor is None or (left.chance is not None and left.chance < DOUBTFUL):
+    unsure = nothing(answer) < EVEN
+    if answer.noise_floor is None or unsure or (left.chance or 1.0) < DOUBTFUL:
         return "No effect can be named"
     return "Model and measurement agree"
 
@@ -54,6 +56,11 @@ def _none(answer: Explanation) -> str:
         return (
             f"No effect can be named. {misses}, a little more than the noise: {makes} (p = "
             f"{chance(left.chance)}). That is not enough to claim that something is missing."
+        )
+    if nothing(answer) < EVEN:
+        return (
+            f"No effect can be named, and that nothing is missing is not sure: "
+            f"{unsettled(answer)}. {misses}; {makes}."
         )
     return f"Nothing is missing that these readings could show. {misses}; {makes}."
 
