@@ -124,3 +124,11 @@ def test_a_library_call_may_rewrite_what_it_has_read(tmp_path: Path) -> None:
 def test_a_device_without_end_is_refused() -> None:
     with pytest.raises(InputError, match="larger than 250 MB"):
         read_bytes("/dev/zero")
+
+
+def test_a_workbook_is_told_from_text(tmp_path: Path) -> None:
+    path = tmp_path / "readings.xlsx"
+    path.write_bytes(b"PK\x03\x04" + bytes(range(128, 256)))
+    with pytest.raises(InputError, match="this is a workbook") as refused:
+        read_text(path)
+    assert "sk120stiff import readings.xlsx" in str(refused.value.remedy)

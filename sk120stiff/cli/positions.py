@@ -13,7 +13,6 @@ from sk120stiff.effects import LinearElastic
 from sk120stiff.explain import Explained
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
-from sk120stiff.explain.findings import likely
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.model import Model, base_model
 
@@ -45,7 +44,7 @@ def _parts(answer: Explained, out: Path) -> list[object]:
     shown: list[object] = [headline(answer)]
     for item in answer.findings:
         shown.append(
-            f"{item.effect.sentence()} [{item.effect.id}] ({likely(item.probability)}, takes off "
+            f"{item.effect.sentence()} [{item.effect.id}] ({answer.chance_of(item)}, takes off "
             f"{100 * item.gain.share:.1f} %)"
         )
         shown += [f"  or {other} (not told apart here)" for other in item.alternatives]

@@ -140,7 +140,7 @@ def explain_displacements(
         lives = where_sentences(localise(held_against(noise, found.final)))
         if account is not None:  # of another suspect in its place no more need be said
             lives = (*lives[:1], account.sentence())
-        remainder = replace(remainder, where=lives[1 : 1 + TOLD])
+        remainder = replace(remainder, where=(*lives[1 : 1 + TOLD], *left.of_time))
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
@@ -200,8 +200,8 @@ def _judged(
         found,
         named,
         under=under,
-        complete=lambda tried, said, noise: (
-            not tried.final.exceeds and _explains(tried, said, noise)
+        complete=lambda tried, _said, noise: (
+            not tried.final.exceeds and not _adequacy(tried, noise).lacking
         ),
         seed=seed,
     )

@@ -9,6 +9,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.files.ledger import note_read
 
 LARGEST = 250_000_000  # bytes of one file; a device has no end at all
+WORKBOOK = b"PK\x03\x04"  # how packed files begin, workbooks of spreadsheets among them
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
@@ -49,6 +50,13 @@ def read_text(path: str | os.PathLike[str]) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
+        if data.startswith(WORKBOOK):
+            raise InputError(
+                "this is a workbook (or another packed file), no text",
+                where=str(path),
+                remedy=f"Make a table of it: sk120stiff import {Path(path).name} --robot ROBOT "
+                "--out readings.csv",
+            ) from error
         line = data.count(b"\n", 0, error.start) + 1
         raise InputError(
             f"the byte 0x{data[error.start]:02x} is not UTF-8 text",

@@ -13,6 +13,7 @@ import numpy as np
 from sk120stiff.effects import load_cases_of
 from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.explained import Explained, Named
+from sk120stiff.explain.absolute.next_step import next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS, micrometres, parameter_entry
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
@@ -87,6 +88,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
                 for row in np.flatnonzero(final.wild)
             ],
         },
+        "next_step": next_step_of_positions(answer),
         "said": findings(final, readings),
         "next_poses": None if answer.following is None else NEXT_POSES,
     }

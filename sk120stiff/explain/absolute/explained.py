@@ -13,7 +13,7 @@ from sk120stiff.explain.absolute.accounts import GapStep
 from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.choose import Gain
 from sk120stiff.explain.absolute.linear import Linear
-from sk120stiff.explain.findings import Contender, Detectable
+from sk120stiff.explain.findings import Contender, Detectable, likely
 from sk120stiff.identify import Calibration
 from sk120stiff.identify.absolute.remainder import LEVEL, Size, remainder_sentences
 from sk120stiff.measurements import Measurements
@@ -102,6 +102,13 @@ class Explained:
     def lacking(self) -> bool:
         """More is left than the noise makes."""
         return self.chance is not None and self.chance < LEVEL
+
+    def chance_of(self, item: Named) -> str:
+        """How probable a name is, and where others explain as much how probable one of them is."""
+        if not item.alternatives:
+            return likely(item.probability)
+        own = likely(self.probabilities.get(item.effect.id, 0.0))
+        return f"{own}; it or one of those not told from it: {likely(item.probability)}"
 
     def weight(self) -> tuple[str, ...]:
         """What the arm's weight would explain where no spring is named, in a sentence."""

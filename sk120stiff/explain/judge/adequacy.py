@@ -28,6 +28,7 @@ ORDERS = {
     "constant": "constant at single poses, beyond what is in proportion to the load",
     "curved": "curved in the load at single poses",
 }
+WHOLE = "whole misfit"
 Tests = dict[str, tuple[float, float]]  # name → probability, excess in noise variances
 FEWEST = 3  # degrees of freedom without which the scatter of a pose says nothing
 
@@ -64,6 +65,19 @@ class Adequacy:
     def chance(self) -> float | None:
         """The one probability of the gap that is left; None where nothing tells the noise."""
         return None if self.whole is None else self.whole.probability
+
+    @property
+    def of_time(self) -> tuple[str, ...]:
+        """That readings of single poses wander, where nothing else is as sure; in a sentence."""
+        name = OWN["drift"]
+        p = self.tests.get(name, 1.0)
+        others = [each for key, each in self.tests.items() if key not in (name, WHOLE)]
+        if p >= LEVEL / max(len(self.tests), 1) or p > min(others, default=1.0):
+            return ()
+        return (
+            "Readings of single poses wander as the measurement goes on, along no course that the "
+            "catalogue has, as with the warmth of a hall that comes and goes: look at the times.",
+        )
 
     def of_the_statement(self) -> tuple[str, ...]:
         """What is to be said of a stated σ that the readings do not bear out."""
@@ -110,7 +124,7 @@ def adequacy(fit: Fit, named: Collection[str]) -> Adequacy:
     if whole is not None:
         taken = whole.freedom[0]
         beyond = whole.statistic * (1 if whole.freedom[1] is None else taken) - taken
-        tests["whole misfit"] = whole.probability, beyond
+        tests[WHOLE] = whole.probability, beyond
     return _judged(tests, size, whole, closest)
 
 

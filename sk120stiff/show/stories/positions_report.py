@@ -8,7 +8,6 @@ import numpy as np
 
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
-from sk120stiff.explain.findings import likely
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.show.figures import GapStep, gap_waterfall
 from sk120stiff.show.figures.budget import budget_bars
@@ -58,7 +57,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         units=("", unit),
     )
     named = [
-        f"{item.effect.sentence()} (`{item.effect.id}`) {likely(item.probability)}; takes off "
+        f"{item.effect.sentence()} (`{item.effect.id}`) {answer.chance_of(item)}; takes off "
         f"{100 * item.gain.share:.1f} % of the held-out gap beside the others."
         + (f" Not told from: {', '.join(item.alternatives)}." if item.alternatives else "")
         for item in answer.findings
