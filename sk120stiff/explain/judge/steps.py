@@ -12,7 +12,6 @@ from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
-from sk120stiff.explain.judge.confirm import FOLDS
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
@@ -136,9 +135,7 @@ def _on_file(found: Fit, holdout: Measurements) -> float:
 def _on_poses_left_out(found: Selection, counts: Sequence[int], seed: int) -> list[float]:
     """Gap on poses left out in turn, per axis [m]; NaN where the others do not hold the model."""
     try:
-        errors = held_out(
-            found.base.problem.measurements, nested(found, counts), folds=FOLDS, seed=seed
-        )
+        errors = held_out(found.base.problem.measurements, nested(found, counts), seed=seed)
     except (InputError, Refusal):
         return [float("nan")] * len(counts)
     return [error.rms for error in errors]

@@ -211,8 +211,11 @@ def _start(problem: Problem, near: Fit | None) -> tuple[Array, float]:
     if not size.all():
         raise Refusal("a parameter does not show to first order")
     bounds = tuple((bound - x) * size for bound in problem.bounds)
+    # Drawn towards zero by what is plausible: directions that are not seen stay there.
+    rows = np.vstack([jacobian / size, np.diag(1.0 / (problem.span * size))])
+    wanted = -np.concatenate([residual, x / problem.span])
     with np.errstate(invalid="ignore"):  # scipy asks how far it is to a bound at infinity
-        step = lsq_linear(jacobian / size, -residual, bounds).x / size
+        step = lsq_linear(rows, wanted, bounds).x / size
     return x + step, _misfit(residual + jacobian @ step)
 
 
