@@ -68,6 +68,12 @@ def blind_section(answer: Explanation) -> Section:
             "At no plausible size would these have shown in these readings. They may be there."
         )
         blocks.append(Items(_grouped(answer.not_observable)))
+    if "reading_scale:tracker" in answer.not_observable:
+        blocks.append(
+            "A common factor of all forces is the same to these readings as one of all readings: "
+            "every spring takes it on. A force sensor that reads 8 % too much makes all springs 8 "
+            "% too stiff, and nothing here would tell."
+        )
     visible = [item for item in answer.smallest_detectable if item.value is not None]
     if visible:
         blocks.append(
