@@ -62,6 +62,25 @@ def test_slips_at_single_readings_are_outliers_wherever_they_are(rows: list[int]
     assert after == rows
 
 
+def test_a_crowd_far_off_is_set_aside_where_nothing_is_left_without_it():
+    """Seven slips of a hundred readings: `explain` said that something is missing."""
+    readings = hidden(poses=24, seed=5)
+    count = readings.n_readings
+    rows = sorted(np.random.default_rng(2).choice(count, round(0.09 * count), replace=False))
+    assert set_aside(off(readings, rows, 40 * SIGMA))[0] == rows
+    near = set_aside(off(readings, rows, 7 * SIGMA))[0]  # so much a cause may bring at some poses
+    assert near == []
+
+
+def test_a_reading_far_beyond_all_others_is_set_aside_beside_a_cause_that_has_no_name():
+    readings = hidden(poses=24, seed=5)
+    bent = np.array(readings.displacement)
+    bent += 8 * SIGMA * np.random.default_rng(6).normal(size=bent.shape)  # nobody stated it
+    slipped = off(replace(readings, displacement=bent), [31], 150 * SIGMA)
+    assert set_aside(slipped)[0] == [31]
+    assert set_aside(replace(readings, displacement=bent))[0] == []
+
+
 def test_a_slip_is_found_beside_a_tracker_that_warms_up():
     readings = off(warming(hidden(poses=36), 3.0, 40 * SIGMA), [90], 25 * SIGMA)
     assert set_aside(readings)[1] == [90]

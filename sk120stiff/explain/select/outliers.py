@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import chi2
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression
@@ -14,10 +15,12 @@ from sk120stiff.measurements.poses import rows_by_label
 
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
 NEXT = 3.7  # the same once one outlier is certain
-ALONE = 8.0  # robust sizes of what no catalogue explains: no smooth cause is so much at one reading
+ALONE = 8.0  # of what no catalogue explains: no smooth cause is so much at one reading
 LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to tell of the noise
 ROUNDING = 1e-10  # of the most that a shift has of its own
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
+MANY = 0.12  # the same where each is far off, and nothing is left without them
+CLEAN = 1e-3  # probability that noise alone leaves more
 
 
 def outlying_rows(
@@ -37,7 +40,8 @@ def outlying_rows(
     parameters (BIC), no slip is needed for what it explains.
 
     Where so many readings are farther off than the stated noise that no catalogue explains them,
-    what is left of the others is the noise that an outlier has to stand out of.
+    some are outliers if without them, each far off, the noise is all that is left. Otherwise what
+    is left of the others is the noise that an outlier has to stand out of.
 
     Args:
         regression: The readings linearised at the base model.
@@ -50,7 +54,9 @@ def outlying_rows(
     shifts = _shift_columns(whitener, regression.group)
     found = _searched(X, prior, y, shifts, regression.sigma_known)
     if found.left == np.inf and regression.sigma_known:
-        found = _searched(X, prior, y, shifts, sigma_known=False, limits=(ALONE, ALONE))
+        found = _searched(X, prior, y, shifts, sigma_known=True, limits=(ALONE, ALONE), most=MANY)
+        if found.left > chi2.isf(CLEAN, len(y)):
+            found = _searched(X, prior, y, shifts, sigma_known=False, limits=(ALONE, ALONE))
     if not len(found.rows):
         return found.rows
     each = np.log(len(y))  # the price of a parameter
@@ -127,10 +133,12 @@ def _searched(
     sigma_known: bool,
     noise: float | None = None,
     limits: tuple[float, float] = (LIMIT, NEXT),
+    most: float = LARGEST_SHARE,
 ) -> _Searched:
     """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,).
 
-    They do by so many standard errors (`limits`): the first, and those after it.
+    They do by so many standard errors (`limits`): the first, and those after it; `most` is the
+    largest share of them.
 
     A shift that joins the fit adds rows to `half`, with which halfᵀ half is the fit again.
     """
@@ -143,7 +151,7 @@ def _searched(
     for each in shifts:
         total[each.readings] = (each.columns**2).sum(0)
         left[each.readings] = total[each.readings] - (each.along(half) ** 2).sum(0)
-    while len(out) <= LARGEST_SHARE * len(total):
+    while len(out) <= most * len(total):
         size = noise
         if size is None:
             size = 1.0 if sigma_known else robust_scale(residual, leverage)
