@@ -225,7 +225,8 @@ def _refuse_other_axes(
 ) -> None:
     """Positions said to be in base axes must be there."""
     screws = cloud.robot.screws(cloud.a)
-    at = screws.frame_position + np.einsum("nij,nj->ni", screws.rotation, cloud.point)
+    marker = cloud.point + found.marker
+    at = screws.frame_position + np.einsum("nij,nj->ni", screws.rotation, marker)
     angle = float(np.linalg.norm(rotation_vector(found.turn)))
     off = float(np.median(np.linalg.norm(cloud.x - at, axis=1)))
     if angle < TURNED and off < max(SHIFTED * spread, 10.0 * found.rms):

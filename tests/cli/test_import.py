@@ -40,7 +40,7 @@ def test_the_springs_come_out(run, tmp_path: Path) -> None:
     )
     assert outcome.code == 0, outcome.stderr
     found = outcome.document
-    assert found["doubts"] == []
+    assert [said for said in found["doubts"] if "they look computed" not in said] == []
     assert (found["rows"], found["poses"], found["useful_poses"]) == (6, 3, 3)
     assert found["stiffness_identifiable"] is True
     assert read_measurements(out).robot == "motoman_sk120"
@@ -97,8 +97,8 @@ def test_a_turned_tracker_is_registered_and_a_wrong_unit_is_named(run, tmp_path:
     assert found["registration"]["turned_deg"] == pytest.approx(90.0, abs=0.1)
     values = [p["value"] for p in run("identify", out, "--json").document["parameters"]]
     assert values == pytest.approx([1.4098e6, 4.0076e5, 9.3528e5], rel=5e-3)
-    (doubt,) = run("import", str(source), *pairs, "--no-register", "--json").document["doubts"]
-    assert "about 90 deg" in doubt and "--register" in doubt
+    doubts = run("import", str(source), *pairs, "--no-register", "--json").document["doubts"]
+    assert any("about 90 deg" in doubt and "--register" in doubt for doubt in doubts)
     told = (*TOLD[:2], "--length", "mm", "--angle", "rad")
     Path(out).unlink()
     outcome = run("import", marks(tmp_path), *told, "--wrench", "0,0,-9 N", "--out", out)

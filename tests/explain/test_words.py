@@ -141,9 +141,9 @@ def test_suspects_are_told_with_what_they_gain() -> None:
 @pytest.mark.parametrize("others", [(), ("a:c",)])
 def test_what_brings_the_most_has_its_error_and_all_its_names(others: tuple[str, ...]) -> None:
     named = (SimpleNamespace(effect=SimpleNamespace(id="a:b"), alternatives=others),)
-    told = next_step(Answered(findings=named, budget=(Share("a:b", 4.61e-4, 8.35e-4),)))
+    told = next_step(Answered(findings=named, budget=(Share("a:b", 4.61e-4, 1.35e-4),)))
     assert f"{' or '.join(('a:b', *others))} brings the most" in told
-    assert "461 µm (± 835 µm) rms per axis" in told
+    assert "461 µm (± 135 µm) rms per axis" in told
 
 
 def test_the_first_line_says_that_part_has_no_name() -> None:

@@ -204,16 +204,19 @@ def _start(problem: Problem, near: Fit | None) -> tuple[Array, float]:
         own = [known.get(p.name, p.internal) for p in problem.model.parameters]
         x = np.clip(np.array(own)[problem.free] / problem.scale, *problem.bounds)
     residual, jacobian = problem.evaluate(x)
-    if near is None and not _sizes(jacobian).all():
+    at_rest = near is None
+    if at_rest and not _sizes(jacobian).all():
+        at_rest = False
         x = np.clip(problem.start, *problem.bounds)
         residual, jacobian = problem.evaluate(x)
     size = _sizes(jacobian)
     if not size.all():
         raise Refusal("a parameter does not show to first order")
+    rows, wanted = jacobian / size, -residual
+    if not at_rest:  # drawn towards zero by what is plausible, where no reading tells
+        rows = np.vstack([rows, np.diag(1.0 / (problem.span * size))])
+        wanted = -np.concatenate([residual, x / problem.span])
     bounds = tuple((bound - x) * size for bound in problem.bounds)
-    # Drawn towards zero by what is plausible: directions that are not seen stay there.
-    rows = np.vstack([jacobian / size, np.diag(1.0 / (problem.span * size))])
-    wanted = -np.concatenate([residual, x / problem.span])
     with np.errstate(invalid="ignore"):  # scipy asks how far it is to a bound at infinity
         step = lsq_linear(rows, wanted, bounds).x / size
     return x + step, _misfit(residual + jacobian @ step)
