@@ -61,7 +61,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         noise = min(before, after)
         gained = linear.score(others, noise) - linear.score(chosen, noise)
         left = linear.left_out(chosen, before)
-        if gained > _threshold(linear) and linear.left_out(others, after) < left:
+        if gained > threshold(linear) and linear.left_out(others, after) < left:
             chosen, dropped = others, fallen
     return Chosen(_beside_frames(linear, chosen, dropped), dropped)
 
@@ -84,7 +84,7 @@ def _searched(
     """Candidates that joined and were confirmed, as they joined or all at the end; the others."""
     chosen: tuple[int, ...] = ()
     dropped: dict[int, str] = {}
-    threshold = _threshold(linear)
+    least = threshold(linear)
     seen: set[frozenset[int]] = set()
     stuck = False  # what joins one by one is given up again
     while len(chosen) < most:
@@ -92,7 +92,7 @@ def _searched(
         if not best:
             break
         before = chosen
-        chosen = _backward(linear, _plainer(linear, (*chosen, *best)), threshold)
+        chosen = _backward(linear, _plainer(linear, (*chosen, *best)), least)
         if frozenset(chosen) in seen:
             if stuck:
                 break
@@ -119,7 +119,7 @@ def _next(
 ) -> tuple[int, ...]:
     """What joins best, one by one where that explains more, or all of a kind; nothing: ()."""
     before = linear.noise(chosen)
-    now, threshold = linear.score(chosen, before), _threshold(linear)
+    now, least = linear.score(chosen, before), threshold(linear)
 
     def best(steps: list[tuple[int, ...]], noise: float | None) -> tuple[int, ...]:
         tried = {}
@@ -127,7 +127,7 @@ def _next(
             if not dropped & set(step):
                 own = noise or linear.noise((*chosen, *step))
                 likely = sum(usual(linear.candidates[e]) for e in step)
-                tried[step] = linear.score((*chosen, *step), own) + likely - threshold * len(step)
+                tried[step] = linear.score((*chosen, *step), own) + likely - least * len(step)
         found = max(tried, key=lambda step: tried[step], default=())
         return found if found and tried[found] >= now else ()
 
@@ -173,7 +173,7 @@ def _beside_frames(
     frames = _frames(linear)
     if not set(frames) & set(chosen):
         return chosen
-    for e in [e for e in chosen if usual(linear.candidates[e]) == 0.0]:
+    for e in [e for e in chosen if usual(linear.candidates[e]) <= 0.0]:
         noise = linear.noise(chosen)
         rest = linear.less(chosen, e)
         wide = tuple(dict.fromkeys((*rest, *frames)))
@@ -196,19 +196,22 @@ def _frames(linear: Linear) -> list[int]:
     return [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_frame"]
 
 
-def _threshold(linear: Linear) -> float:
+def threshold(linear: Linear) -> float:
+    """Logarithm of the odds that a name must bring, one among all candidates."""
     return CLEAR + float(np.log(max(len(linear.candidates), 1)))
 
 
 def entry_price(linear: Linear, e: int) -> float:
     """Evidence that a candidate must bring to join."""
-    return _threshold(linear) - usual(linear.candidates[e])
+    return threshold(linear) - usual(linear.candidates[e])
 
 
 def usual(effect: Effect) -> float:
     """Logarithm of the odds of meeting a cause, over those of one as good as any."""
     if effect.joint_spring or effect.name == "joint_frame":
         return USUAL
+    if effect.name == "gravity_compensator":
+        return -USUAL  # few arms have a balancer, and beside a spring it is a wave of one turn
     return 0.0
 
 
@@ -239,14 +242,14 @@ def _confirmed(gained: Gain, linear: Linear) -> bool:
     return gained.share > SHARE and gained.errors > SURE and gained.folds >= min(4, linear.folds)
 
 
-def _backward(linear: Linear, chosen: tuple[int, ...], threshold: float) -> tuple[int, ...]:
+def _backward(linear: Linear, chosen: tuple[int, ...], least: float) -> tuple[int, ...]:
     """Without what the others make needless, and without parts that had to be rigid."""
     while len(chosen) > 1:
         noise = linear.noise(chosen)
         whole = linear.score(chosen, noise)
         lost = {e: whole - linear.score(linear.less(chosen, e), noise) for e in chosen}
         weakest = min(lost, key=lambda e: lost[e])
-        if lost[weakest] >= threshold:
+        if lost[weakest] >= least:
             return chosen
         chosen = linear.less(chosen, weakest)
     return chosen

@@ -30,6 +30,7 @@ from sk120stiff.explain.absolute.choose import (
     choose,
     gain,
     nothing_named,
+    threshold,
 )
 from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at
@@ -109,7 +110,7 @@ def explain_positions(
             seen, (linear, found, laws, hidden) = final, about
             break
         again = _exactly(base, final, *about[:2], readings, catalogue)
-        if _less_likely(again, final):
+        if _less_likely(again, final, linear):
             break
         seen, (linear, found, laws, hidden), final = final, about, again
     tell("what is left", 0.85)
@@ -195,15 +196,15 @@ def _exactly(
     return min(final, again, key=_left)
 
 
-def _less_likely(again: Calibration, before: Calibration) -> bool:
-    """Does a set that was chosen anew say less of the readings, its parameters counted (BIC)?
+def _less_likely(again: Calibration, before: Calibration, linear: Linear) -> bool:
+    """Does a set that was chosen anew say clearly less of the readings (BIC)?
 
-    About a fit a name may show that acts through others alone, as a payload does through springs:
-    where they are not chosen beside it, nothing comes of it.
+    Clearly is by as much as a name must bring. Sets that say nearly the same take turns.
     """
     numbers = len(before.residual)
     gain = numbers * np.log(_left(before) ** 2 / _left(again) ** 2)
-    return bool(gain < (len(again.x) - len(before.x)) * np.log(numbers))
+    price = (len(again.x) - len(before.x)) * np.log(numbers)
+    return bool(gain - price < -2.0 * threshold(linear))
 
 
 def _left(found: Calibration) -> float:
