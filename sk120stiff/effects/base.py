@@ -85,6 +85,7 @@ class Effect(ABC):
             attribute).
         joint_spring: Its one parameter is the stiffness of the actuated joint at which it acts
             (class attribute).
+        rare: Few arms have what does it (class attribute).
         of_gear: It is a law of a joint's gear: what one such law leaves over looks like another
             (class attribute).
         twins: Names of effects that some experiments make one with this one, at the same place and
@@ -117,6 +118,7 @@ class Effect(ABC):
     bends_a_spring: ClassVar[bool] = False
     inexact: ClassVar[float] = 0.0
     joint_spring: ClassVar[bool] = False
+    rare: ClassVar[bool] = False
     of_gear: ClassVar[bool] = False
     twins: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[str] = ""

@@ -30,6 +30,7 @@ class GravityCompensator(LinearElastic):
     )
     says: ClassVar[str] = "A balancer adds stiffness to {where} that goes with the arm's posture."
     axes: ClassVar[str] = "the axis of the joint itself"
+    rare: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

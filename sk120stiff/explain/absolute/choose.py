@@ -210,9 +210,7 @@ def usual(effect: Effect) -> float:
     """Logarithm of the odds of meeting a cause, over those of one as good as any."""
     if effect.joint_spring or effect.name == "joint_frame":
         return USUAL
-    if effect.name == "gravity_compensator":
-        return -USUAL  # few arms have a balancer, and beside a spring it is a wave of one turn
-    return 0.0
+    return -USUAL if effect.rare else 0.0
 
 
 def _plainer(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:

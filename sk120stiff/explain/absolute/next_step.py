@@ -41,13 +41,13 @@ def next_step_of_positions(answer: Explained) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
     unit = answer.final.problem.unit
-    use = f"Use model.yaml: at poses that no fit saw it is off by {last:.3g} {unit} rms per axis"
+    use = f"Use model.yaml: at poses that no fit saw it is off by {last:.4g} {unit} rms per axis"
     if last < first:
-        use += f" where the registered arm alone is off by {first:.3g} {unit}"
+        use += f" where the registered arm alone is off by {first:.4g} {unit}"
     said = [f"{use}."]
     if answer.families:
         largest = max(answer.families, key=lambda name: answer.families[name])
-        share = f"{1e6 * answer.families[largest]:.3g} {unit}"
+        share = f"{1e6 * answer.families[largest]:.4g} {unit}"
         said.append(
             f"What takes off most is {largest}, {share}: look there first if the arm is to be "
             "mended."

@@ -21,7 +21,7 @@ from sk120stiff.show.report import (
     Section,
     Table,
 )
-from sk120stiff.show.wording import said_in
+from sk120stiff.show.wording import said_in, um
 
 
 def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[str, str]) -> Report:
@@ -30,10 +30,10 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     unit, away = answer.final.problem.unit, end.heldout_distance
     figures = KeyFigures(
         [
-            KeyFigure("registered", f"{1e6 * first.heldout_rms:.3g}", unit, "rms per axis"),
-            KeyFigure("explained", f"{1e6 * end.heldout_rms:.3g}", unit, "at poses left out"),
+            KeyFigure("registered", um(first.heldout_rms), unit, "rms per axis"),
+            KeyFigure("explained", um(end.heldout_rms), unit, "at poses left out"),
             *(
-                [KeyFigure("mean distance", f"{1e6 * away:.3g}", "µm", "left out")]
+                [KeyFigure("mean distance", um(away), "µm", "left out")]
                 if np.isfinite(away)
                 else []
             ),
@@ -118,8 +118,8 @@ def _steps(answer: Explained) -> Picture:
     steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
     return Picture(
         lambda: gap_waterfall(steps, noise_floor=stated, unit=unit),
-        alt=f"Bars of the gap of {len(steps)} models; held out from {1e6 * first.heldout_rms:.3g} "
-        f"to {1e6 * end.heldout_rms:.3g} {unit} rms per axis.",
+        alt=f"Bars of the gap of {len(steps)} models; held out from {um(first.heldout_rms)} "
+        f"to {um(end.heldout_rms)} {unit} rms per axis.",
         caption="Bars: positions that were fitted. Diamonds: poses left out."
         + ("" if stated is None else " Dashed: the stated noise."),
     )
