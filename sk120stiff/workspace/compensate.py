@@ -26,7 +26,6 @@ REST = 1e-10  # rad or m: after a correction smaller than this nothing is left t
 DAMPING = 1e-9  # of squared singular values of J: directions below are left alone
 ENOUGH = 1e-8  # m and rad: what remains counts as nothing
 BLOCK = 1024  # points solved together
-NEAR_SINGULAR = "near a singular pose, some direction cannot be corrected"
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,9 +212,9 @@ def _compensated(
         a[worse] = given[worse]
         now = _replaced(now, np.flatnonzero(worse), _picked(before, worse))
     reasons = _reasons(model, a, now, held, lost, orientation, moves)
-    told = "its correction would lead away, so it stays as it was: " + NEAR_SINGULAR
-    reasons = tuple(told if off else why for off, why in zip(worse, reasons, strict=True))
-    return Compensation(a, before, now, reasons)
+    stays = "its correction would lead away, so it stays as it was: "
+    told = tuple(stays * bool(off) + why for off, why in zip(worse, reasons, strict=True))
+    return Compensation(a, before, now, told)
 
 
 def _step(
@@ -290,7 +289,7 @@ def _reasons(
         elif moves.sum() < wanted:
             reasons[k] = f"{moves.sum()} joints cannot correct {wanted} directions"
         else:
-            reasons[k] = NEAR_SINGULAR
+            reasons[k] = "near a singular pose, some direction cannot be corrected"
     return tuple(reasons)
 
 
