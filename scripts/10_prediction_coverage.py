@@ -1,5 +1,5 @@
 """Do 95 % intervals of predicted deflections hold the truth at new poses? Two arms, and each with
-structure that the fitted model lacks. The data come from a generator of their own.
+structure that the fitted model lacks, seen or too faint for that. The data come from a generator of their own.
 
 Run from the repository:  python scripts/10_prediction_coverage.py --count 200
 """
@@ -23,7 +23,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print(f"{arguments.count} campaigns of each kind, seed {arguments.seed}; rms in µm\n")
     print(
-        f"{'kind':26} {'95 % hold':>14} {'parameters alone':>17} {'± par.':>7} {'± rem.':>7} "
+        f"{'kind':28} {'95 % hold':>14} {'parameters alone':>17} {'± par.':>7} {'± rem.':>7} "
         f"{'miss':>6} {'remainder found':>16}"
     )
     for kind in KINDS:
@@ -41,7 +41,7 @@ def main() -> None:
         ]
         shown = np.mean([one.significant for one in found])
         print(
-            f"{kind.label:26} {100 * share:6.1f} ± {100 * error:3.1f} % {100 * alone:15.1f} % "
+            f"{kind.label:28} {100 * share:6.1f} ± {100 * error:3.1f} % {100 * alone:15.1f} % "
             f"{sizes[0]:7.2f} {sizes[1]:7.2f} {sizes[2]:6.2f} {100 * shown:14.0f} %"
         )
     print("\n95 % hold: parameters and remainder together, ± from campaign to campaign.")

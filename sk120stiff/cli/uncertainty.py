@@ -72,6 +72,7 @@ def _of_remainder(model: Model, std: Array | None) -> str:
     left = None if model.uncertainty is None else model.uncertainty.remainder
     if left is None or std is None:
         return f"; {NO_REMAINDER}"
+    size = f"{1e6 * rms(std):.2g} µm"
     if not left.significant:
-        return ", none from what the model lacks (the fit left no more than noise)"
-    return f", {1e6 * rms(std):.2g} µm from what the model leaves unexplained"
+        return f", {size} from what it may lack (the fit left no more than noise, which hides some)"
+    return f", {size} from what the model leaves unexplained"

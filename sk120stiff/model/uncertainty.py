@@ -5,7 +5,8 @@ combinations of parameters do not show in the readings at all, so a plausible ch
 goes unseen. And the model may lack something: what is left of the gap beyond the noise is its
 remainder. With S the derivative of a quantity by the parameters, the first gives the variance
 S Σ Sᵀ (exact where the quantity is linear), the second S B Bᵀ Sᵀ, which may be anything up to all
-that is plausible; the third is a size, told apart from the others.
+that is plausible; the third is a size, told apart from the others. Where noise alone explains the misfit, it hides some such size too, and
+that counts by its probability: a model without is exact on no arm.
 
 All of it is in internal values: compliances where people write stiffnesses, because deflections
 are linear in those, and an interval of a compliance is symmetric where that of a stiffness is not.
@@ -25,6 +26,7 @@ from sk120stiff.errors import InputError
 
 SMALL = 1e-6  # m; what nobody asks about where only angles were read
 HIDDEN = 0.1  # variance that an unseen change may bring, over what is known of it, before it counts
+LEAST = 1e-300  # probability; below it the logarithm ends
 ROUNDED = 1e-8  # least eigenvalue of a correlation matrix that rounding may have made of zero
 
 
@@ -42,7 +44,7 @@ class Remainder:
         length: Lever at which a moment counts as a force [m].
         grows: It goes with the load; else it is as large at all loads.
         probability: Of as large a misfit if the noise were all.
-        significant: The misfit is more than the noise makes; else the remainder counts as nothing.
+        significant: The misfit is more than the noise makes.
     """
 
     rms: Array
@@ -65,11 +67,24 @@ class Remainder:
         if not 0.0 <= self.probability <= 1.0:
             raise InputError(f"the remainder's probability {self.probability} is none")
 
+    @property
+    def share(self) -> float:
+        """Probability that the model's form is off at all, beforehand as likely as not.
+
+        A misfit that noise alone makes with probability p speaks for it by 1 / (-e p ln p) at most
+        (Sellke, Bayarri & Berger 2001), and from p = 1/e on neither for nor against it.
+        """
+        p = min(max(self.probability, LEAST), np.exp(-1.0))
+        return float(1.0 / (1.0 - np.e * p * np.log(p)))
+
     def std(self, wrench: Array) -> Array:
-        """(..., 3) its standard size under wrenches (..., 6), axes of the base [m]."""
+        """(..., 3) its standard size under wrenches (..., 6), axes of the base [m].
+
+        That of nothing, and of as much as may be there, each as likely as it is.
+        """
         size = load_size(wrench, self.length)[..., None] / self.load
-        share = size if self.grows else np.ones_like(size)
-        return np.asarray(share * (self.upper if self.significant else np.zeros(3)))
+        goes = size if self.grows else np.ones_like(size)
+        return np.asarray(goes * np.sqrt(self.share) * self.upper)
 
 
 def load_size(wrench: Array, length: float) -> Array:

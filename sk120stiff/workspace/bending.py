@@ -45,7 +45,7 @@ class ArmUncertainty:
     def identity(self) -> tuple[object, ...]:
         """What makes it another; the derivatives follow from the arm, but for rounding."""
         left = self.remainder
-        sizes = None if left is None else (left.upper, left.load, left.grows, left.significant)
+        sizes = None if left is None else (left.upper, left.load, left.grows, left.share)
         return self.seen, self.unseen, self.noise, sizes
 
 

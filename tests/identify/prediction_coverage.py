@@ -11,6 +11,7 @@ import csv
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -78,24 +79,29 @@ def _nothing(rng: Rng) -> list[Cause]:
     return []
 
 
-def _lacking_sk120(rng: Rng) -> list[Cause]:
+def _lacking_sk120(rng: Rng, fainter: float = 1.0) -> list[Cause]:
     every: list[Cause] = [
-        BaseRocking("base_link", {key: 1.0 / _around(rng, 1e7) for key in "xy"}),
-        JointTilt("joint_2_l", {key: 1.0 / _around(rng, 8e6) for key in ("first", "second")}),
-        WristSpring("joint_5_b", {"compliance": 1.0 / _around(rng, 3e5)}),
+        BaseRocking("base_link", _compliances(rng, "xy", fainter * 1e7)),
+        JointTilt("joint_2_l", _compliances(rng, ("first", "second"), fainter * 8e6)),
+        WristSpring("joint_5_b", _compliances(rng, ("compliance",), fainter * 3e5)),
     ]
     return [every[int(rng.integers(3))]]
 
 
-def _lacking_ur5(rng: Rng) -> list[Cause]:
+def _lacking_ur5(rng: Rng, fainter: float = 1.0) -> list[Cause]:
     every: list[Cause] = [
-        BaseRocking("base_link", {key: 1.0 / _around(rng, 2e5) for key in "xy"}),
-        JointTilt("elbow_joint", {key: 1.0 / _around(rng, 1e5) for key in ("first", "second")}),
-        JointTilt("wrist_1_joint", {key: 1.0 / _around(rng, 3e4) for key in ("first", "second")}),
+        BaseRocking("base_link", _compliances(rng, "xy", fainter * 2e5)),
+        JointTilt("elbow_joint", _compliances(rng, ("first", "second"), fainter * 1e5)),
+        JointTilt("wrist_1_joint", _compliances(rng, ("first", "second"), fainter * 3e4)),
     ]
     return [every[int(rng.integers(3))]]
 
 
+def _compliances(rng: Rng, keys: Sequence[str], stiffness: float) -> dict[str, float]:
+    return {key: 1.0 / _around(rng, stiffness) for key in keys}
+
+
+FAINTER = 6.0  # times: seldom seen in the readings, and yet as large as what they tell
 SK120 = (1e6, 1e6, 1e6, np.inf, np.inf, np.inf)
 UR5 = (2e4,) * 6
 KINDS = (
@@ -103,6 +109,8 @@ KINDS = (
     Kind("UR5", ur5, UR5, _nothing),
     Kind("SK120, structure missing", sk120, SK120, _lacking_sk120),
     Kind("UR5, structure missing", ur5, UR5, _lacking_ur5),
+    Kind("SK120, too faint to be seen", sk120, SK120, partial(_lacking_sk120, fainter=FAINTER)),
+    Kind("UR5, too faint to be seen", ur5, UR5, partial(_lacking_ur5, fainter=FAINTER)),
 )
 
 
@@ -122,6 +130,8 @@ class Campaign:
         Half width of a 95 % interval in standard deviations.
     significant
         Was a remainder found?
+    noise
+        Of one reading [m].
     """
 
     label: str
@@ -130,6 +140,7 @@ class Campaign:
     std_remainder: Array
     reach: float
     significant: bool
+    noise: float
 
     def inside(self, *, remainder: bool = True, narrower: float = 1.0) -> Array:
         """(N, 3) does the interval hold the truth?"""
@@ -193,6 +204,7 @@ def _predicted(kind: Kind, data: Path, asked: Path, truth: Array, file: Path) ->
         np.broadcast_to(left, truth.shape),
         known.reach(),
         known.remainder is not None and known.remainder.significant,
+        known.noise or np.nan,
     )
 
 

@@ -18,9 +18,11 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Campaign]]
 def test_intervals_at_new_poses_hold_the_deflections_of_another_hand(
     found: dict[str, list[Campaign]],
 ) -> None:
-    every = [campaign for kind in found.values() for campaign in kind]
+    """Where something is missing, seen or not. No reading tells an exact model from such a one."""
+    lacking = {label: own for label, own in found.items() if "," in label}
+    every = [campaign for own in lacking.values() for campaign in own]
     assert HOLD[0] <= share_inside(every)[0] <= HOLD[1]
-    for label, own in found.items():
+    for label, own in lacking.items():
         share, error = share_inside(own)
         assert HOLD[0] - 3.0 * error <= share <= HOLD[1] + 3.0 * error, label
     # The same question put to intervals of another width would be answered with no.
@@ -28,11 +30,27 @@ def test_intervals_at_new_poses_hold_the_deflections_of_another_hand(
     assert share_inside(every, narrower=0.6)[0] > HOLD[1]
 
 
-def test_what_is_missing_is_found_and_only_then_counts(found: dict[str, list[Campaign]]) -> None:
+def test_what_may_hide_beside_an_exact_model_is_less_than_the_noise_of_a_reading(
+    found: dict[str, list[Campaign]],
+) -> None:
+    for label in ("SK120", "UR5"):
+        own = found[label]
+        assert share_inside(own)[0] >= HOLD[0]
+        assert share_inside(own, remainder=False)[0] >= HOLD[0]
+        hidden = [c.std_remainder.mean() / c.noise for c in own]
+        assert 0.0 < np.mean(hidden) < 0.5, label
+
+
+def test_what_is_missing_is_found_or_counts_by_what_may_hide(
+    found: dict[str, list[Campaign]],
+) -> None:
     for label, own in found.items():
         shown = np.mean([campaign.significant for campaign in own])
         if "missing" in label:
             assert shown > 0.8
             assert share_inside(own, remainder=False)[0] < 0.5  # parameters alone say too little
+        elif "faint" in label:
+            assert shown < 0.7
+            assert share_inside(own, remainder=False)[0] < 0.75
         else:
             assert shown < 0.3

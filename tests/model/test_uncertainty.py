@@ -51,7 +51,7 @@ def knowledge(model: Model, **changes: object) -> Uncertainty:
             load=250.0,
             length=2.0,
             grows=True,
-            probability=1e-4,
+            probability=0.0,
             significant=True,
         ),
         "source": "90 readings at 18 poses; noise stated, 10 µm per axis",
@@ -180,9 +180,16 @@ def test_the_remainder_turns_with_the_axes_of_the_readings_and_grows_with_the_lo
     steady = replace(model.uncertainty.remainder, grows=False)
     found = predict_with_uncertainty(model.known(knowledge(model, remainder=steady)), load_cases)
     np.testing.assert_allclose(found.std_remainder, np.tile([2e-5, 3e-5, 1e-5], (2, 1)))
-    nothing = replace(model.uncertainty.remainder, significant=False)
-    found = predict_with_uncertainty(model.known(knowledge(model, remainder=nothing)), load_cases)
-    assert not found.std_remainder.any()
+    hidden = replace(model.uncertainty.remainder, significant=False, probability=0.6)
+    found = predict_with_uncertainty(model.known(knowledge(model, remainder=hidden)), load_cases)
+    np.testing.assert_allclose(found.std_remainder, base.std_remainder * np.sqrt(0.5))
+
+
+def test_what_may_hide_counts_by_its_probability(model: Model) -> None:
+    """Even odds beforehand; 1 / (-e p ln p), the most that a p value says, is 2.46 at 0.05."""
+    left = model.uncertainty.remainder
+    shares = [replace(left, probability=p).share for p in (1.0, 0.4, 0.05, 1e-4, 0.0)]
+    np.testing.assert_allclose(shares, [0.5, 0.5, 0.7106, 0.9975, 1.0], atol=1e-4)
 
 
 def test_what_does_not_show_is_unknown_only_where_it_matters(model: Model) -> None:

@@ -17,7 +17,7 @@ from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
 from sk120stiff.robot.anatomy import arm_length
 
-COUNTS = 0.05  # probability of noise alone below which the remainder counts in predictions
+SIGNIFICANT = 0.05  # probability of noise alone below which something is left
 AS_WELL = 3.0  # of the noise's variance: other models fit worse by up to 10 in χ², evenly spread
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 
@@ -122,7 +122,7 @@ def _remainder(fit: Fit, left: LeftOver) -> Remainder | None:
         length=length,
         grows=left.grows,
         probability=left.probability,
-        significant=left.probability < COUNTS,
+        significant=left.probability < SIGNIFICANT,
     )
 
 
