@@ -1,5 +1,6 @@
 """Do 95 % intervals of predicted deflections hold the truth at new poses? Two arms, and each with
-structure that the fitted model lacks, seen or too faint for that. The data come from a generator of their own.
+structure that the fitted model lacks, seen or too faint for that. The data come
+from a generator of their own.
 
 Run from the repository:  python scripts/10_prediction_coverage.py --count 200
 """

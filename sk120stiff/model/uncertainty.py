@@ -5,8 +5,8 @@ combinations of parameters do not show in the readings at all, so a plausible ch
 goes unseen. And the model may lack something: what is left of the gap beyond the noise is its
 remainder. With S the derivative of a quantity by the parameters, the first gives the variance
 S Σ Sᵀ (exact where the quantity is linear), the second S B Bᵀ Sᵀ, which may be anything up to all
-that is plausible; the third is a size, told apart from the others. Where noise alone explains the misfit, it hides some such size too, and
-that counts by its probability: a model without is exact on no arm.
+that is plausible; the third is a size, told apart from the others. Noise that explains the whole
+misfit hides some of it, which counts by its probability: no arm follows its model exactly.
 
 All of it is in internal values: compliances where people write stiffnesses, because deflections
 are linear in those, and an interval of a compliance is symmetric where that of a stiffness is not.
