@@ -11,6 +11,7 @@ from .answers import Answer, identity, identity_of
 from .families import GEAR, HYSTERETIC, REVERSIBLE, family, kind
 
 TOLD_APART = 3.3  # sqrt(lambda) below which the data cannot tell two causes apart
+ALIKE = 1.0  # sqrt(lambda) below which no reading of theirs tells two causes apart
 NEGLIGIBLE = 4.0  # a hidden cause this weak beyond the others need not be found
 
 
@@ -109,6 +110,24 @@ def _names(truth: dict[str, Any], answer: Answer) -> tuple[float, int, str]:
     if wrong or missed:
         return 0.0, wrong, f"{answer.verdict} {_spell(answer)}"
     return credit, 0, "" if credit == 1.0 else f"as one of a set: {_spell(answer)}"
+
+
+def as_classes(truth: dict[str, Any], answer: Answer, share: float) -> float:
+    """The share reached where causes that these readings cannot tell apart count as one.
+
+    A set answer of the truth and of its aliases is all that can be said; `mark` halves it.
+    """
+    for entry in truth["effects"]:
+        own = identity(entry["name"], entry["where"])
+        alike = {
+            identity(rival["name"], rival["where"])
+            for rival in entry["rivals"]
+            if rival["separation"] < ALIKE
+        } - {own}
+        for group in answer.effects:
+            if own in group:
+                share *= len(group) / len(group - alike)
+    return min(share, 1.0)
 
 
 def kin(name: str) -> frozenset[str]:

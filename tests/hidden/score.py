@@ -19,7 +19,7 @@ import numpy as np
 from .answers import Answer, identity, read_answer, read_predictions
 from .calibration import calibration, reliability, stated
 from .discrimination import tells_apart
-from .judge import Mark, coverage, heldout_ratio, kin, mark
+from .judge import ALIKE, Mark, as_classes, coverage, heldout_ratio, kin, mark
 from .run import digest
 
 # level -> (content, least share right or None, greatest share of cases with a wrong name or None)
@@ -98,12 +98,14 @@ def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[s
     covered = [hit for m in marks for hit in m.effects_covered]
     springs = [hit for m in marks for hit in m.springs_covered]
     settled = [m.settled for m in marks if m.settled is not None]
+    classes = [as_classes(truth, answer, found.right) for truth, answer, found in cases]
     return {
         "level": level,
         "content": content,
         "cases": count,
         "verdicts": dict(Counter(answer.verdict for _, answer, _ in cases)),
         "right": right,
+        "right_as_classes": sum(classes) / count,
         "error": float(np.sqrt(max(right * (1 - right), 0.25 / count) / count)),
         "wrong": wrong,
         "points": sum(m.points for m in marks) / count,
@@ -204,6 +206,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for row in rows:
         if row["settled"][1]:
             print(f"{row['level']}: next poses settle {row['settled'][0]} of {row['settled'][1]}")
+    for row in rows:
+        if row["right_as_classes"] > row["right"]:
+            print(
+                f"{row['level']}: {_percent(row['right_as_classes'])} % right where causes that "
+                f"lie less than {ALIKE:g} of the noise apart count as one"
+            )
     results = [result for _, _, result in judged.values()]
     for what, hits in (
         ("effect parameters", [hit for result in results for hit in result.effects_covered]),

@@ -17,7 +17,7 @@ from tests.hidden.answers import identity, read_answer, read_predictions
 from tests.hidden.discrimination import tells_apart
 from tests.hidden.generator.build import build
 from tests.hidden.generator.design import plan
-from tests.hidden.judge import coverage, heldout_ratio, mark
+from tests.hidden.judge import as_classes, coverage, heldout_ratio, mark
 from tests.hidden.make_cases import counts, names
 
 TILT = {
@@ -101,6 +101,27 @@ def test_marks(  # type: ignore[no-untyped-def]
     expected = "none" if level in {"L0", "L8"} else "named"
     answer = answered(tmp_path, verdict, *effects)
     assert mark(truth(level, *hidden, expected=expected), answer)[:2] == (share, wrong)
+
+
+@pytest.mark.parametrize(
+    ("others", "share", "classes"),
+    [
+        ([], 1.0, 1.0),
+        (["link_torsion:link_2_l"], 0.5, 1.0),  # 0.4 of the noise apart: no reading tells
+        (["base_rocking:base_link"], 0.5, 0.5),  # 20 apart
+        (["link_torsion:link_2_l", "base_rocking:base_link"], 1.0 / 3.0, 0.5),
+    ],
+)
+def test_a_set_of_what_no_reading_tells_apart_is_all_that_can_be_said(
+    tmp_path: Path, others: list[str], share: float, classes: float
+) -> None:
+    case = truth("L9", TILT)
+    answer = answered(tmp_path, "ambiguous", ("joint_tilt", "joint_2_l", others))
+    found = mark(case, answer)[0]
+    assert found == pytest.approx(share)
+    assert as_classes(case, answer, found) == pytest.approx(classes)
+    wrong = answered(tmp_path, "named", ("link_torsion", "link_2_l", []))
+    assert as_classes(case, wrong, mark(case, wrong)[0]) == 0.0
 
 
 def test_near_pair_with_poses_is_right(tmp_path: Path) -> None:
