@@ -46,7 +46,7 @@ def with_task(answer: Explanation, file: Path, a: Array, wrench: Array) -> Expla
     """The answer with the budget of a task (N, n), (N, 6) by its final model."""
     left = answer.remainder
     model = known_model(answer.final, left.left)
-    within = known_model(within_joints(answer.final, left.rms), left.left)
+    within = known_model(within_joints(answer.final), left.left)
     (effects, joints), (_, inner) = (standing_budgets(m, a, wrench) for m in (model, within))
     task = TaskBudget(file.name, len(a), effects, with_own_errors(joints, inner))
     return replace(answer, task=task)

@@ -12,6 +12,7 @@ from scipy import stats
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import MissingPart
+from sk120stiff.identify.moves import Moves
 from sk120stiff.identify.solve.covariance import (
     condition_of,
     correlation_of,
@@ -50,6 +51,7 @@ class Fit:
         selection_uncertainty: (P_free,) by how much other possible models move the estimates;
             None: by nothing.
         left_out: (P_free,) standard errors by what the model is known to leave out; None: nothing.
+        foreign: (P_free, P_free) covariance by a cause that has no name; None: there is none.
 
     Examples:
         >>> import sk120stiff as sk
@@ -72,6 +74,7 @@ class Fit:
     inflation: float = 1.0
     selection_uncertainty: Array | None = None
     left_out: Array | None = None
+    foreign: Array | None = None
 
     def __repr__(self) -> str:
         values = ", ".join(
@@ -259,16 +262,13 @@ class Fit:
         """
         covariance = covariance_of(self.small[0], self.held, self.problem.span)
         if np.isfinite(self.unit):
-            return np.asarray(covariance * self.unit**2 + np.diag(self.beside_noise**2))
+            return np.asarray(covariance * self.unit**2 + self.moves.covariance)
         return np.where(covariance != 0.0, np.inf, 0.0)
 
     @property
-    def beside_noise(self) -> Array:
-        """(P_free,) standard errors that are not of the readings' noise."""
-        none = np.zeros(len(self.x))
-        return np.hypot(
-            *(none if x is None else x for x in (self.selection_uncertainty, self.left_out))
-        )
+    def moves(self) -> Moves:
+        """What is not of the readings' noise."""
+        return Moves.of(len(self.x), self.selection_uncertainty, self.left_out, self.foreign)
 
     @property
     def unit(self) -> float:
@@ -354,8 +354,8 @@ class Fit:
             error = self.reach(level) * self.left_out[:, None]
             wider = error**2 / np.maximum(away + np.hypot(away, error), 1e-300)
             ends = np.clip(ends + wider * [-1.0, 1.0], low, high)
-        if self.selection_uncertainty is not None:  # the estimate may lie there instead
-            ends = np.clip(ends + np.outer(self.selection_uncertainty, [-1.0, 1.0]), low, high)
+        elsewhere = np.outer(self.moves.elsewhere, [-1.0, 1.0])
+        ends = np.clip(ends + elsewhere, low, high) if elsewhere.any() else ends
         scaled = ends * self.problem.scale[:, None]
         return tuple(
             public_interval(parameter.spec, float(low), float(high))

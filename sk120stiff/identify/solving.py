@@ -50,9 +50,7 @@ def against_noise_alone(fit: Fit) -> Fit:
         return fit
     exact = replace(problem.noise, form=EXACT)
     found = solve_near(Problem(problem.model, problem.measurements, exact, problem.weights), fit.x)
-    return with_values(
-        replace(found, selection_uncertainty=fit.selection_uncertainty, left_out=fit.left_out)
-    )
+    return widened_as(found, fit)
 
 
 def as_fit(problem: Problem, found: Minimum) -> Fit:
@@ -81,3 +79,15 @@ def _with_equilibrium(problem: Problem, x: Array) -> Array:
             return x
     problem.evaluate(np.zeros_like(x))  # refuses in its own words where even this fails
     return x
+
+
+def widened_as(found: Fit, other: Fit) -> Fit:
+    """The fit with what moves another's estimates beside the noise."""
+    return with_values(
+        replace(
+            found,
+            selection_uncertainty=other.selection_uncertainty,
+            left_out=other.left_out,
+            foreign=other.foreign,
+        )
+    )

@@ -25,10 +25,16 @@ def test_what_a_foreign_cause_did_to_springs_is_in_their_errors(cause):
     readings = hidden(cause)
     found = fit(springs, readings, noise=with_model_form(fit(springs, readings, noise=NOISE)))
     remains = remainder_of(found).rms
-    moved = moved_by_a_foreign_cause(found, remains) * found.problem.scale
+    together = moved_by_a_foreign_cause(found, remains)
+    moved = np.sqrt(np.diag(together)) * found.problem.scale
     true = np.array([1.0 / sk120().typical.joint[p.effect.where] for p in found.parameters])
     off = np.array([p.internal for p in found.parameters]) - true
     std = np.array([p.internal_std for p in found.parameters])
     assert np.abs(off / std).max() > 4.0
     assert np.abs(off / np.hypot(std, moved)).max() < 2.5
     assert not moved_by_a_foreign_cause(found, 0.0).any()
+    # It moves them together: as a whole, too, they are where their joint errors allow.
+    whole = together * np.outer(found.problem.scale, found.problem.scale) + np.diag(std**2)
+    assert np.linalg.eigvalsh(together).min() > -1e-9 * np.trace(together)
+    assert off @ np.linalg.solve(whole, off) < 16.3  # 99.9 % of χ² of the three springs
+    assert off @ np.linalg.solve(np.diag(std**2), off) > 16.3

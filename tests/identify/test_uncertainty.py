@@ -66,9 +66,15 @@ def test_what_other_models_make_of_the_values_leaves_the_readings_predicted(trut
     np.testing.assert_allclose(apart - before, np.diag((2.0 * errors * scale) ** 2), atol=1e-20)
     beside = replace(found.problem.noise, form=ModelForm(0.01, 1e-6))
     formed = replace(found, problem=replace(found.problem, noise=beside))
-    formed = replace(formed, selection_uncertainty=30.0 * errors)
+    foreign = np.outer(30.0 * errors, 30.0 * errors)
+    formed = replace(formed, foreign=foreign)
     wide = known_model(formed).uncertainty.std
     assert (wide > 29.0 * errors * scale).all()
+    more = (
+        known_model(formed).uncertainty.covariance
+        - known_model(replace(formed, foreign=None)).uncertainty.covariance
+    )
+    np.testing.assert_allclose(more, foreign * np.outer(scale, scale), rtol=1e-6)
 
 
 def test_moves_of_all_sizes_leave_a_covariance_that_readings_can_have(truth: Model) -> None:

@@ -111,7 +111,7 @@ class Explanation:
     @cached_property
     def joints_budget(self) -> tuple[Share, ...]:
         """What spring, gear and bearing of each joint move the point by together."""
-        return joint_budget(self.final, self.remainder.rms)
+        return joint_budget(self.final)
 
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered.

@@ -8,7 +8,6 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
-from sk120stiff.explain.judge.foreign_cause import moved_by_a_foreign_cause
 from sk120stiff.identify import Fit
 from sk120stiff.model import Share, joint_shares, moved_by, shares, with_own_errors
 
@@ -31,31 +30,23 @@ def error_budget(fit: Fit, load_cases: LoadCases | None = None) -> tuple[Share, 
     return shares(fit.model, derivative, internal_covariance(fit))
 
 
-def joint_budget(fit: Fit, remains: float = 0.0) -> tuple[Share, ...]:
-    """What all that yields at one joint moves the point by, the largest first.
-
-    Args:
-        fit: The fitted model.
-        remains: Size of what it leaves, rms per axis [m].
-    """
+def joint_budget(fit: Fit) -> tuple[Share, ...]:
+    """What all that yields at one joint moves the point by, the largest first."""
     _, derivative = fit.model.predict_with_sensitivities(fit.problem.load_cases)
-    within = within_joints(fit, remains)
+    within = within_joints(fit)
     return with_own_errors(
         joint_shares(fit.model, derivative, internal_covariance(fit)),
         joint_shares(fit.model, derivative, internal_covariance(within)),
     )
 
 
-def within_joints(fit: Fit, remains: float) -> Fit:
+def within_joints(fit: Fit) -> Fit:
     """The fit without what other laws and names would make of a parameter.
 
     At one joint these trade with one another, and their sum stays. What a cause without a name may
     have moved stays uncertain.
     """
-    moved = None
-    if fit.problem.noise.form:
-        moved = moved_by_a_foreign_cause(fit, remains)
-    return replace(fit, selection_uncertainty=moved)
+    return replace(fit, selection_uncertainty=None)
 
 
 def internal_covariance(fit: Fit) -> Array:

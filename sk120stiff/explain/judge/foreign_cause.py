@@ -19,14 +19,16 @@ from sk120stiff.identify.checks.left_over import orthonormal
 
 
 def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
-    """(P_free,) root mean square of what a cause without a name may have done to the estimates.
+    """(P_free, P_free) second moment of what a cause without a name may have done to the estimates.
+
+    It moves them together, as the readings have them.
 
     Args:
         fit: The fitted model beside model-form error.
         remains: Size of its remainder, rms per axis [m].
     """
     moving = ~fit.at_bound
-    out = np.zeros(len(fit.x))
+    out = np.zeros((len(fit.x),) * 2)
     look = look_at(fit, yardstick(fit))
     lineup = line_up(look)
     unit = np.sqrt(look.noise.scale)
@@ -34,7 +36,7 @@ def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
     inside, inverse = orthonormal(J), np.linalg.pinv(J)
     gap = -fit.residual / unit
     gap = gap - inside @ (inside.T @ gap)
-    evidence, squares = [0.0], [np.zeros(J.shape[1])]  # first: that there is no such cause
+    evidence, squares = [0.0], [np.zeros((J.shape[1],) * 2)]  # first: that there is no such cause
     for part, columns in zip(lineup.parts, lineup.reading, strict=True):
         length = np.sqrt((columns[fit.problem.read] ** 2).mean(axis=0))
         seen = length > 0.0
@@ -48,7 +50,8 @@ def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
         evidence.append(float(told @ along**2 - np.log1p(size**2).sum()))
         taken = inverse @ drawn @ right.T  # what the parameters take on of each
         likeliest = taken @ (size / (1.0 + size**2) * along)
-        squares.append(likeliest**2 + taken**2 @ (1.0 / (1.0 + size**2)))
+        rest = taken / np.sqrt(1.0 + size**2)
+        squares.append(np.outer(likeliest, likeliest) + rest @ rest.T)
     weights = np.exp(0.5 * (np.array(evidence) - max(evidence)))
-    out[moving] = np.sqrt(weights @ np.array(squares) / weights.sum())
+    out[np.ix_(moving, moving)] = np.tensordot(weights / weights.sum(), np.array(squares), axes=1)
     return out

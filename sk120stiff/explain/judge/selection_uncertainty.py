@@ -60,9 +60,10 @@ def with_selection_uncertainty(
             if parameter.quantity in place:
                 k = place[parameter.quantity]
                 moves[k] = max(moves[k], abs(value - here[k]))
+    foreign = None
     if found.base.problem.noise.form:
-        moves = np.hypot(moves, moved_by_a_foreign_cause(final, remainder_of(final).rms))
-    return with_values(replace(final, selection_uncertainty=moves))
+        foreign = moved_by_a_foreign_cause(final, remainder_of(final).rms)
+    return with_values(replace(final, selection_uncertainty=moves, foreign=foreign))
 
 
 def _deviance(fit: Fit) -> float:

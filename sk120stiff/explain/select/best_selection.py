@@ -17,7 +17,7 @@ import numpy as np
 from sk120stiff.effects import Effect
 from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
-from sk120stiff.identify.fit import with_values
+from sk120stiff.identify.solving import widened_as
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.measurements.noise import FINEST
 
@@ -51,9 +51,7 @@ def held_against(noise: NoiseModel, fit: Fit) -> Fit:
     if problem.noise == noise:
         return fit
     again = solve_near(Problem(problem.model, problem.measurements, noise), fit.x)
-    return with_values(
-        replace(again, selection_uncertainty=fit.selection_uncertainty, left_out=fit.left_out)
-    )
+    return widened_as(again, fit)
 
 
 def of_readings(measurements: Measurements, fit: Fit) -> Fit:

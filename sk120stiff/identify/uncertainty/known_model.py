@@ -77,25 +77,19 @@ def _beside_noise(fit: Fit, covariance: Array) -> Array:
     Another model that explains the readings as well moves the estimates, each by so much, and yet
     together to where the readings are predicted nearly alike: of independent moves with the
     covariance M those that readings of a few times the noise allow have the parallel sum of M and
-    a Σ, M − M (M + a Σ)⁻¹ M, taken here in units of the moves. Beside model-form error a foreign
-    cause has moved them, and readings need not agree.
+    a Σ, M − M (M + a Σ)⁻¹ M, taken here in units of the moves. A foreign cause has moved them by
+    more than noise may, and together.
     """
-    scale, none = fit.problem.scale, np.zeros(len(fit.x))
-    left_out, moved = (
-        (none if each is None else each) * scale
-        for each in (fit.left_out, fit.selection_uncertainty)
-    )
-    if fit.problem.noise.form:
-        return np.diag(left_out**2 + moved**2)
-    own = np.flatnonzero(moved)
-    move = moved[own]
+    moves = fit.moves.scaled(fit.problem.scale)
+    own = np.flatnonzero(moves.models)
+    move = moves.models[own]
     noise = AS_WELL * covariance[np.ix_(own, own)] / np.outer(move, move)
     shares, directions = np.linalg.eigh(noise)  # of the noise's variance beside that of the moves
     shares = np.maximum(shares, 0.0)
     half = move[:, None] * directions * np.sqrt(shares / (1.0 + shares))
     together = np.zeros(covariance.shape)
     together[np.ix_(own, own)] = half @ half.T
-    return np.asarray(np.diag(left_out**2) + together)
+    return np.asarray(np.diag(moves.left_out**2) + moves.foreign + together)
 
 
 def _source(fit: Fit, noise: Yardstick) -> str:

@@ -217,7 +217,7 @@ def _rows(shares: Sequence[Share]) -> list[tuple[object, ...]]:
 def gear_section(answer: Explanation) -> Section | None:
     """A picture of every gear at which something was named; None where none was."""
     # Laws of one gear trade with its spring; the curve is of both together.
-    within = within_joints(answer.final, answer.remainder.rms)
+    within = within_joints(answer.final)
     curves = gear_curves(within, [finding.effect.id for finding in answer.findings])
     if not curves:
         return None

@@ -1,0 +1,57 @@
+"""What moves estimates beside the noise: other models, what is left out, foreign causes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Moves:
+    """By how much the P estimates of a fit may be off beside the noise, each in its own way.
+
+    Attributes:
+        models: (P,) by other models that are possible as well.
+        left_out: (P,) standard errors by what the model is known to leave out.
+        foreign: (P, P) covariance by a cause that has no name, which moves them together.
+    """
+
+    models: Array
+    left_out: Array
+    foreign: Array
+
+    @classmethod
+    def of(
+        cls, count: int, models: Array | None, left_out: Array | None, foreign: Array | None
+    ) -> Moves:
+        """Of so many estimates; None: by nothing."""
+        none, apart = np.zeros(count), np.zeros((count, count))
+        return cls(
+            none if models is None else models,
+            none if left_out is None else left_out,
+            apart if foreign is None else foreign,
+        )
+
+    def scaled(self, scale: Array) -> Moves:
+        """The same in other units: (P,) of one in the other."""
+        return Moves(
+            self.models * scale, self.left_out * scale, self.foreign * np.outer(scale, scale)
+        )
+
+    @property
+    def covariance(self) -> Array:
+        """(P, P) of all together, each model's move for itself."""
+        return np.asarray(np.diag(self.models**2 + self.left_out**2) + self.foreign)
+
+    @property
+    def std(self) -> Array:
+        """(P,) standard errors."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    @property
+    def elsewhere(self) -> Array:
+        """(P,) how far from the estimates the values may lie instead, the noise for itself."""
+        return np.hypot(self.models, np.sqrt(np.diag(self.foreign)))
