@@ -121,11 +121,12 @@ def instead_of(
     evidence, or hardly any of their length. What a name does not do beside the other names alone,
     no suspect takes from it: nothing is said of such a name. A suspect that is the free form of a
     name's own law, or of the law of an effect that the readings do not tell from it, says what the
-    name says, and is no reason against it. The strongest name has to be beaten clearly, also by all
-    names beside any other suspect: a cause without a name may stand beside them. Beside model-form
-    error such a cause is at work for certain and needs no evidence of its own: a further name has
-    to do better than it, and it may stand for several. Where laws seem exact it takes the place of
-    one.
+    name says, and is no reason against it; neither is one in the place of one name beside which it
+    would explain less than it costs: fewer columns for the same make no better cause. The strongest
+    name has to be beaten clearly, also by all names beside any other suspect: a cause without a
+    name may stand beside them. Beside model-form error such a cause is at work for certain and
+    needs no evidence of its own: a further name has to do better than it, and it may stand for
+    several. Where laws seem exact it takes the place of one.
 
     Args:
         fit: The fitted model.
@@ -158,6 +159,8 @@ def instead_of(
             if not idle or (len(kept) < len(names) and not certain):
                 break
             kept.remove(min(idle, key=lambda e: losses[e]))
+        if len(kept) == len(names) - 1 and line.score(everything, k) > whole:
+            continue  # it says the same as the name
         better = whole - line.score(kept, k)
         fallen = tuple(names[e].id for e in everything if e not in kept)
         if fallen:
