@@ -25,7 +25,7 @@ from sk120stiff.explain.select.stepwise import refit, select
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, ModelForm
 from tests.explain.readings import NOISE, hidden
-from tests.hidden.generator.causes_elastic import JointTilt
+from tests.hidden.generator.causes_elastic import BaseSliding, JointTilt
 from tests.hidden.generator.causes_foreign import QuadraticMount, TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening
 from tests.hidden.generator.causes_sensor import ForceBias, ForceCrosstalk
@@ -141,6 +141,15 @@ def test_the_free_form_of_a_names_own_law_is_no_reason_against_it(springs):
     """Anchors that yield with the square of the moment: the floor rocks, by another law."""
     floor = QuadraticMount("base_link", {"x": 4e-7, "y": 3e-7}, {"full": 800.0})
     found = fitted(springs, hidden(floor), "base_rocking")
+    assert instead_of(found, [named(found)]) is None
+
+
+@pytest.mark.parametrize(("name", "seed"), [("tool_compliance", 7), ("base_sliding", 11)])
+def test_what_says_the_same_with_fewer_columns_is_no_reason_against_a_name(springs, name, seed):
+    """Loads along one direction: a base that slides, a tool that gives, and what a link carries."""
+    sliding = BaseSliding("base_link", dict.fromkeys("xyz", 1.3e-7))
+    readings = hidden(sliding, schedule="one_direction", seed=seed)
+    found = refit(fit(springs, readings, noise=NOISE), [effect(springs.robot, name)])
     assert instead_of(found, [named(found)]) is None
 
 
