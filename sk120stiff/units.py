@@ -45,6 +45,7 @@ nano- = 1e-9 = n-
 micro- = 1e-6 = u-
 milli- = 1e-3 = m-
 centi- = 1e-2 = c-
+deca- = 1e1 = da-
 kilo- = 1e3 = k-
 mega- = 1e6 = M-
 giga- = 1e9 = G-
@@ -52,7 +53,7 @@ meter = [length] = m = metre
 second = [time] = s = sec
 newton = [force] = N
 radian = [angle] = rad
-degree = 0.017453292519943295 * radian = deg
+degree = 0.017453292519943295 * radian = deg = Grad
 arcminute = 0.0002908882086657216 * radian = arcmin
 arcsecond = 4.84813681109536e-06 * radian = arcsec
 minute = 60 * second = min
@@ -61,7 +62,7 @@ micron = 1e-6 * meter
 inch = 0.0254 * meter = in = _ = inches
 foot = 0.3048 * meter = ft = _ = feet
 pound_force = 4.4482216152605 * newton = lbf
-kilogram_force = 9.80665 * newton = kgf
+kilogram_force = 9.80665 * newton = kgf = kp
 joule = newton * meter = J
 pascal = newton / meter ** 2 = Pa
 percent = 0.01

@@ -265,3 +265,21 @@ def test_what_was_read_is_not_called_left_out_and_what_is_left_out_has_a_reason(
     shown = run("import", points, *rest[:-2], "--preview", "--json").document
     (reason,) = [item for item in shown["unused"] if "U95" in item]
     assert "of the whole point" in reason
+
+
+def test_a_sheet_in_german_with_date_and_time_in_columns_of_their_own(run, tmp_path: Path) -> None:
+    path = tmp_path / "messung.csv"
+    angles = ";".join(f"A{k} [Grad]" for k in range(1, 7))
+    lines = [f"Punktname;{angles};X [mm];Y [mm];Z [mm];Datum;Uhrzeit"]
+    for k, (name, q, x) in enumerate(zip(SEEN.names, SEEN.q, SEEN.x, strict=True)):
+        numbers = [*(f"{v:.5f}" for v in q), *(f"{v:.4f}" for v in x)]
+        cells = [number.replace(".", ",") for number in numbers]
+        lines.append(";".join([name, *cells, "14.10.2026", f"{8 + k // 60:02d}:{k % 60:02d}:22"]))
+    path.write_text("\n".join(lines), encoding="cp1252")
+    out = tmp_path / "own.csv"
+    arm = ("--robot", ur5(), "--tool", "tool0")
+    outcome = run("import", str(path), *arm, "--out", str(out), "--json")
+    assert outcome.code == 0, outcome.stderr
+    data = read_measurements(out)
+    assert data.time is not None
+    np.testing.assert_allclose(data.time - data.time[0], 60.0 * np.arange(len(SEEN.names)))

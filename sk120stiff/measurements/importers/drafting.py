@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime as dt
 import re
 from dataclasses import dataclass, replace
 from decimal import Decimal
@@ -12,6 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE
+from sk120stiff.measurements.importers.clock import since_first
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
 from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
@@ -85,7 +85,8 @@ def drafted(
         _conditions(sheet, reasons),
     ):
         for column, header, cells in group:
-            other.append((header, cells))
+            if header:
+                other.append((header, cells))
             taken.append(column)
         said += notes
     markers, places = _markers(sheet, told)
@@ -235,37 +236,26 @@ def _conditions(sheet: Sheet, reasons: dict[int, str]) -> _Group:
                 numbers(sheet, column)
                 header = f"temperature[{'K' if unit == 'K' else 'degC'}]"
                 found.append((column, header, texts(column)))
-        elif word == "time":
-            seconds = texts(column) if unit == "s" else _since_first(column.cells)
-            if seconds is None:
-                reasons[id(column)] = ": no time in seconds, and none like 2026-11-22 10:15:00"
-            else:
-                found.append((column, "time[s]", seconds))
         elif word in ("order", "marker", "series", "branch", "repeat") and all(column.cells):
             if word == "order":
                 numbers(sheet, column)
             found.append((column, word, column.cells))
-    return found, []
+    return found + _clock(sheet, reasons), []
 
 
-def _since_first(cells: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Seconds since the first of the times, as ISO 8601 or day.month.year writes them."""
-    times = []
-    for cell in cells:
-        for read in (
-            dt.datetime.fromisoformat,
-            lambda text: dt.datetime.strptime(text, "%d.%m.%Y %H:%M:%S"),
-        ):
-            try:
-                times.append(read(cell))
-                break
-            except ValueError:
-                continue
-    try:
-        seconds = [(time - times[0]).total_seconds() for time in times]
-    except TypeError:  # with and without a time zone
-        return None
-    return tuple(map(repr, seconds)) if len(times) == len(cells) else None
+def _clock(sheet: Sheet, reasons: dict[int, str]) -> list[tuple[Column, str, tuple[str, ...]]]:
+    """Seconds; of a date and a time of the day in columns of their own, both together."""
+    time, date = sheet.get("time"), sheet.get("date")
+    if time is not None and time.unit == "s":
+        return [(time, "time[s]", texts(time))]
+    columns = [column for column in (date, time) if column is not None]
+    if not columns:
+        return []
+    seconds = since_first(*(column.cells for column in columns))
+    if isinstance(seconds, str):
+        reasons.update({id(column): f": {seconds}" for column in columns})
+        return []
+    return [(columns[-1], "time[s]", seconds), *((column, "", ()) for column in columns[:-1])]
 
 
 def _markers(sheet: Sheet, told: Told) -> tuple[tuple[str, ...], dict[str, Array]]:

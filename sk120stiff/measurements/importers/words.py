@@ -44,7 +44,9 @@ _NAMES = {
     "group": "group|group name|point group|tag group",
     "collection": "collection|collection name",
     "order": "order|step order|seq|sequence|measurement order",
-    "time": "time|timestamp|time stamp|date|date time|datetime|zeit|datum",
+    "time": "time|timestamp|time stamp|time of day|clock|date time|datetime|zeit|uhrzeit|"
+    "zeitstempel|datum uhrzeit",
+    "date": "date|datum",
     "marker": "marker|reflector|smr",
     "orientation roll": "roll",
     "orientation pitch": "pitch",
