@@ -189,6 +189,19 @@ def _collect_model(into: dict[str, Parameter], path: Path) -> None:
 
 def read_predictions(path: Path) -> NDArray[np.float64] | None:
     """Predicted displacements (N, 3) [m] from the CSV that `predict --out` writes."""
+    found = _of_axes(path, r"(?:pred\w*d?{axis}|d{axis}_pred\w*)")
+    return None if found is None or np.isnan(found).any() else found
+
+
+def read_prediction_errors(path: Path) -> NDArray[np.float64] | None:
+    """Their standard uncertainties (N, 3) [m], without the noise of a reading; NaN: not known."""
+    parts = [_of_axes(path, rf"std_{part}_{{axis}}") for part in ("parameters", "remainder")]
+    own, left = parts
+    return None if own is None else np.hypot(own, 0.0 if left is None else np.nan_to_num(left))
+
+
+def _of_axes(path: Path, pattern: str) -> NDArray[np.float64] | None:
+    """(N, 3) numbers [m] of the three columns whose names fit; empty cells are NaN."""
     try:
         with path.open(newline="", encoding="utf-8") as stream:
             table = list(csv.reader(stream))
@@ -196,18 +209,15 @@ def read_predictions(path: Path) -> NDArray[np.float64] | None:
         return None
     columns = []
     for axis in "xyz":
-        hits = [
-            (k, match[1])
-            for k, title in enumerate(table[0])
-            if (
-                match := re.fullmatch(rf"\s*(?:pred\w*d?{axis}|d{axis}_pred\w*)\[(\w+)\]\s*", title)
-            )
-        ]
+        name = re.compile(rf"\s*{pattern.format(axis=axis)}\[(\w+)\]\s*")
+        hits = [(k, m[1]) for k, title in enumerate(table[0]) if (m := name.fullmatch(title))]
         if len(hits) != 1:
             return None
         columns.append(hits[0])
     rows = [row for row in table[1:] if row]
     try:
-        return np.array([[float(row[k]) * LENGTHS[unit] for k, unit in columns] for row in rows])
+        return np.array(
+            [[float(row[k] or "nan") * LENGTHS[unit] for k, unit in columns] for row in rows]
+        )
     except (ValueError, KeyError, IndexError):
         return None

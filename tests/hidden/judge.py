@@ -27,6 +27,7 @@ class Mark:
     effects_covered: list[bool] = field(default_factory=list)
     springs_covered: list[bool] = field(default_factory=list)
     settled: bool | None = None
+    foretold: float | None = None
 
     @property
     def points(self) -> float:
@@ -314,3 +315,14 @@ def heldout_ratio(truth: dict[str, Any], predicted: np.ndarray | None) -> float 
     miss = 1e6 * np.sqrt(np.mean((predicted - np.array(truth["oracle"])) ** 2))
     floor = truth["sealed_sigma_um"]
     return float(np.hypot(floor, miss) / floor)
+
+
+def foretold(
+    truth: dict[str, Any], predicted: np.ndarray | None, std: np.ndarray | None
+) -> float | None:
+    """Share of 95 % intervals at sealed readings that hold the true value; None: none are told."""
+    if predicted is None or std is None or predicted.shape != np.shape(truth["oracle"]):
+        return None
+    told = np.isfinite(std)
+    miss = np.abs(predicted - np.array(truth["oracle"]))
+    return float((miss <= 1.96 * std)[told].mean()) if told.any() else None

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from .answers import Answer, identity, read_answer, read_predictions
+from .answers import Answer, identity, read_answer, read_prediction_errors, read_predictions
 from .calibration import calibration, reliability, stated
 from .discrimination import tells_apart
-from .judge import ALIKE, Mark, as_classes, coverage, heldout_ratio, kin, mark
+from .judge import ALIKE, Mark, as_classes, coverage, foretold, heldout_ratio, kin, mark
 from .run import digest
 
 # level -> (content, least share right or None, greatest share of cases with a wrong name or None)
@@ -67,8 +67,11 @@ def judge_case(folder: Path, name: str) -> tuple[dict[str, Any], Answer, Mark]:
     answer = read_answer(folder / "answers" / name)
     share, wrong, note = mark(truth, answer)
     effects, springs = coverage(truth, answer, share)
-    ratio = heldout_ratio(truth, read_predictions(folder / "answers" / name / "predicted.csv"))
-    result = Mark(share, wrong, note, ratio, effects, springs)
+    file = folder / "answers" / name / "predicted.csv"
+    predicted = read_predictions(file)
+    ratio = heldout_ratio(truth, predicted)
+    held = foretold(truth, predicted, read_prediction_errors(file))
+    result = Mark(share, wrong, note, ratio, effects, springs, foretold=held)
     if truth["level"] == "L4" and answer.next_poses:
         result = replace(result, settled=tells_apart(truth, folder / "answers" / name))
     return truth, answer, result
@@ -98,6 +101,7 @@ def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[s
     covered = [hit for m in marks for hit in m.effects_covered]
     springs = [hit for m in marks for hit in m.springs_covered]
     settled = [m.settled for m in marks if m.settled is not None]
+    held = [m.foretold for m in marks if m.foretold is not None]
     classes = [as_classes(truth, answer, found.right) for truth, answer, found in cases]
     return {
         "level": level,
@@ -116,6 +120,7 @@ def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[s
         "ratio_close": close,
         "covered": [sum(covered), len(covered)],
         "springs_covered": [sum(springs), len(springs)],
+        "foretold": sum(held) / len(held) if held else None,
         "settled": [sum(settled), len(settled)],
         "seconds_median": median(answer.seconds for _, answer, _ in cases),
     }
@@ -220,6 +225,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hits:
             held = 100.0 * sum(hits) / len(hits)
             print(f"over all levels 95 % intervals hold {held:.1f} % of {len(hits)} {what}")
+    share = [r.foretold for r in results if r.foretold is not None]
+    if share:
+        levels = ", ".join(
+            f"{row['level']} {_percent(row['foretold'])}"
+            for row in rows if row["foretold"] is not None
+        )  # fmt: skip
+        print(
+            f"95 % intervals of predictions at poses that were not read hold "
+            f"{100.0 * sum(share) / len(share):.1f} % of what is true there ({levels})"
+        )
     calibrated = {
         what: calibration(pairs)
         for what, pairs in stated((truth, answer) for truth, answer, _ in judged.values()).items()

@@ -13,11 +13,16 @@ import numpy as np
 import pytest
 
 from tests.hidden import run, score
-from tests.hidden.answers import identity, read_answer, read_predictions
+from tests.hidden.answers import (
+    identity,
+    read_answer,
+    read_prediction_errors,
+    read_predictions,
+)
 from tests.hidden.discrimination import tells_apart
 from tests.hidden.generator.build import build
 from tests.hidden.generator.design import plan
-from tests.hidden.judge import as_classes, coverage, heldout_ratio, mark
+from tests.hidden.judge import as_classes, coverage, foretold, heldout_ratio, mark
 from tests.hidden.make_cases import counts, names
 
 TILT = {
@@ -213,6 +218,21 @@ def test_heldout_ratio(tmp_path: Path) -> None:
     case = {"oracle": oracle.tolist(), "sealed_sigma_um": 8.0}
     assert heldout_ratio(case, read_predictions(path)) == pytest.approx(10.0 / 8.0)
     assert heldout_ratio(case, read_predictions(tmp_path / "none.csv")) is None
+
+
+def test_intervals_of_predictions_hold_what_is_true_or_not(tmp_path: Path) -> None:
+    path = tmp_path / "predicted.csv"
+    stds = [f"std_{part}_{axis}[um]" for part in ("parameters", "remainder") for axis in "xyz"]
+    head = ",".join(["predicted_dx[um]", "predicted_dy[um]", "predicted_dz[um]", *stds])
+    path.write_text(f"{head}\n6,6,6,3,3,3,1,1,0\n6,6,6,,3,3,1,1,0\n")
+    case = {"oracle": [[0.0, 0.0, 0.0]] * 2}
+    errors = read_prediction_errors(path)
+    assert errors is not None
+    np.testing.assert_allclose(errors[0], 1e-6 * np.array([np.sqrt(10.0), np.sqrt(10.0), 3.0]))
+    assert np.isnan(errors[1, 0])
+    # 6 is within 1.96 root 10, not within 1.96 times 3; what has no error is not asked
+    assert foretold(case, read_predictions(path), errors) == pytest.approx(3.0 / 5.0)
+    assert foretold(case, None, None) is None
 
 
 PROGRAM = """
