@@ -99,6 +99,10 @@ CSV = {
     "a column twice": (with_column("fx[kN]", "1", "2", "3"), ["column fx[kN]", "twice"]),
     "a column without name": (change("fx[N],", ","), ["column 4 has no name"]),
     "both kinds": (with_column("x[mm]", "1", "2", "3"), ["dx, dy, dz", "(x)", "Keep one kind"]),
+    "a payload for a force": (
+        change("fx[N],fy[N],fz[N]", "payload[kg],b,c"),
+        ["'fx' is missing", "sk120stiff import", "-z of the base"],
+    ),
     # shape
     "empty": ("", ["empty", "pose,joint_1_s[deg]"]),
     "only comments": ("# a\n\n# b\n", ["empty"]),
