@@ -283,3 +283,21 @@ def test_a_sheet_in_german_with_date_and_time_in_columns_of_their_own(run, tmp_p
     data = read_measurements(out)
     assert data.time is not None
     np.testing.assert_allclose(data.time - data.time[0], 60.0 * np.arange(len(SEEN.names)))
+
+
+def test_sums_of_columns_whose_names_have_blanks(run, tmp_path: Path) -> None:
+    """Joint 3 of a controller that counts it from the horizontal: J 3 + J 2."""
+    path = tmp_path / "controller.csv"
+    lines = [";".join(["name", *(f"J {k} [deg]" for k in range(1, 7)), "x[mm]", "y[mm]", "z[mm]"])]
+    for name, q, x in zip(SEEN.names, SEEN.q, SEEN.x, strict=True):
+        shown = [q[0], q[1], q[2] - q[1], *q[3:]]
+        lines.append(";".join([name, *(f"{v:.5f}" for v in shown), *(f"{v:.4f}" for v in x)]))
+    path.write_text("\n".join(lines))
+    out = tmp_path / "own.csv"
+    joints = "J 1,J 2,J 3 + J 2,J 4,J 5,J 6"
+    arm = ("--robot", ur5(), "--tool", "tool0", "--joints", joints)
+    outcome = run("import", str(path), *arm, "--out", str(out), "--json")
+    assert outcome.code == 0, outcome.stderr
+    data = read_measurements(out, load_robot(ur5(), tool="tool0").actuated)
+    order = [data.joint_names.index(n) for n in load_robot(ur5(), tool="tool0").actuated]
+    np.testing.assert_allclose(np.degrees(data.joints[:, order]), SEEN.q, atol=2e-5)

@@ -144,6 +144,7 @@ def _expressed(
 ) -> JointColumns:
     """Joints as linear expressions; the columns are written as they are, the mapping beside."""
     _refuse_count(expressions, tuple(kinds))
+    expressions, spelt = _in_one_word(sheet, expressions)
     raw: dict[str, tuple[Column, Array, str]] = {}
     values = []
     for (joint, kind), text in zip(kinds.items(), expressions, strict=True):
@@ -153,7 +154,7 @@ def _expressed(
             if not name:
                 continue
             if name not in raw:
-                column = _lookup(sheet, name)
+                column = _lookup(sheet, spelt.get(name, name))
                 if column is None:
                     raise _no_column(sheet, name, joint)
                 unit = unit_of(sheet, column, kind, told)
@@ -167,3 +168,19 @@ def _expressed(
         dict(zip(kinds, expressions, strict=True)),
         (f"Joints: {', '.join(f'{j} = {t}' for j, t in zip(kinds, expressions, strict=True))}.",),
     )
+
+
+def _in_one_word(
+    sheet: Sheet, expressions: tuple[str, ...]
+) -> tuple[tuple[str, ...], dict[str, str]]:
+    """Expressions in which headers like ``J 2`` are one word, ``J_2``; and these words' headers."""
+    names = [unit_of_header(c.header)[0] for c in (*sheet.columns, *sheet.spare)]
+    spelt = {
+        re.sub(r"\W", "_", name): name
+        for name in sorted(names, key=len, reverse=True)
+        if not name.isidentifier() and any(name in text for text in expressions)
+    }
+    for word, name in spelt.items():
+        whole = rf"(?<!\w){re.escape(name)}(?!\w)"
+        expressions = tuple(re.sub(whole, word, text) for text in expressions)
+    return expressions, spelt
