@@ -42,6 +42,13 @@ class Load(StrEnum):
     kg = "kg"
 
 
+class Dates(StrEnum):
+    """What comes first in dates like 10/09/2026."""
+
+    dmy = "dmy"
+    mdy = "mdy"
+
+
 def command(
     source: Path,
     robot: Annotated[str, typer.Option("--robot")],
@@ -54,6 +61,7 @@ def command(
     load: Load | None = None,
     wrench: str | None = None,
     coverage: Annotated[float | None, typer.Option(min=0.1)] = None,
+    dates: Dates | None = None,
     point: str | None = None,
     joints: str | None = None,
     columns: str | None = None,
@@ -89,6 +97,8 @@ def command(
         load: Unit of fx,fy,fz or payload (kg: payload alone).
         wrench (VALUES): What the column load counts, on the robot in base axes: '0,0,-490 N'.
         coverage (K): Stated uncertainties are K times standard ones. [default: 2 for U95, else 1]
+        dates: Day (dmy) or month (mdy) first in dates like 10/09/2026, where the file leaves it
+            open.
         point (VALUES): Where the marker sits in the tool frame: '0,0,150 mm'. [default: found by
             the fit]
         joints (NAMES): Columns of the actuated joints, in the joints' order: 'a,b,c'; or sums of
@@ -126,6 +136,7 @@ def command(
             else parse_values(point, "length", where="--point", like="0,0,150 mm"),
             joints=_names(joints),
             coverage=coverage,
+            dates=None if dates is None else dates.value,
         ),
         joints_file=joints_file,
         loads_file=loads_file,

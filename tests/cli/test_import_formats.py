@@ -285,6 +285,23 @@ def test_a_sheet_in_german_with_date_and_time_in_columns_of_their_own(run, tmp_p
     np.testing.assert_allclose(data.time - data.time[0], 60.0 * np.arange(len(SEEN.names)))
 
 
+def test_dates_that_can_be_read_either_way_are_asked_about(run, tmp_path: Path) -> None:
+    path, out = tmp_path / "export.csv", tmp_path / "own.csv"
+    lines = ["name;" + ";".join(f"J{k} [deg]" for k in range(1, 7)) + ";x[mm];y[mm];z[mm];time"]
+    for k, (name, q, x) in enumerate(zip(SEEN.names, SEEN.q, SEEN.x, strict=True)):
+        numbers = [*(f"{v:.5f}" for v in q), *(f"{v:.4f}" for v in x)]
+        lines.append(";".join([name, *numbers, f"10/{9 + k // 20:02d}/2026 08:{k % 20:02d}:00 AM"]))
+    path.write_text("\n".join(lines))
+    given = ("import", str(path), "--robot", ur5(), "--tool", "tool0", "--out", str(out))
+    asked = run(*given)
+    assert asked.code == 2 and not out.exists()
+    assert "column time: dates like 10/09/2026 08:00:00 AM" in asked.stderr
+    assert "--dates dmy" in asked.stderr and "--dates mdy" in asked.stderr
+    assert run(*given, "--dates", "mdy").code == 0
+    times = read_measurements(out).time
+    assert times is not None and times[-1] == 86400.0 + 19 * 60.0
+
+
 def test_sums_of_columns_whose_names_have_blanks(run, tmp_path: Path) -> None:
     """Joint 3 of a controller that counts it from the horizontal: J 3 + J 2."""
     path = tmp_path / "controller.csv"

@@ -3,27 +3,48 @@
 from __future__ import annotations
 
 import datetime as dt
+import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise, product
+from typing import Literal
 
-DATES = ("%d.%m.%Y", "%d.%m.%y", "%Y/%m/%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%d %b %Y")
-TIMES = ("%H:%M:%S", "%H:%M:%S.%f", "%H:%M:%S,%f", "%H:%M", "%I:%M:%S %p", "%I:%M %p")
+DateOrder = Literal["dmy", "mdy"]
+
+DATES = (
+    "%d.%m.%Y", "%d.%m.%y", "%Y-%m-%d", "%Y/%m/%d", "%d/%m/%Y", "%m/%d/%Y", "%d/%m/%y", "%m/%d/%y",
+    "%d-%m-%Y", "%m-%d-%Y", "%d %b %Y", "%d-%b-%Y",
+)  # fmt: skip
+TIMES = (
+    "%H:%M:%S", "%H:%M:%S.%f", "%H:%M:%S,%f", "%H:%M", "%I:%M:%S %p", "%I:%M:%S.%f %p", "%I:%M %p",
+)  # fmt: skip
 DAY = dt.timedelta(days=1)
 
 EXAMPLES = "2026-11-22 10:15:00, 22.11.2026 10:15:00, 10:15:00"
+EITHER_WAY = "day and month can be read either way; write dates as 2026-11-22"
+_OTHER_ORDER = {"dmy": re.compile("%m[/-]%d"), "mdy": re.compile("%d[/-]%m")}
+_HALF_DAY = re.compile(r"(?<=\d)\s*([ap])\.?\s?m\.?$", re.IGNORECASE)
+_MIDNIGHT = re.compile(r"[T ](?:0?0:00(?::00(?:[.,]0+)?)?|12:00(?::00)? AM)$")
+_NO_DAY = re.compile(r"^(?:1899-12-30|30\.12\.1899|12/30/1899)[T ]")  # of a sheet's time alone
 
 
-def since_first(*columns: Sequence[str]) -> tuple[str, ...] | str:
+def since_first(*columns: Sequence[str], order: DateOrder | None = None) -> tuple[str, ...] | str:
     """Seconds since the first reading, or why they cannot be told, in words.
 
     Args:
         columns: The cells of one clock column; of two, one of dates and one of times of the day, or
             one that has both.
+        order: Does the day come first in dates like 10/09/2026, or the month? None: what all cells
+            together can be read as, and what rises, tells.
     """
+    columns = tuple([_plain(cell) for cell in cells] for cells in columns)
+    ways: tuple[tuple[Sequence[str], ...], ...] = (columns,)
+    if len(columns) > 1:
+        alone = [cells for cells in columns if all(":" in cell for cell in cells)]
+        columns = tuple(_part(cells) for cells in columns)
+        ways = (columns, columns[::-1], *((cells,) for cells in alone))
     found: list[list[float]] = []
-    orders = (columns, columns[::-1], columns[:1], columns[1:]) if len(columns) > 1 else (columns,)
-    for cells in (tuple(map(" ".join, zip(*order, strict=True))) for order in orders):
-        for times in _readings_of(cells):
+    for cells in (tuple(map(" ".join, zip(*way, strict=True))) for way in ways):
+        for times in _readings_of(cells, order):
             seconds = [(time - times[0]).total_seconds() for time in times]
             if seconds not in found:
                 found.append(seconds)
@@ -32,23 +53,37 @@ def since_first(*columns: Sequence[str]) -> tuple[str, ...] | str:
     rising = [each for each in found if all(a <= b for a, b in pairwise(each))]
     if len(rising) == 1 or len(found) == 1:
         return tuple(map(repr, (rising or found)[0]))
-    if found:
-        return "day and month can be read either way; write dates as 2026-11-22"
-    return f"no time in seconds, and none like {EXAMPLES}"
+    return EITHER_WAY if found else f"no time in seconds, and none like {EXAMPLES}"
 
 
-def _readings_of(cells: Sequence[str]) -> Iterator[list[dt.datetime]]:
+def _plain(cell: str) -> str:
+    """A cell in one dress: no comma after the date, no Uhr, AM for a.m., no nanoseconds."""
+    text = re.sub(r",?\s+", " ", cell.strip()).removesuffix(" Uhr")
+    return re.sub(r"([.,]\d{6})\d+", r"\1", _HALF_DAY.sub(lambda m: f" {m[1].upper()}M", text))
+
+
+def _part(cells: Sequence[str]) -> Sequence[str]:
+    """Dates without the midnight, and times without the day, that workbooks put beside them."""
+    for surplus in (_MIDNIGHT, _NO_DAY):
+        if all(surplus.search(cell) for cell in cells):
+            return [surplus.sub("", cell) for cell in cells]
+    return cells
+
+
+def _readings_of(cells: Sequence[str], order: DateOrder | None) -> Iterator[list[dt.datetime]]:
     """What all cells say together, by every way of writing that all of them follow."""
     try:
-        times = [dt.datetime.fromisoformat(cell.strip()) for cell in cells]
+        times = [dt.datetime.fromisoformat(cell) for cell in cells]
         if len({time.tzinfo is None for time in times}) == 1:
             yield times
         return
     except ValueError:
         pass
     for form in (*map(" ".join, product(DATES, TIMES)), *TIMES):
+        if order is not None and _OTHER_ORDER[order].match(form):
+            continue
         try:
-            times = [dt.datetime.strptime(cell.strip(), form) for cell in cells]
+            times = [dt.datetime.strptime(cell, form) for cell in cells]
         except ValueError:
             continue
         yield times if form not in TIMES else _past_midnight(times)

@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE
-from sk120stiff.measurements.importers.clock import since_first
+from sk120stiff.measurements.importers.clock import EITHER_WAY, since_first
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
 from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
@@ -82,7 +82,7 @@ def drafted(
     unit = readings[0][0].partition("[")[2].rstrip("]")
     for group, notes in (
         _sigmas(sheet, told, unit, reasons),
-        _conditions(sheet, reasons),
+        _conditions(sheet, told, reasons),
     ):
         for column, header, cells in group:
             if header:
@@ -222,7 +222,7 @@ def _sigmas(sheet: Sheet, told: Told, unit: str, reasons: dict[int, str]) -> _Gr
     return found, notes
 
 
-def _conditions(sheet: Sheet, reasons: dict[int, str]) -> _Group:
+def _conditions(sheet: Sheet, told: Told, reasons: dict[int, str]) -> _Group:
     """Temperature, time, order and labels."""
     found: list[tuple[Column, str, tuple[str, ...]]] = []
     for column in sheet.columns:
@@ -240,18 +240,31 @@ def _conditions(sheet: Sheet, reasons: dict[int, str]) -> _Group:
             if word == "order":
                 numbers(sheet, column)
             found.append((column, word, column.cells))
-    return found + _clock(sheet, reasons), []
+    return found + _clock(sheet, told, reasons), []
 
 
-def _clock(sheet: Sheet, reasons: dict[int, str]) -> list[tuple[Column, str, tuple[str, ...]]]:
-    """Seconds; of a date and a time of the day in columns of their own, both together."""
+def _clock(
+    sheet: Sheet, told: Told, reasons: dict[int, str]
+) -> list[tuple[Column, str, tuple[str, ...]]]:
+    """Seconds; of a date and a time of the day in columns of their own, both together.
+
+    Raises:
+        InputError: Day and month can be read either way.
+    """
     time, date = sheet.get("time"), sheet.get("date")
     if time is not None and time.unit == "s":
         return [(time, "time[s]", texts(time))]
     columns = [column for column in (date, time) if column is not None]
     if not columns:
         return []
-    seconds = since_first(*(column.cells for column in columns))
+    seconds = since_first(*(column.cells for column in columns), order=told.dates)
+    if seconds == EITHER_WAY:
+        raise InputError(
+            f"dates like {columns[0].cells[0]} can be read with the day or the month first, and "
+            "the order of the rows does not tell which",
+            where=sheet.place(columns[0]),
+            remedy="Give --dates dmy (the day first) or --dates mdy (the month first).",
+        )
     if isinstance(seconds, str):
         reasons.update({id(column): f": {seconds}" for column in columns})
         return []

@@ -11,6 +11,7 @@ import numpy as np
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.clock import DateOrder
 from sk120stiff.measurements.importers.contract import Column, Sheet
 
 Mode = Literal["displacements", "load pairs", "positions"]
@@ -40,6 +41,7 @@ class Told:
         point: (3,) where the marker sits in the tool frame, m.
         joints: A column, or a linear expression of columns, for each actuated joint.
         coverage: What stated uncertainties are multiples of; as their header says by default.
+        dates: Whether the day or the month comes first in dates like 10/09/2026.
     """
 
     length: str | None = None
@@ -49,6 +51,7 @@ class Told:
     point: Array | None = None
     joints: tuple[str, ...] | None = None
     coverage: float | None = None
+    dates: DateOrder | None = None
 
     def of(self, kind: str) -> str | None:
         """The unit that was told for a kind."""

@@ -44,9 +44,10 @@ _NAMES = {
     "group": "group|group name|point group|tag group",
     "collection": "collection|collection name",
     "order": "order|step order|seq|sequence|measurement order",
-    "time": "time|timestamp|time stamp|time of day|clock|date time|datetime|zeit|uhrzeit|"
-    "zeitstempel|datum uhrzeit",
-    "date": "date|datum",
+    "time": "time|timestamp|time stamp|time of day|clock|date time|date/time|date & time|"
+    "date and time|datetime|zeit|uhrzeit|zeitstempel|datum uhrzeit|datum/uhrzeit|datum zeit|"
+    "datum/zeit|datum und uhrzeit|heure|date heure|ora|hora|fecha hora",
+    "date": "date|datum|fecha",
     "marker": "marker|reflector|smr",
     "orientation roll": "roll",
     "orientation pitch": "pitch",
