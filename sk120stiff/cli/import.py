@@ -102,8 +102,8 @@ def command(
         point (VALUES): Where the marker sits in the tool frame: '0,0,150 mm'. [default: found by
             the fit]
         joints (NAMES): Columns of the actuated joints, in the joints' order: 'a,b,c'; or sums of
-            them, as controllers have it: 'q1,q2,-(q2+q3)'. [default: named as the joints, or
-            q1,q2,...]
+            them, as controllers have it: 'q1,q2,-(q2+q3)'. Names may hold blanks: 'J 1,J 2,J 2+J
+            3'. [default: named as the joints, or q1,q2,...]
         columns (NAMES): Names for the columns of FILE, in their order, where it has no headers:
             'name,x,y,z'; a dash for one that is not needed.
         register: Write positions in base axes, by the best fit of the robot to them. [default: only

@@ -302,19 +302,41 @@ def test_dates_that_can_be_read_either_way_are_asked_about(run, tmp_path: Path) 
     assert times is not None and times[-1] == 86400.0 + 19 * 60.0
 
 
-def test_sums_of_columns_whose_names_have_blanks(run, tmp_path: Path) -> None:
+JOINTS = "J 1,J 2,J 3 + J 2,J 4,J 5,J 6"
+
+
+@pytest.mark.parametrize(
+    "joints",
+    [
+        JOINTS,
+        JOINTS.replace("J ", "J  ").replace(" + ", "+"),
+        ",".join(f"J {k} [deg]" + " + J 2 [deg]" * (k == 3) for k in range(1, 7)),
+        JOINTS.replace("J 3 + J 2", "0.5*(2*J 3 + 2*J 2)"),
+    ],
+)
+def test_sums_of_columns_whose_names_have_blanks(run, tmp_path: Path, joints: str) -> None:
     """Joint 3 of a controller that counts it from the horizontal: J 3 + J 2."""
-    path = tmp_path / "controller.csv"
+    outcome, out = summed(run, tmp_path, joints)
+    assert outcome.code == 0, outcome.stderr
+    data = read_measurements(out, load_robot(ur5(), tool="tool0").actuated)
+    order = [data.joint_names.index(n) for n in load_robot(ur5(), tool="tool0").actuated]
+    np.testing.assert_allclose(np.degrees(data.joints[:, order]), SEEN.q, atol=2e-5)
+    assert "J_2[deg]" in out.read_text().splitlines()[0]
+
+
+def test_a_sum_of_a_column_that_is_not_there_lists_those_that_are(run, tmp_path: Path) -> None:
+    outcome, out = summed(run, tmp_path, JOINTS.replace("J 2,J 3", "J 2,J 8"))
+    assert outcome.code == 2 and not out.exists()
+    assert "J 8" in outcome.stderr and "Columns are name, J 1, J 2," in outcome.stderr
+
+
+def summed(run, folder: Path, joints: str):
+    """The outcome of importing with --joints, and the file that was to be written."""
+    path, out = folder / "controller.csv", folder / "own.csv"
     lines = [";".join(["name", *(f"J {k} [deg]" for k in range(1, 7)), "x[mm]", "y[mm]", "z[mm]"])]
     for name, q, x in zip(SEEN.names, SEEN.q, SEEN.x, strict=True):
         shown = [q[0], q[1], q[2] - q[1], *q[3:]]
         lines.append(";".join([name, *(f"{v:.5f}" for v in shown), *(f"{v:.4f}" for v in x)]))
     path.write_text("\n".join(lines))
-    out = tmp_path / "own.csv"
-    joints = "J 1,J 2,J 3 + J 2,J 4,J 5,J 6"
     arm = ("--robot", ur5(), "--tool", "tool0", "--joints", joints)
-    outcome = run("import", str(path), *arm, "--out", str(out), "--json")
-    assert outcome.code == 0, outcome.stderr
-    data = read_measurements(out, load_robot(ur5(), tool="tool0").actuated)
-    order = [data.joint_names.index(n) for n in load_robot(ur5(), tool="tool0").actuated]
-    np.testing.assert_allclose(np.degrees(data.joints[:, order]), SEEN.q, atol=2e-5)
+    return run("import", str(path), *arm, "--out", str(out), "--json"), out

@@ -13,7 +13,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.told import Told, quantity, texts, unit_of
 from sk120stiff.measurements.importers.words import unit_of_header
-from sk120stiff.measurements.joint_map import parse_linear
+from sk120stiff.measurements.joint_map import Linear, parse_linear
 
 _OPERATOR = re.compile(r"[-+*/()]")
 
@@ -148,7 +148,7 @@ def _expressed(
     raw: dict[str, tuple[Column, Array, str]] = {}
     values = []
     for (joint, kind), text in zip(kinds.items(), expressions, strict=True):
-        linear = parse_linear(text, f"--joints, {joint}")
+        linear = _linear(sheet, text, joint)
         total = np.full(len(sheet.lines), linear.terms.get("", 0.0))
         for name, share in linear.terms.items():
             if not name:
@@ -170,17 +170,35 @@ def _expressed(
     )
 
 
+def _linear(sheet: Sheet, text: str, joint: str) -> Linear:
+    """A sum of columns, or what is wrong with it and which columns there are."""
+    try:
+        return parse_linear(text, f"--joints, {joint}")
+    except InputError as error:
+        names = ", ".join(unit_of_header(c.header)[0] for c in (*sheet.columns, *sheet.spare))
+        remedy = f"{error.remedy} Columns are {names}."
+        raise InputError(error.what, where=error.where, remedy=remedy) from None
+
+
 def _in_one_word(
     sheet: Sheet, expressions: tuple[str, ...]
 ) -> tuple[tuple[str, ...], dict[str, str]]:
-    """Expressions in which headers like ``J 2`` are one word, ``J_2``; and these words' headers."""
-    names = [unit_of_header(c.header)[0] for c in (*sheet.columns, *sheet.spare)]
-    spelt = {
-        re.sub(r"\W", "_", name): name
-        for name in sorted(names, key=len, reverse=True)
-        if not name.isidentifier() and any(name in text for text in expressions)
-    }
-    for word, name in spelt.items():
-        whole = rf"(?<!\w){re.escape(name)}(?!\w)"
-        expressions = tuple(re.sub(whole, word, text) for text in expressions)
+    """Expressions in which headers like ``J 2`` are one word, ``J_2``; and these words' headers.
+
+    A header may be written with its unit or without, and with any number of blanks.
+    """
+    columns = (*sheet.columns, *sheet.spare)
+    names = {c.header for c in columns} | {unit_of_header(c.header)[0] for c in columns}
+    spelt: dict[str, str] = {}
+    for name in sorted(names, key=len, reverse=True):
+        blanks = r"\s+".join(map(re.escape, name.split()))
+        whole = re.compile(rf"(?<!\w){blanks}(?!\w)")
+        number = not re.match(r"[^\W\d]", name)
+        if name.isidentifier() or number or not any(map(whole.search, expressions)):
+            continue
+        word, own = re.sub(r"\W+", "_", unit_of_header(name)[0]), _lookup(sheet, name)
+        while _lookup(sheet, spelt.get(word, word)) not in (None, own):  # another column's
+            word += "_"
+        spelt[word] = name
+        expressions = tuple(whole.sub(word, text) for text in expressions)
     return expressions, spelt
