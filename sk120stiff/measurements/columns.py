@@ -164,11 +164,6 @@ def _require(table: Table, has: set[str], group: tuple[str, ...]) -> None:
             together = f" {', '.join(group)} come together." if len(group) > 1 else ""
             if group in (DISPLACEMENTS, POSITIONS):
                 together += " A cell stays blank where the axis was not read."
-            if group == FORCES and "payload" in table.headers:
-                together += (
-                    " A payload that hangs at the point becomes one, along -z of the base, by "
-                    f"'sk120stiff import {table.path} --robot ROBOT --out NEW.csv'."
-                )
             raise InputError(
                 f"the column {name!r} is missing",
                 where=f"{table.path}, line {table.header_line}",

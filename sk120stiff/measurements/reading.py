@@ -91,6 +91,10 @@ def assembled(
     prismatic: Sequence[str] | None = None,
 ) -> Measurements:
     """Measurements from a table and its settings; see `read_measurements`."""
+    from sk120stiff.measurements.payload_as_force import refuse_payload_for_force
+
+    named = _robot(file.settings.robot, table.path.parent)
+    refuse_payload_for_force(table, file.settings, named)
     roles = columns.assign_roles(table, tuple(actuated or ()))
     measurements = _assemble(table, roles, file, data_hash)
     if actuated is not None:

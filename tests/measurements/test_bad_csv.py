@@ -101,7 +101,7 @@ CSV = {
     "both kinds": (with_column("x[mm]", "1", "2", "3"), ["dx, dy, dz", "(x)", "Keep one kind"]),
     "a payload for a force": (
         change("fx[N],fy[N],fz[N]", "payload[kg],b,c"),
-        ["'fx' is missing", "sk120stiff import", "-z of the base"],
+        ["'fx' is missing", "sk120stiff import", "--point 'X,Y,Z mm'", "-z of the base"],
     ),
     # shape
     "empty": ("", ["empty", "pose,joint_1_s[deg]"]),
