@@ -30,7 +30,7 @@ def positions_answer(answer: Explained, document: Mapping[str, object], out: Pat
             "mean_distance_um": distance * 1e6 if whole else None,
         }
         mean = f", {1e6 * distance:.3g} µm mean distance" if whole else ""
-        parts.append(f"Held-out file: {1e6 * rms:.3g} {unit} rms per axis{mean}.")
+        parts.append(f"Held-out file: {1e6 * rms:.3g} {answer.final.problem.rms_unit}{mean}.")
     return Answer({**document, "holdout": held}, parts)
 
 
@@ -55,7 +55,8 @@ def _parts(answer: Explained, out: Path) -> list[object]:
     ]
     columns = ["model", "fitted", "held out", "mean distance"][: 3 + whole]
     unit = answer.final.problem.unit
-    title = f"Gap [{unit}], rms per axis" + (" and mean distance held out" if whole else "")
+    size = answer.final.problem.rms_unit.removeprefix(f"{unit} ")
+    title = f"Gap [{unit}], {size}" + (" and mean distance held out" if whole else "")
     shown.append(table(title, columns, rows))
     if answer.families:
         told = ", ".join(f"{name} {1e6 * share:.3g}" for name, share in answer.families.items())

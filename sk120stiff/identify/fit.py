@@ -88,7 +88,7 @@ class Fit:
         """What a notebook shows; without pandas it is the line of `repr`."""
         with suppress(MissingPart):
             table = self.to_frame().to_html(index=False, float_format="{:.4g}".format, na_rep="")
-            return f"<div><p>Gap {self.size} per axis</p>{table}</div>"
+            return f"<div><p>Gap {self.size}{self.per_axis}</p>{table}</div>"
         return None
 
     def to_frame(self) -> pd.DataFrame:
@@ -136,6 +136,11 @@ class Fit:
     def size(self) -> str:
         """The gap's root mean square with its unit."""
         return f"{1e6 * self.rms:.3g} µm rms"
+
+    @property
+    def per_axis(self) -> str:
+        """Words that follow `size` where every number read has an axis."""
+        return " per axis"
 
     @cached_property
     def small(self) -> tuple[Array, Array]:

@@ -21,6 +21,7 @@ from sk120stiff.robot.rotations import rotation_vector
 Kind = Literal["position", "rotation", "distance", "shift", "inclination"]
 KINDS: tuple[Kind, ...] = ("position", "rotation", "distance", "shift", "inclination")
 ANGLES = ("rotation", "inclination")  # the other kinds are lengths
+OF_AXES = ("position", "rotation")  # a number for each of three axes; the other kinds are one
 
 
 @dataclass(frozen=True, eq=False)

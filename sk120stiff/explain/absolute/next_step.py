@@ -40,8 +40,8 @@ def headline(answer: Explained) -> str:
 def next_step_of_positions(answer: Explained) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
-    unit = answer.final.problem.unit
-    use = f"Use model.yaml: at poses that no fit saw it is off by {last:.4g} {unit} rms per axis"
+    unit, whole = answer.final.problem.unit, answer.final.problem.rms_unit
+    use = f"Use model.yaml: at poses that no fit saw it is off by {last:.4g} {whole}"
     if last < first:
         use += f" where the registered arm alone is off by {first:.4g} {unit}"
     said = [f"{use}."]

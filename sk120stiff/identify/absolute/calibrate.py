@@ -76,6 +76,11 @@ class Calibration(Fit):
         return f"{1e6 * np.sqrt(np.mean(gap**2)):.3g} {self.problem.unit} rms"
 
     @property
+    def per_axis(self) -> str:
+        """See `Fit.per_axis`."""
+        return self.problem.rms_unit.partition(" rms")[2]
+
+    @property
     def distances(self) -> Array:
         """(K,) length of the gap at every row with a whole position [m]."""
         return row_lengths(self.problem, self.x)

@@ -17,7 +17,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Channels
 from sk120stiff.measurements.absolute import Absolute
-from sk120stiff.measurements.channels import ANGLES, inclined
+from sk120stiff.measurements.channels import ANGLES, OF_AXES, inclined
 from sk120stiff.model import Parameter
 from sk120stiff.model.pose_reading import read_poses
 
@@ -87,6 +87,13 @@ class PoseProblem(Problem):
     def unit(self) -> str:
         """Of a millionth of that size: µm, or µrad where no reading is a length."""
         return "µm" if len(self.lengths) else "µrad"
+
+    @property
+    def rms_unit(self) -> str:
+        """What an rms over `counted` is in: µm rms, per axis where all of them have axes."""
+        angles = not len(self.lengths)
+        told = [kind for kind in self.channels.present if (kind in ANGLES) == angles]
+        return f"{self.unit} rms" + (" per axis" if set(told) <= set(OF_AXES) else "")
 
     @cached_property
     def of_channels(self) -> Independent:

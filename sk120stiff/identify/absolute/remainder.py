@@ -94,7 +94,7 @@ def remainder_sentences(final: Calibration) -> list[str]:
     size = left_beyond_noise(final)
     if size is None:
         return []
-    said = [in_words(size, final.problem.unit, stated=final.sigma_known)]
+    said = [in_words(size, final.problem.rms_unit, stated=final.sigma_known)]
     chance = chance_of_noise(final)
     if final.sigma_known and final.form is None and chance is not None and chance < LEVEL:
         square, freedom = final.judged
@@ -107,16 +107,15 @@ def remainder_sentences(final: Calibration) -> list[str]:
 
 
 def in_words(size: Size, unit: str, *, stated: bool) -> str:
-    """How much is left beyond the noise, in a sentence."""
+    """How much is left beyond the noise, in a sentence; `unit` as `PoseProblem.rms_unit`."""
     best, low, high = (f"{1e6 * x:.3g}" for x in size)
     if not stated:
         return (
             f"What is left is mostly smooth over the joints, as an error of the model is and noise "
-            f"is not: {best} {unit} rms per axis (95 %: {low} to {high})."
+            f"is not: {best} {unit} (95 %: {low} to {high})."
         )
     if size[0] == 0.0:
         return (
-            f"Nothing is left beyond the stated noise; more than {high} {unit} rms per axis is "
-            "excluded (95 %)."
+            f"Nothing is left beyond the stated noise; more than {high} {unit} is excluded (95 %)."
         )
-    return f"Left beyond the stated noise are {best} {unit} rms per axis (95 %: {low} to {high})."
+    return f"Left beyond the stated noise are {best} {unit} (95 %: {low} to {high})."

@@ -43,7 +43,7 @@ def gap_sentence(found: Calibration) -> str:
     problem = found.problem
     distances, angles = found.distances, angle_gap(found)
     sizes = [
-        *([f"{1e6 * found.rms:.3g} µm rms per axis"] if len(problem.lengths) else []),
+        *([f"{1e6 * found.rms:.3g} {problem.rms_unit}"] if len(problem.lengths) else []),
         *([f"{1e6 * distances.mean():.3g} µm mean distance"] if len(distances) else []),
         *([f"{1e6 * np.sqrt(np.mean(angles**2)):.3g} µrad rms of angles"] if len(angles) else []),
     ]
@@ -112,7 +112,12 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         said += _some([f"  {item.sentence()}" for item in shared])
     rows = np.flatnonzero(found.wild)
     if len(rows):
-        said.append(f"{len(rows)} rows lie far off all others and were set aside:")
+        lie = (
+            "1 row lies far off all others and was"
+            if len(rows) == 1
+            else (f"{len(rows)} rows lie far off all others and were")
+        )
+        said.append(f"{lie} set aside:")
         said += _some([_wild(found, readings, int(row)) for row in rows])
     return said
 

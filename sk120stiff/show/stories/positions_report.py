@@ -28,9 +28,10 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     """Gap step by step, named causes with their values, what cannot be told, what is left."""
     first, end = answer.steps[0], answer.steps[-1]
     unit, away = answer.final.problem.unit, end.heldout_distance
+    size = _size(answer)
     figures = KeyFigures(
         [
-            KeyFigure("registered", um(first.heldout_rms), unit, "rms per axis"),
+            KeyFigure("registered", um(first.heldout_rms), unit, size),
             KeyFigure("explained", um(end.heldout_rms), unit, "at poses left out"),
             *(
                 [KeyFigure("mean distance", um(away), "µm", "left out")]
@@ -46,7 +47,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
             (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)[:shown]
             for s in answer.steps
         ],
-        "The gap as one cause after the other joins, rms per axis"
+        f"The gap as one cause after the other joins, {size}"
         + (" and mean distance." if shown > 3 else "."),
         units=("", unit, unit, "µm")[:shown],
     )
@@ -95,6 +96,12 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     )
 
 
+def _size(answer: Explained) -> str:
+    """rms, per axis where every reading has axes."""
+    problem = answer.final.problem
+    return problem.rms_unit.removeprefix(f"{problem.unit} ")
+
+
 def _values(answer: Explained) -> Table:
     reasons = unseen(answer.final)
     rows: list[tuple[object, ...]] = []
@@ -119,7 +126,7 @@ def _steps(answer: Explained) -> Picture:
     return Picture(
         lambda: gap_waterfall(steps, noise_floor=stated, unit=unit),
         alt=f"Bars of the gap of {len(steps)} models; held out from {um(first.heldout_rms)} "
-        f"to {um(end.heldout_rms)} {unit} rms per axis.",
+        f"to {um(end.heldout_rms)} {answer.final.problem.rms_unit}.",
         caption="Bars: positions that were fitted. Diamonds: poses left out."
         + ("" if stated is None else " Dashed: the stated noise."),
     )
@@ -135,7 +142,7 @@ def _budget(answer: Explained, table: Table) -> Section:
             Picture(
                 lambda: budget_bars(
                     list(sizes), np.array(list(sizes.values())), np.zeros(len(sizes)),
-                    label=f"{unit} rms per axis at poses left out", named=list(sizes),
+                    label=f"{answer.final.problem.rms_unit} at poses left out", named=list(sizes),
                 ),
                 alt="Bars: " + "; ".join(f"{n} {size:.3g} {unit}" for n, size in sizes.items()),
             ),
