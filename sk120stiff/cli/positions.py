@@ -10,28 +10,48 @@ import numpy as np
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.tables import table
 from sk120stiff.effects import LinearElastic
+from sk120stiff.errors import listed
 from sk120stiff.explain import Explained
+from sk120stiff.explain.absolute.accounts import HeldOutFile
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.model import Model, base_model
+
+LISTED = 6  # rows of a held-out file that are told one by one
 
 
 def positions_answer(answer: Explained, document: Mapping[str, object], out: Path) -> Answer:
     """What was found, and how far readings that were kept out are off."""
     parts = _parts(answer, out)
-    held: dict[str, float | None] | None = None
+    held: dict[str, object] | None = None
     if answer.heldout is not None:
-        rms, distance = answer.heldout
-        unit = answer.final.problem.unit
-        whole = np.isfinite(distance)
-        held = {
-            f"rms_{'um' if unit == 'µm' else 'urad'}": rms * 1e6,
-            "mean_distance_um": distance * 1e6 if whole else None,
-        }
-        mean = f", {1e6 * distance:.3g} µm mean distance" if whole else ""
-        parts.append(f"Held-out file: {1e6 * rms:.3g} {answer.final.problem.rms_unit}{mean}.")
+        held, said = _held_out(answer.heldout, answer.final.problem)
+        parts.append(said)
     return Answer({**document, "holdout": held}, parts)
+
+
+def _held_out(found: HeldOutFile, problem: PoseProblem) -> tuple[dict[str, object], str]:
+    """How far the held-out readings are off, as JSON and in a sentence."""
+    unit, whole = problem.unit, np.isfinite(found.distance)
+    readings, rows = found.readings, np.flatnonzero(found.set_aside)
+    ending = "um" if unit == "µm" else "urad"
+    document: dict[str, object] = {
+        f"rms_{ending}": found.rms * 1e6,
+        "mean_distance_um": found.distance * 1e6 if whole else None,
+        "set_aside": [{"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows],
+        f"rms_of_all_{ending}": found.rms_of_all * 1e6,
+    }
+    said = f"Held-out file: {1e6 * found.rms:.3g} {problem.rms_unit}"
+    said += f", {1e6 * found.distance:.3g} µm mean distance" if whole else ""
+    if len(rows):
+        lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows[:LISTED]]
+        more = [f"{len(rows) - LISTED} more"] if len(rows) > LISTED else []
+        lie = "1 row that lies" if len(rows) == 1 else f"{len(rows)} rows that lie"
+        said += f". Not counted: {lie} far off all others, {listed([*lines, *more])}; with "
+        said += f"{'it' if len(rows) == 1 else 'them'} {1e6 * found.rms_of_all:.3g} {unit}"
+    return document, f"{said}."
 
 
 def yielding(model: Model) -> Model:
@@ -58,6 +78,7 @@ def _parts(answer: Explained, out: Path) -> list[object]:
     size = answer.final.problem.rms_unit.removeprefix(f"{unit} ")
     title = f"Gap [{unit}], {size}" + (" and mean distance held out" if whole else "")
     shown.append(table(title, columns, rows))
+    shown += answer.not_counted()
     if answer.families:
         told = ", ".join(f"{name} {1e6 * share:.3g}" for name, share in answer.families.items())
         shown.append(f"What each takes off beside the others [{unit}]: {told}.")

@@ -61,7 +61,7 @@ def test_explain_names_saves_and_reports(tmp_path: Path) -> None:
     assert isinstance(answer, Explained)
     assert [item.effect.id for item in answer.findings] == ["transmission_error:j3"]
     assert repr(answer).startswith(f"<Explained: {answer.verdict} transmission_error:j3; gap ")
-    assert answer.heldout is not None and answer.heldout[0] < 3.0 * SIGMA
+    assert answer.heldout is not None and answer.heldout.rms < 3.0 * SIGMA
     assert answer.next_readings() is None
     written = answer.save(tmp_path / "out")
     assert json.loads((tmp_path / "out" / "verdict.json").read_text()) == json.loads(

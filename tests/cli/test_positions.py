@@ -14,6 +14,7 @@ from sk120stiff.cli.positions import yielding
 from sk120stiff.model import Model
 from sk120stiff.show.scene.building import scene_of_model
 from tests.absolute.arm import Arm, errors, poses, tracked, write
+from tests.absolute.test_held_out import HELD, WILD, read
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 NOISE = "noise: {sigma: 20, unit: um}\n"
@@ -108,5 +109,20 @@ def test_angles_alone_are_told_in_their_own_unit_everywhere(run, tmp_path: Path)
         "--json",
     ).document  # fmt: skip
     assert again["gap"]["unit"] == "urad" and set(again["holdout"]) == {
-        "rms_urad", "mean_distance_um"
+        "rms_urad", "rms_of_all_urad", "mean_distance_um", "set_aside"
     }  # fmt: skip
+
+
+def test_rows_set_aside_are_told_beside_held_out_numbers(run, tmp_path: Path) -> None:
+    data, others = read(tmp_path / "own", 80, 41, WILD), read(tmp_path / "others", 40, 77, HELD)
+    given = ("explain", str(data), "--holdout", str(others), "--no-report")
+    outcome = run(*given, "--out", str(tmp_path / "out"), "--json")
+    assert outcome.code == 0, outcome.stderr
+    document = outcome.document
+    assert document["gap"]["set_aside"] == 3
+    held = document["holdout"]
+    assert [item["line"] for item in held["set_aside"]] == [5, 11]
+    assert held["rms_um"] < 30.0 < 200.0 < held["rms_of_all_um"]
+    said = " ".join(run(*given, "--out", str(tmp_path / "out")).stdout.split())
+    assert "leave out the 3 rows that were set aside" in said
+    assert "Not counted: 2 rows that lie far off all others, line 5 (pose P4)" in said

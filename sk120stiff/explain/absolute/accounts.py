@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.explain.absolute.candidates import family
 from sk120stiff.explain.absolute.choose import Chosen, lengths
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Contender
-from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.calibrate import Calibration, far_off
 from sk120stiff.measurements import Measurements
 
 
@@ -25,11 +25,38 @@ class GapStep:
     heldout_distance: float
 
 
+@dataclass(frozen=True, eq=False)
+class HeldOutFile:
+    """The gap at readings that no fit saw.
+
+    Attributes:
+        rms, distance: Rms of what is counted and mean distance of whole positions, without the rows
+            set aside [m]; NaN where there are none.
+        set_aside: (N,) rows that lie far off all others of their file.
+        rms_of_all: Rms with these rows [m].
+        readings: All N readings.
+    """
+
+    rms: float
+    distance: float
+    set_aside: Mask
+    rms_of_all: float
+    readings: Measurements
+
+
+def numbers_told(seen: Calibration, final: Calibration, readings: Measurements) -> Index:
+    """Numbers at which `seen` is linearised that count, without rows that `final` set aside."""
+    rows = readings.use & ~seen.wild  # those of `seen`
+    counted = seen.problem.counted
+    return np.asarray(counted[~final.wild[rows][seen.problem.rows[counted]]])
+
+
 def steps_of(
-    linear: Linear, found: Chosen, base: Calibration, seen: Calibration
+    linear: Linear, found: Chosen, base: Calibration, seen: Calibration, inside: Index
 ) -> tuple[GapStep, ...]:
-    """The gap as one named cause after the other joins."""
-    sigma, whole = seen.problem.of_channels.sigma, _whole(linear, seen)
+    """The gap as one named cause after the other joins, over the numbers `inside`."""
+    sigma = seen.problem.of_channels.sigma
+    whole = _whole(linear, seen) & np.isin(np.arange(len(sigma)), inside)
     first = " + ".join(effect.id for effect in base.model.effects) or "rigid"
     labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
     steps = []
@@ -39,7 +66,6 @@ def steps_of(
         fitted = linear.gap(chosen, noise, held_out=False)
         held = linear.gap(chosen, noise, held_out=True)
         distance = lengths(held, linear, sigma, whole)
-        inside = seen.problem.counted
         steps.append(
             GapStep(
                 label,
@@ -51,7 +77,7 @@ def steps_of(
     return tuple(steps)
 
 
-def _whole(linear: Linear, seen: Calibration) -> Array:
+def _whole(linear: Linear, seen: Calibration) -> Mask:
     """(M,) numbers that are coordinates of positions."""
     part = np.zeros(len(linear.residual), dtype=bool)
     for kind, own in zip(seen.problem.channels.present, seen.problem.channels.kinds, strict=True):
@@ -59,18 +85,20 @@ def _whole(linear: Linear, seen: Calibration) -> Array:
     return part
 
 
-def families_of(linear: Linear, found: Chosen, seen: Calibration) -> dict[str, float]:
-    """Family → rms per axis that its causes take off the held-out gap together [m]."""
-    sigma, counted = seen.problem.of_channels.sigma, seen.problem.counted
+def families_of(
+    linear: Linear, found: Chosen, seen: Calibration, inside: Index
+) -> dict[str, float]:
+    """Family → rms that its causes take off the held-out gap together, over `inside` [m]."""
+    sigma = seen.problem.of_channels.sigma
     groups: dict[str, list[int]] = {}
     for e in found.order:
         groups.setdefault(family(linear.candidates[e]), []).append(e)
     noise = linear.noise(found.order)
-    left = rms((linear.gap(found.order, noise, held_out=True) * sigma)[counted])
+    left = rms((linear.gap(found.order, noise, held_out=True) * sigma)[inside])
     out = {}
     for name, members in groups.items():
         rest = tuple(e for e in found.order if e not in members)
-        out[name] = rms((linear.gap(rest, noise, held_out=True) * sigma)[counted]) - left
+        out[name] = rms((linear.gap(rest, noise, held_out=True) * sigma)[inside]) - left
     return out
 
 
@@ -84,13 +112,15 @@ def springs_of(linear: Linear, found: Chosen) -> float | None:
     return 1.0 - rms(linear.gap((*found.order, *springs), noise, held_out=True)) / before
 
 
-def suspects_of(linear: Linear, found: Chosen, seen: Calibration) -> tuple[Contender, ...]:
-    """Names that fit, and what each takes off the held-out rms beside the others [m]."""
-    sigma, counted = seen.problem.of_channels.sigma, seen.problem.counted
+def suspects_of(
+    linear: Linear, found: Chosen, seen: Calibration, inside: Index
+) -> tuple[Contender, ...]:
+    """Names that fit, and what each takes off the held-out rms over `inside` by itself [m]."""
+    sigma = seen.problem.of_channels.sigma
 
     def left(chosen: tuple[int, ...]) -> float:
         gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
-        return rms((gap * sigma)[counted])
+        return rms((gap * sigma)[inside])
 
     whole = left(found.order)
     return tuple(
@@ -104,14 +134,19 @@ def rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2))) if len(x) else 0.0
 
 
-def heldout_on(final: Calibration, others: Measurements) -> tuple[float, float]:
-    """Rms per axis and mean distance [m] of a calibration at readings it never saw."""
+def heldout_on(final: Calibration, others: Measurements) -> HeldOutFile:
+    """How far a calibration is off at readings it never saw; rows far off all others are told."""
+    wild = far_off(final, others, np.zeros(others.n_readings, dtype=bool))
     problem = replace(final.problem, measurements=others.masked(), model=final.model)
-    gap = problem.channel_gap(final.model.values)[0]
-    if "position" not in problem.channels.present:
-        return rms(gap[problem.lengths]), np.nan
-    held = problem.channels.held("position")
-    first = np.flatnonzero(held.all(axis=1))
-    full = np.full(held.shape, np.nan)
-    full[held] = gap[problem.channels.kinds[0]]
-    return rms(gap[problem.lengths]), float(np.linalg.norm(full[first], axis=1).mean())
+    gap, kept = problem.channel_gap(final.model.values)[0], ~wild[others.use]
+    counted = problem.counted
+    distance = np.nan
+    if "position" in problem.channels.present:
+        held = problem.channels.held("position")
+        full = np.full(held.shape, np.nan)
+        full[held] = gap[problem.channels.kinds[0]]
+        whole = full[held.all(axis=1) & kept]
+        distance = float(np.linalg.norm(whole, axis=1).mean()) if len(whole) else np.nan
+    return HeldOutFile(
+        rms(gap[counted[kept[problem.rows[counted]]]]), distance, wild, rms(gap[counted]), others
+    )

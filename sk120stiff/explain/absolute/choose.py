@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Effect, Elastic
 from sk120stiff.explain.absolute.linear import Linear
 
@@ -362,7 +362,7 @@ def _impostor(linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]) ->
     return left / (left + max(before - after, 0.0))
 
 
-def lengths(gap: Array, linear: Linear, sigma: Array, whole: Array) -> Array:
+def lengths(gap: Array, linear: Linear, sigma: Array, whole: Mask) -> Array:
     """(K,) distances [m] of rows whose three coordinates were read, from a whitened gap."""
     square = np.bincount(linear.row[whole], (gap * sigma)[whole] ** 2)
     count = np.bincount(linear.row[whole])

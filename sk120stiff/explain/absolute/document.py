@@ -45,6 +45,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
             "unit": "um" if lengths else "urad",
             "noise_floor": None if stated is None else stated * 1e6,
             "p": answer.chance,
+            "set_aside": int(final.wild.sum()),
             "steps": [
                 {
                     "model": step.label,

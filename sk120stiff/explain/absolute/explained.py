@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sk120stiff.effects import Effect
-from sk120stiff.explain.absolute.accounts import GapStep
+from sk120stiff.explain.absolute.accounts import GapStep, HeldOutFile
 from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.choose import Gain
 from sk120stiff.explain.absolute.linear import Linear
@@ -66,8 +66,7 @@ class Explained:
         probabilities: Name → probability of its being at work, of all that have one worth telling.
         following: Readings that would tell the first open pair of names apart, or None.
         readings: What was explained, masked rows included.
-        heldout: Rms per axis and mean distance at readings kept out of everything [m]; None where
-            there were none.
+        heldout: The gap at readings kept out of everything; None where there were none.
     """
 
     verdict: str
@@ -89,7 +88,7 @@ class Explained:
     probabilities: dict[str, float]
     following: NextPoses | None
     readings: Measurements
-    heldout: tuple[float, float] | None = None
+    heldout: HeldOutFile | None = None
 
     def __repr__(self) -> str:
         names = ", ".join(item.effect.id for item in self.findings)
@@ -119,6 +118,14 @@ class Explained:
             f"Springs in all joints under the arm's weight would take {more} off the gap at poses "
             "left out: they are not named.",
         )
+
+    def not_counted(self) -> tuple[str, ...]:
+        """That rows which were set aside are in none of the gap's numbers, in a sentence."""
+        count = int(self.final.wild.sum())
+        if not count:
+            return ()
+        rows = "the row that was" if count == 1 else f"the {count} rows that were"
+        return (f"Fitted and held-out numbers leave out {rows} set aside.",)
 
     def left_over(self) -> tuple[str, ...]:
         """What is left beyond the stated noise and where it lives, in sentences."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.measurements import Measurements
@@ -15,11 +15,14 @@ MOSTLY = 0.4  # share of a smooth error that one joint must carry to be told
 
 
 def where_it_lives(
-    linear: Linear, gap: Array, seen: Calibration, readings: Measurements
+    linear: Linear, gap: Array, seen: Calibration, readings: Measurements, counted: Index
 ) -> tuple[str, ...]:
-    """Rows with the largest gaps left (M,), and joints whose angle it goes with most."""
+    """Rows with the largest gaps left (M,), and joints whose angle it goes with most.
+
+    `counted` are the numbers that count.
+    """
     rows = np.flatnonzero(readings.use & ~seen.wild)
-    counted, unit = seen.problem.counted, seen.problem.unit
+    unit = seen.problem.unit
     square = (gap * seen.problem.of_channels.sigma)[counted] ** 2
     size = np.sqrt(np.bincount(linear.row[counted], square, minlength=len(rows)))
     worst = np.argsort(-size)[:LARGEST]

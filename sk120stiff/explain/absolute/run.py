@@ -12,6 +12,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute.accounts import (
     families_of,
     heldout_on,
+    numbers_told,
     rms,
     springs_of,
     steps_of,
@@ -120,12 +121,13 @@ def explain_positions(
         linear = replace(linear, independent=final.form.independent, smooth=final.form.share)
         likely = [alternatives(linear, found.order, e)[1] for e in found.order]
         if likely and max(likely) < EVEN:
-            guess, suspects = final, suspects_of(linear, found, seen)
+            inside = numbers_told(seen, final, readings)
+            guess, suspects = final, suspects_of(linear, found, seen, inside)
             found, laws = nothing_named(linear, found), {}
             final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
     final = beside_laws(final, linear, found.order, laws)
     final = replace(final, notes=(*final.notes, *pounds(final)))
-    noise = linear.noise(found.order)
+    noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
     named = tuple(_named(linear, found, e) for e in found.order)
     gap = linear.gap(found.order, noise, held_out=True)
     chance = chance_of_noise(final)
@@ -140,8 +142,8 @@ def explain_positions(
         base=base,
         final=final,
         linear=linear,
-        steps=steps_of(linear, found, base, seen),
-        families=families_of(linear, found, seen),
+        steps=steps_of(linear, found, base, seen, inside),
+        families=families_of(linear, found, seen, inside),
         springs=springs_of(linear, found),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
@@ -149,7 +151,7 @@ def explain_positions(
         chance=chance,
         suspects=suspects,
         guess=guess,
-        where=where_it_lives(linear, gap, replace(seen, form=final.form), readings),
+        where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
         smallest=detectable(linear, found),
         probabilities=probabilities(linear, found),
         following=None

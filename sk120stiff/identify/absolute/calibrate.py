@@ -35,6 +35,7 @@ START = {  # m or rad
 }  # fmt: skip
 SAME = 0.2  # change of the logarithm of a noise that is none
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
+MORE_ROUNDS = 3  # where other rows are still set aside
 FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is wild
 LARGEST = 0.03  # of the reach of the arm, which the fitted model of the right arm does not leave
 
@@ -219,9 +220,12 @@ def _refuse_another_robot(found: Fit, readings: Measurements) -> None:
 def _fitted(
     start: Model, readings: Measurements, wild: Mask
 ) -> tuple[Fit, tuple[Frozen, ...], Mask]:
-    """Fit, learn the noise, set wild rows aside, until nothing changes."""
+    """Fit, learn the noise, set wild rows aside, until nothing changes.
+
+    What is called wild in the end took no part in the fit.
+    """
     sigma, model = dict(START), start
-    for _ in range(ROUNDS):
+    for turn in range(1, ROUNDS + MORE_ROUNDS + 1):
         used = readings.select(np.flatnonzero(readings.use & ~wild))
         wide = _problem(model, used, sigma)
         _refuse_too_few(wide)
@@ -230,10 +234,10 @@ def _fitted(
         _refuse_no_rest(problem)
         found = fitted(problem)
         before, sigma = sigma, learned(found)
-        again = _wild(found, readings, wild)
-        if (again == wild).all() and all(
-            abs(np.log(sigma[kind] / before[kind])) < SAME for kind in wide.channels.present
-        ):
+        again = far_off(found, readings, wild)
+        same = all(abs(np.log(sigma[k] / before[k])) < SAME for k in wide.channels.present)
+        settled = bool((again == wild).all()) and (same or turn >= ROUNDS)
+        if settled or turn == ROUNDS + MORE_ROUNDS:
             break
         wild, model = again, with_values_of(start, found.model)
     return found, frozen, wild
@@ -330,8 +334,14 @@ def learned(found: Fit) -> dict[str, float]:
     return out
 
 
-def _wild(found: Fit, readings: Measurements, wild: Mask) -> Mask:
-    """Rows whose gap no normal noise of the size of the others gives; others come back."""
+def far_off(found: Fit, readings: Measurements, wild: Mask) -> Mask:
+    """(N,) rows whose gap no normal noise of the size of the others gives; others come back.
+
+    Args:
+        found: The fit.
+        readings: Those of the fit, or others.
+        wild: (N,) rows that were set aside before.
+    """
     whole = readings.masked()
     problem = replace(_poses(found), measurements=whole, model=found.model)
     gap = problem.channel_gap(found.model.values)[0] / problem.of_channels.sigma

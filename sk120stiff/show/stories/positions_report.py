@@ -74,7 +74,9 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
                     Note(next_step_of_positions(answer), "note", "What to do now"),
                 ],
             ),
-            Section("The gap, step by step", [_steps(answer), steps]),
+            Section(
+                "The gap, step by step", [_steps(answer), steps, *map(Note, answer.not_counted())]
+            ),
             *([_budget(answer, families)] if answer.families else []),
             Section("Values", [_values(answer)]),
             Section(
