@@ -21,7 +21,7 @@ from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yards
 from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.report import fit_report
-from sk120stiff.identify.run import fit, known_model, refuse_for_positions
+from sk120stiff.identify.run import fit, known_model, refuse_for_positions, refuse_plan
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solving import solve, solve_near
 from sk120stiff.identify.uncertainty.profile import profile_intervals
@@ -51,6 +51,7 @@ __all__ = [
     "profile_intervals",
     "refitted",
     "refuse_for_positions",
+    "refuse_plan",
     "refuse_unusable",
     "solve",
     "solve_near",

@@ -64,6 +64,7 @@ def fit(
         17.2 µm rms
     """
     if measurements.absolute is not None:
+        refuse_plan(measurements)
         refuse_for_positions(
             measurements, noise=noise is not None, method=method != "trf", robust=robust
         )
@@ -92,6 +93,20 @@ def known_model(fit: Fit, left: LeftOver | None = None) -> Model:
     if isinstance(fit, Calibration):
         return known_calibration(fit)
     return known_of_displacements(fit, left)
+
+
+def refuse_plan(measurements: Measurements) -> None:
+    """Refuse rows of where a marker is to be read.
+
+    Raises:
+        InputError: No row holds a reading.
+    """
+    if measurements.is_plan:
+        raise InputError(
+            "no row holds a reading: these are poses to go to",
+            where=str(measurements.path or "measurements"),
+            remedy="Measure there, and fill the blank cells in.",
+        )
 
 
 def refuse_for_positions(measurements: Measurements, **given: object) -> None:

@@ -28,6 +28,8 @@ OF_AXES = ("position", "rotation")  # a number for each of three axes; the other
 class Channels:
     """What N rows hold; NaN where a cell is blank, None where no row has such a reading.
 
+    All cells of a plan are blank.
+
     Attributes:
         position: (N, 3) where the marker stands, axes of the instrument [m].
         rotation: (N, 3, 3) axes of the tool in those of the instrument.
@@ -53,7 +55,7 @@ class Channels:
     sigma_of_rows: Array | None = None
 
     def __post_init__(self) -> None:
-        if not self.present:
+        if all(getattr(self, kind) is None for kind in KINDS):
             raise InputError("there is no reading")
         if self.along is not None and self.shift is not None:
             length = np.linalg.norm(self.along, axis=1)
@@ -85,7 +87,8 @@ class Channels:
     @property
     def rows(self) -> Index:
         """(M,) row of every channel, kind by kind."""
-        return np.concatenate([np.nonzero(self.held(kind))[0] for kind in self.present])
+        parts = [np.nonzero(self.held(kind))[0] for kind in self.present]
+        return np.concatenate([*parts, np.zeros(0, dtype=np.intp)])
 
     @property
     def kinds(self) -> tuple[slice, ...]:

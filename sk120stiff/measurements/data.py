@@ -155,7 +155,7 @@ class Measurements(Tabular):
         return (
             f"<Measurements: {self.n_readings} readings at {len(self.poses)} poses"
             + (f", {masked} masked" if masked else "")
-            + (", a plan" if self.displacement is None and self.absolute is None else "")
+            + (", a plan" if self.is_plan else "")
             + (f", {self.path.name}>" if self.path else ">")
         )
 
@@ -163,6 +163,13 @@ class Measurements(Tabular):
     def n_readings(self) -> int:
         """Number of rows N, masked ones included."""
         return len(self.pose)
+
+    @property
+    def is_plan(self) -> bool:
+        """No row holds a reading."""
+        if self.absolute is not None:
+            return not self.absolute.channels.present
+        return self.displacement is None
 
     @cached_property
     def read(self) -> Mask:

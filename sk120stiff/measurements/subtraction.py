@@ -91,10 +91,15 @@ def _as_written(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacem
 
 
 def undisplaced(rows: Rows, filled: Mask) -> Displacements:
-    """Rows of where a marker stands: nothing is subtracted; those without a reading are masked."""
+    """Rows of where a marker stands: nothing is subtracted; those without a reading are masked.
+
+    Where no row has one they are a plan.
+    """
     count = len(rows.pose)
     idle = int((rows.use & ~filled).sum())
     notes = (f"{idle} rows hold no reading; they are masked.",) if idle else ()
+    if not filled.any():
+        filled, notes = np.ones_like(filled), ("No row holds a reading: these are poses to go to.",)
     return Displacements(
         rows=np.arange(count),
         displacement=None,

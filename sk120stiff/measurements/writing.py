@@ -23,6 +23,7 @@ from sk120stiff.measurements.columns import (
 )
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.noise_statement import Instrument
+from sk120stiff.measurements.writing_positions import columns_of_positions, settings_of_positions
 from sk120stiff.measurements.zero import of_displacement
 
 _Column = tuple[str, Iterable[str]]
@@ -42,6 +43,8 @@ def write_measurements(
     bit for bit; with other units within one rounding of the conversion. Readings that came as
     positions are written as displacements, with what they subtracted in the columns
     ``zero_group``, ``zero_count``, ``zero_order`` and ``zero_time[s]`` where that is not plain.
+    Positions as such (`Measurements.absolute`) are written as they were read, to 15 digits; a plan
+    of them has blank cells where readings will stand.
 
     Args:
         measurements: What to write; masked rows too, with ``use`` 0.
@@ -70,10 +73,19 @@ def write_measurements(
     target = Path(path)
     check_name(target)
     measured = POSITIONS if as_positions else DISPLACEMENTS
-    text = files.csv_text(columns_of(measurements, angle, length, measured))
-    settings = yaml.safe_dump(
-        _settings(measurements, target.parent, length), sort_keys=False, allow_unicode=True
-    )
+    said = measurements.absolute if measurements.displacement is None else None
+    if said is None:
+        columns = columns_of(measurements, angle, length, measured)
+        keys = _settings(measurements, target.parent, length)
+    else:
+        columns = columns_of_positions(measurements, said, angle, length)
+        keys = {
+            **_named(measurements, target.parent),
+            **settings_of_positions(measurements, said, length),
+            **_beside(measurements),
+        }
+    text = files.csv_text(columns)
+    settings = yaml.safe_dump(keys, sort_keys=False, allow_unicode=True)
     with files.together():
         files.write_atomically(target.with_suffix(".yaml"), settings)
         return files.write_atomically(target, text)
@@ -174,13 +186,24 @@ def _digits(value: float) -> str:
     return "" if np.isnan(value) else repr(float(value))
 
 
-def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
+def _named(m: Measurements, folder: Path) -> dict[str, Any]:
+    """The robot and its frames."""
     names = {
         "robot": robot_seen_from(m.robot, folder),
         "base_frame": m.base_frame,
         "tool_frame": m.tool_frame,
     }
-    settings: dict[str, Any] = {key: name for key, name in names.items() if name is not None}
+    return {key: name for key, name in names.items() if name is not None}
+
+
+def _beside(m: Measurements) -> dict[str, Any]:
+    """Gravity and source."""
+    gravity = {} if m.gravity is None else {"gravity": m.gravity.tolist()}
+    return gravity | ({"source": m.source} if m.source else {})
+
+
+def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
+    settings = _named(m, folder)
     settings["point"] = _point(m.point, length)
     settings["force"] = {"frame": m.force_frame}
     if not np.array_equal(m.force_point, m.point):
@@ -197,11 +220,7 @@ def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
         noise["growth"] = m.noise.growth
     if noise:
         settings["noise"] = noise
-    if m.gravity is not None:
-        settings["gravity"] = m.gravity.tolist()
-    if m.source:
-        settings["source"] = m.source
-    return settings
+    return settings | _beside(m)
 
 
 def _instrument(stated: Instrument, length: str) -> dict[str, Any]:

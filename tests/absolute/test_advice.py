@@ -76,6 +76,12 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     assert sum(shares) <= 1.0 + 1e-6
     pair = open_pair([(item.effect, item.alternatives) for item in first.findings], first.linear)
     assert pair is not None
+    first.save(tmp_path / "out")
+    back = sk.read(tmp_path / "out" / "next_poses.csv")  # the YAML file beside it says whose
+    np.testing.assert_allclose(back.joints, following.readings.joints, atol=1e-12)
+    assert back.is_plan and back.robot == first.readings.robot and back.tool_frame == "tool"
+    assert back.absolute is not None and back.absolute.frame == "unknown"
+    assert back.absolute.fit_point and "joint_springs:j2" in back.source
     robot, cell = first.final.model.robot, Cell(low=np.array([0.5, -1.0, 0.5]))
     apart = next_poses(first.final, *pair, seed=0, cell=cell)
     assert apart is not None and not feasible(robot, cell, following.readings.joints).ok.all()

@@ -31,7 +31,7 @@ class NextPoses:
     """Readings that tell two names apart.
 
     Attributes:
-        readings: K readings to take; what they hold of positions means nothing.
+        readings: K readings to take, a plan: their cells are blank.
         between: The two names.
         before, after: √λ between them without and with these, in units of the noise.
     """
@@ -135,11 +135,35 @@ def next_poses(
     choice = both.best(min(count, len(a)))
     picked = drawn.select(np.array(choice.rows))
     return NextPoses(
-        replace(picked, pose=tuple(f"next_{k + 1}" for k in range(len(choice.rows)))),
+        _blank(picked, f"Poses and loads that tell {effect.id} from {rival.id}."),
         (effect.id, rival.id),
         choice.before,
         choice.after,
     )
+
+
+def _blank(picked: Measurements, source: str) -> Measurements:
+    """Readings to take: joint values as people type them, nothing of when or what was read."""
+    said, count = picked.absolute, picked.n_readings
+    if said is None:
+        raise ValueError("these are no positions")
+    return replace(
+        picked,
+        pose=tuple(f"next_{k + 1}" for k in range(count)),
+        joints=np.where(
+            [kind == "angle" for kind in picked.joint_kinds],
+            np.radians(np.round(np.degrees(picked.joints), 4)),
+            np.round(picked.joints, 7),
+        ),
+        absolute=replace(
+            said,
+            channels=replace(said.channels.without(np.ones(count, bool)), sigma_of_rows=None),
+            temperature=None,
+        ),
+        sigma=None, order=None, time=None, branch=None, repeat=None, use=np.ones(count, dtype=bool),
+        line=np.zeros(count, dtype=np.int64), path=None, source=source, extra={}, notes=(),
+        data_hash="",
+    )  # fmt: skip
 
 
 def _columns(

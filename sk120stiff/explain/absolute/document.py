@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.effects import load_cases_of
-from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.absolute.next_step import next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS, micrometres, parameter_entry
@@ -21,6 +20,7 @@ from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.absolute.remainder import remainder_entry
 from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
+from sk120stiff.measurements import write_measurements
 from sk120stiff.model import Parameter, write_model
 from sk120stiff.model.predicted import predict_positions, prediction_table
 
@@ -108,24 +108,9 @@ def save_positions(answer: Explained, out: Path, provenance: Mapping[str, str]) 
             guess = replace(known_model(answer.guess), provenance=dict(provenance))
             write_model(guess, out / BEST_GUESS)
         if answer.following is not None:
-            write_atomically(out / NEXT_POSES, _next_csv(answer.following))
+            write_measurements(answer.following.readings, out / NEXT_POSES)
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
     return document
-
-
-def _next_csv(following: NextPoses) -> str:
-    """Poses to go to, under the headers of readings; what stands in them is for the tracker."""
-    readings = following.readings
-    columns: dict[str, list[object]] = {"pose": list(readings.pose)}
-    for k, (name, kind) in enumerate(zip(readings.joint_names, readings.joint_kinds, strict=True)):
-        unit, factor = ("deg", 180.0 / np.pi) if kind == "angle" else ("mm", 1e3)
-        columns[f"{name}[{unit}]"] = np.round(readings.joints[:, k] * factor, 4).tolist()
-    said = readings.absolute
-    if said is not None and said.payload.any():
-        columns["payload[kg]"] = said.payload.tolist()
-    if said is not None and any(said.markers):
-        columns["marker"] = list(said.markers)
-    return csv_text(columns.items())
 
 
 def _source(final: Calibration) -> str:

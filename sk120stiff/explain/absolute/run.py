@@ -39,7 +39,7 @@ from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.absolute.remainder import where_it_lives
 from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options
-from sk120stiff.identify import refuse_for_positions
+from sk120stiff.identify import refuse_for_positions, refuse_plan
 from sk120stiff.identify.absolute.calibrate import (
     Calibration,
     calibrate,
@@ -84,7 +84,8 @@ def explain_positions(
         alpha=options.alpha != usual.alpha,
         prior=options.prior,
     )
-    if holdout is not None and holdout.absolute is None:
+    refuse_plan(readings)
+    if holdout is not None and (holdout.absolute is None or holdout.is_plan):
         raise InputError(
             "the held-out readings are no positions", remedy="Hold out readings of the same kind."
         )
