@@ -139,14 +139,13 @@ def standing(
     wrench: ArrayLike,
     *,
     frame: str | None = None,
-    point: ArrayLike | None = None,
 ) -> Standing:
     """Where a tool stands under load for commands (N, n), away from what was `meant` (N, n).
 
     With another model than the one that corrected the commands this shows what a wrong model costs.
     """
-    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(without_marker(model), frame or model.robot.tool_frame, at)
+    origin = frame or model.robot.tool_frame, np.zeros(3)
+    physical, at = seen_from(without_marker(model), *origin)
     robot = physical.robot
     a, goal = np.atleast_2d(robot.coordinates(commanded)), np.atleast_2d(robot.coordinates(meant))
     load = wrenches(wrench, len(a))
