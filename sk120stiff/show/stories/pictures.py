@@ -45,10 +45,7 @@ def gap_vectors(views: Sequence[ArmView]) -> Figure:
     """
     names = list(dict.fromkeys(name for view in views for name in view.gaps))
     colours = dict(zip(names, palette.steps(len(names)), strict=True))
-    points = np.concatenate([view.outline for view in views])
-    span = float(np.ptp(points, axis=0).max()) or 1.0
-    largest = max(float(np.linalg.norm(gap)) for view in views for gap in view.gaps.values())
-    scale = LONGEST_ARROW * span / largest if largest else 1.0
+    scale = exaggeration(views)
     with styled():
         from matplotlib.lines import Line2D
 
