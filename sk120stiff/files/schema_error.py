@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from difflib import get_close_matches
 from typing import get_args
 
 from pydantic import BaseModel, ValidationError
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, meant
 
 WANTED = {
     "tuple_type": "several values in square brackets are wanted",
@@ -48,8 +47,7 @@ def schema_error(
     example = (like or {}).get(path[-1]) or (like or {}).get(path[0])
     kind = slip["type"]
     if kind == "extra_forbidden":
-        close = get_close_matches(path[-1], known, n=1)
-        what = f"the key {key!r} is not known" + (f" (did you mean {close[0]!r}?)" if close else "")
+        what = f"the key {key!r} is not known{meant(path[-1], known)}"
         example = None
     elif kind == "missing" and inside:
         what = f"key {key!r}: only {len(slip['input'])} numbers stand there"

@@ -130,8 +130,7 @@ def _seen(
     model: Model, commanded: ArrayLike, wrench: ArrayLike, frame: str | None
 ) -> tuple[Model, Array, Array, Array]:
     """The arm up to a frame, commands (N, n), loads (N, 6), and the point in its tool frame."""
-    origin = frame or model.robot.tool_frame, np.zeros(3)
-    physical, at = seen_from(without_marker(model), *origin)
+    physical, at = seen_from(without_marker(model), frame)
     a = np.atleast_2d(physical.robot.coordinates(commanded))
     return physical, a, np.broadcast_to(np.asarray(wrench, dtype=float), (len(a), 6)), at
 
