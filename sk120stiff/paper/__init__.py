@@ -2,4 +2,4 @@
 
 from sk120stiff.paper.reproduction import Reproduction, Verdict, reproduce
 
-__all__ = ["Claim", "Reproduction", "Verdict", "reproduce"]
+__all__ = ["Reproduction", "Verdict", "reproduce"]
