@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, meant
 
 if TYPE_CHECKING:
     import pint
@@ -330,8 +330,8 @@ def _conversion(unit: str | None, kind: str, where: str | None) -> tuple[float, 
     if _quantity(unit) is None:
         lowered = {name.lower(): name for name in usual}
         close = get_close_matches(unit.strip().lower(), list(lowered), n=1)
-        meant = f" (did you mean {lowered[close[0]]}?)" if close else ""
-        what = f"the unit {unit!r} is not known{meant}"
+        hint = f" (did you mean {lowered[close[0]]}?)" if close else ""
+        what = f"the unit {unit!r} is not known{hint}"
     else:
         what = f"the unit {unit!r} is not a unit of {label}"
     raise InputError(what, where=where, remedy=f"Usual units here: {', '.join(usual)}.")
@@ -385,10 +385,8 @@ def _joint_names(text: str, names: Sequence[str], where: str | None) -> tuple[li
                 remedy=f"Write '{names[0]}=20 deg, ...' for every value, or names for none.",
             )
         if name not in names:
-            close = get_close_matches(name, names, n=1)
-            meant = f" (did you mean {close[0]!r}?)" if close else ""
             raise InputError(
-                f"no actuated joint is called {name!r}{meant}",
+                f"no actuated joint is called {name!r}{meant(name, names)}",
                 where=where,
                 remedy=f"The actuated joints are {', '.join(names)}.",
             )

@@ -169,7 +169,7 @@ def wrench_of(text: str | None) -> Array:
     return np.zeros(6) if text is None else parse_wrench(text, where="--wrench")
 
 
-def open_data(path: Path, base: str | None = None, tool: str | None = None) -> Opened:
+def open_data(path: Path) -> Opened:
     """Measurements, and the robot that their YAML file names.
 
     Raises:
@@ -187,7 +187,7 @@ def open_data(path: Path, base: str | None = None, tool: str | None = None) -> O
             remedy=f"Write 'robot: ...' (a name or a path) into {path.with_suffix('.yaml')}.",
         )
     try:
-        robot = open_robot(data.robot, base or data.base_frame, tool or data.tool_frame)
+        robot = open_robot(data.robot, data.base_frame, data.tool_frame)
     except InputError as error:
         if error.where not in (None, data.robot):
             raise

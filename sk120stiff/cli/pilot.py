@@ -12,14 +12,13 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from pydantic import ValidationError
 
 from sk120stiff.cli.cell import opened_cell
 from sk120stiff.cli.frame import Answer, emit, note
 from sk120stiff.cli.opening import open_model
 from sk120stiff.cli.tables import plan_table, progress_bar, table
 from sk120stiff.errors import InputError
-from sk120stiff.files import schema_error
+from sk120stiff.files import validated
 from sk120stiff.measurements import Measurements
 from sk120stiff.pilot.campaign import Campaign, State
 from sk120stiff.pilot.confirming import Confirmation, confirmed
@@ -134,11 +133,9 @@ class _Turn:
 
 
 def _settings(said: dict[str, object]) -> Settings:
+    settings = validated(Settings, said, lambda key: f"--{key}", LIKE)
     try:
-        return Settings.model_validate(said).checked()
-    except ValidationError as error:
-        key = error.errors()[0]["loc"][0]
-        raise schema_error(error, f"--{key}", Settings, LIKE) from error
+        return settings.checked()
     except InputError as error:
         raise InputError(error.what, where=f"--{error.where}", remedy=error.remedy) from error
 

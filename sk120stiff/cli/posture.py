@@ -124,7 +124,7 @@ def command(
     freedom = None if place is None else _placement(place, given.position)
     around = at_work(opened_cell(robot, cell, path))
 
-    seen = seen_from(believed, at or robot.tool_frame, np.zeros(3))
+    seen = seen_from(believed, at)
     at_tool = seen[0].robot.tool_frame == robot.tool_frame
 
     def admits(a: Array, load: Array) -> Verdict:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Elastic, LinearElastic, load_case
@@ -146,7 +147,6 @@ class _Builder:
     def _chain(self) -> Place:
         """Bodies of the chain with their masses; where its end frame is."""
         chain, robot = self.mechanism.chain, self.robot
-        moved = {joint.name: joint.child for joint in robot.document.joints}
         q, shift = self.mechanism.coupling.m, self.geometry.shift
         inertias = iter(robot.tree.inertias(robot.base_frame, robot.tool_frame))
         virtual = {joint.name: joint for joint in self.mechanism.virtual}
@@ -169,7 +169,7 @@ class _Builder:
                     inertia = turn.T @ inertia @ turn
                     self.places[link] = (at, pending @ np.linalg.inv(since))
             else:
-                link, since, inertia = moved[name], np.eye(4), next(inertias)
+                link, since, inertia = robot.document.by_name[name].child, np.eye(4), next(inertias)
                 pending = pending @ joint_motion(axis, turns, self.zeros[name])
                 at, pending = self._real(name, at, pending, axis, turns)
                 self.places[link] = (at, pending)
@@ -248,15 +248,11 @@ class _Builder:
         for joint in document.way("", robot.base_frame):
             root = root @ joint.standing(0.0)
         self.places[document.root] = (0, np.asarray(np.linalg.inv(root)))
-        children: dict[str, list[int]] = {}
-        for k, joint in enumerate(document.joints):
-            children.setdefault(joint.parent, []).append(k)
         todo = [document.root]
         while todo:
             link = todo.pop()
             at, T = self.places[link]
-            for k in children.get(link, ()):
-                joint = document.joints[k]
+            for joint in document.below.get(link, ()):
                 todo.append(joint.child)
                 if joint.child in self.places:
                     continue
@@ -305,15 +301,5 @@ def _modes(K: Array) -> tuple[list[float], list[list[float]]]:
 def _blocks(K: Array) -> list[list[int]]:
     """Groups of coordinates that K ties together."""
     root = np.sqrt(np.diagonal(K))
-    tied = np.abs(K) > _SMALL * np.outer(root, root)
-    left, groups = set(range(len(K))), []
-    while left:
-        group = {min(left)}
-        while True:
-            grown = {int(j) for i in group for j in np.flatnonzero(tied[i])} | group
-            if grown == group:
-                break
-            group = grown
-        groups.append(sorted(group))
-        left -= group
-    return groups
+    count, group = connected_components(np.abs(K) > _SMALL * np.outer(root, root))
+    return [np.flatnonzero(group == k).tolist() for k in range(count)]

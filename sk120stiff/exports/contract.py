@@ -85,11 +85,6 @@ class Format:
     moves: bool = False
 
 
-def numbers(values: Array) -> str:
-    """Numbers between blanks, each to its last digit."""
-    return " ".join(repr(float(value) + 0.0) for value in values)
-
-
 def put(parent: Element, tag: str, text: str | None = None, /, **attributes: object) -> Element:
     """A new element at the end of another; a number to its last digit."""
     said = {key: each if isinstance(each, str) else repr(each) for key, each in attributes.items()}

@@ -16,7 +16,7 @@ too: θ = d = 0, and a and b are both shifts.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -133,13 +133,9 @@ def lines_of(placements: Array, axes: Array) -> Lines:
         placements: (m + 1, 4, 4) before each joint and to the tool.
         axes: (m, 3) in the joints' frames.
     """
-    T = np.eye(4)
-    points, directions = [], []
-    for placement, axis in zip(placements[:-1], axes, strict=True):
-        T = T @ placement
-        points.append(T[:3, 3])
-        directions.append(T[:3, :3] @ axis)
-    return Lines(np.array(points), np.array(directions), T @ placements[-1])
+    *joints, tool = accumulate(placements, np.matmul)
+    directions = [T[:3, :3] @ axis for T, axis in zip(joints, axes, strict=True)]
+    return Lines(np.array([T[:3, 3] for T in joints]), np.array(directions), tool)
 
 
 def _normal(point: Array, w: Array, sign: float) -> Array:

@@ -14,6 +14,7 @@ the frames are laid on its own axes, so that nothing is rounded off.
 from __future__ import annotations
 
 import hashlib
+from itertools import accumulate
 
 import numpy as np
 
@@ -35,7 +36,7 @@ def make(model: Model, request: Request) -> Exported:  # noqa: ARG001
     robot, geometry = model.robot, geometry_of(model)
     frames = _frames(robot)  # (7, 4, 4) nominal, base axes; the first is base_link_inertia
     chain = robot.mechanism().chain
-    nominal = _standing(chain.placements)
+    nominal = list(accumulate(chain.placements[:-1], np.matmul))
     into = [np.linalg.inv(own) @ frame for own, frame in zip(nominal, frames[1:], strict=True)]
     before = [frames[0], *into]
     steps = [np.linalg.inv(before[k]) @ geometry.placements[k] @ into[k] for k in range(len(NAMES))]
@@ -100,15 +101,6 @@ def yielding(model: Model, how: str) -> list[Told]:
     return [Told(name, how) for name in soft]
 
 
-def _standing(placements: Array) -> list[Array]:
-    """Frames of the joints at zero, base axes."""
-    frames, T = [], np.eye(4)
-    for placement in placements[:-1]:
-        T = T @ placement
-        frames.append(T)
-    return frames
-
-
 def _frames(robot: Robot) -> list[Array]:
     """(7, 4, 4) the driver's frames on the axes of the nominal arm at zero, base axes.
 
@@ -119,7 +111,7 @@ def _frames(robot: Robot) -> list[Array]:
     plain = chain.names == robot.actuated and len(chain.names) == 6 and chain.revolute.all()
     if not plain:
         _refuse(robot, "it has no six turning joints in one row, each with a motor of its own")
-    own = _standing(chain.placements)
+    own = list(accumulate(chain.placements[:-1], np.matmul))
     z = [T[:3, :3] @ axis for T, axis in zip(own, chain.axes, strict=True)]
     origin = [T[:3, 3] for T in own]
     y = -z[1]

@@ -17,12 +17,13 @@ from lxml.etree import _Element as Element
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LinearElastic, load_case
 from sk120stiff.exports.building import moving_arm, told_of
-from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers, put, xml_text
+from sk120stiff.exports.contract import Exported, Format, Request, Told, put, xml_text
 from sk120stiff.exports.meshes import mesh_files
 from sk120stiff.exports.mjcf import TINY, TINY_INERTIA, details_of, header_of, notes_of, rows_of
 from sk120stiff.exports.moving import Body, Joint, MovingArm
 from sk120stiff.model import Model
 from sk120stiff.robot.rotations import rpy_from_rotation
+from sk120stiff.robot.urdf.clean import numbers
 from sk120stiff.robot.visuals import Visual, visuals
 
 UNLIMITED = 1e16  # SDF's word for no limit

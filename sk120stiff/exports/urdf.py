@@ -16,12 +16,13 @@ from lxml.etree import _Element as Element
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Elastic
-from sk120stiff.exports.contract import Exported, Format, Request, Told, numbers
+from sk120stiff.exports.contract import Exported, Format, Request, Told
 from sk120stiff.exports.geometry import MEASURED, Geometry, geometry_of
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot, find_robot
 from sk120stiff.robot.rotations import rotation_vector, rpy_from_rotation
 from sk120stiff.robot.urdf import Mimic, document_tree, resolve
+from sk120stiff.robot.urdf.clean import numbers
 
 EXTENSION = "sk120stiff"
 VERSION = "1"  # of the extension
@@ -40,9 +41,8 @@ def make(model: Model, request: Request) -> Exported:
             left_out.append(Told("tool frame", f"{last.child} moves itself: no origin before it"))
         else:
             corrections[last.name] = geometry.tool
-    stated = {joint.name: joint.origin for joint in robot.document.joints}
     for name, correction in corrections.items():
-        _set_origin(joints[name], stated[name] @ correction)
+        _set_origin(joints[name], robot.document.by_name[name].origin @ correction)
     coupled = _add_couplings(robot, joints)
     if geometry.measured.any():
         _add_measured(root, robot, geometry)
@@ -96,10 +96,9 @@ def _set_origin(joint: Element, placement: Array) -> None:
 
 def _add_couplings(robot: Robot, joints: dict[str, Element]) -> tuple[str, ...]:
     """Write rules of `robot.yaml` into the file; names of the joints that got one."""
-    stated = {joint.name: joint.mimic for joint in robot.document.joints}
     told = []
     for name, rule in robot.followers.items():
-        if stated.get(name) == Mimic(rule.driver, rule.multiplier, rule.offset):
+        if robot.document.by_name[name].mimic == Mimic(rule.driver, rule.multiplier, rule.offset):
             continue
         for old in joints[name].findall("mimic"):
             joints[name].remove(old)

@@ -8,11 +8,14 @@ from sk120stiff.files.cells import csv_text, guarded_cell, plain_cell
 from sk120stiff.files.html_table import html_table
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
 from sk120stiff.files.reading import read_bytes, read_text
-from sk120stiff.files.schema_error import schema_error
+from sk120stiff.files.schema import Finite, Strict, Vector, validated
 from sk120stiff.files.writing import together, write_atomically
 from sk120stiff.files.yaml_text import parse_yaml, read_yaml
 
 __all__ = [
+    "Finite",
+    "Strict",
+    "Vector",
     "csv_text",
     "guarded_cell",
     "html_table",
@@ -23,8 +26,8 @@ __all__ = [
     "read_text",
     "read_yaml",
     "running",
-    "schema_error",
     "together",
+    "validated",
     "will_fill",
     "will_write",
     "write_atomically",

@@ -32,14 +32,14 @@ class Ledger:
     Attributes:
         read: Key → the path as it was read.
         promised: Key → the output as it was declared, and the option that did it.
-        filled: Folders that are going to be the run's own, and their option.
+        filled: Folders that are going to be the run's own.
         written: Keys of what the run has written itself and may read again.
         told: Links that were spoken of.
     """
 
     read: dict[_Key, Path] = field(default_factory=dict)
     promised: dict[_Key, tuple[Path, str]] = field(default_factory=dict)
-    filled: list[tuple[Path, str]] = field(default_factory=list)
+    filled: list[Path] = field(default_factory=list)
     written: set[_Key] = field(default_factory=set)
     told: set[Path] = field(default_factory=set)
 
@@ -72,9 +72,9 @@ def note_read(path: Path_) -> None:
     for key in keys & ledger.promised.keys():
         out, option = ledger.promised[key]
         raise _clash(source, out, option)
-    for folder, option in ledger.filled:
+    for folder in ledger.filled:
         if _lies_in(source, folder):
-            raise _clash(source, folder, option)
+            raise _clash(source, folder, "--out")
     ledger.read.update(dict.fromkeys(keys, source))
 
 
@@ -114,8 +114,8 @@ def will_write(path: Path_ | None, option: str = "--out") -> None:
     promised.update(dict.fromkeys(keys, (out, option)))
 
 
-def will_fill(folder: Path_, option: str = "--out") -> None:
-    """Declare a folder that is going to hold this run's output and nothing else.
+def will_fill(folder: Path_) -> None:
+    """Declare the folder of --out, which is going to hold this run's output and nothing else.
 
     Raises:
         InputError: An input lies in it, or is it.
@@ -125,8 +125,8 @@ def will_fill(folder: Path_, option: str = "--out") -> None:
     ledger, out = _current[-1], Path(folder)
     for source in ledger.read.values():
         if _lies_in(source, out):
-            raise _clash(source, out, option)
-    ledger.filled.append((out, option))
+            raise _clash(source, out, "--out")
+    ledger.filled.append(out)
 
 
 def refuse_input(path: Path, option: str | None = None) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -14,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Integers, Mask
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, meant
 from sk120stiff.measurements.absolute import SAME_POSE, Absolute
 from sk120stiff.measurements.cells_read import refuse_unread
 from sk120stiff.measurements.frame import Tabular
@@ -231,11 +230,9 @@ class Measurements(Tabular):
             [5, 6, 7, 8, 9]
         """
         if pose not in self._rows_of_each:
-            close = get_close_matches(pose, self.poses, n=1)
-            meant = f" (did you mean {close[0]!r}?)" if close else ""
             shown = ", ".join(self.poses[:20]) + (", ..." if len(self.poses) > 20 else "")
             raise InputError(
-                f"no row has the pose {pose!r}{meant}",
+                f"no row has the pose {pose!r}{meant(pose, self.poses)}",
                 where=self._file(),
                 remedy=f"The poses are {shown}.",
             )
@@ -298,10 +295,8 @@ class Measurements(Tabular):
         listed = f"The actuated joints are {', '.join(names)}."
         for name in self.joint_names:
             if name not in names and name not in self.spare:
-                close = get_close_matches(name, names, n=1)
-                meant = f" (did you mean {close[0]!r}?)" if close else ""
                 raise InputError(
-                    f"no actuated joint is called {name!r}{meant}",
+                    f"no actuated joint is called {name!r}{meant(name, names)}",
                     where=self._file(f"column {name}"),
                     remedy=f"{listed} A column that is no joint is kept as a note "
                     "when its header has no unit in brackets.",

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
 from sk120stiff import files, units
 from sk120stiff.errors import InputError
-from sk120stiff.files import schema_error
+from sk120stiff.files import Finite, Strict, Vector, validated
 
 _Frame = Literal["base", "tool"]
-_Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
-class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class PointEntry(_Entry):
+class PointEntry(Strict):
     """A point in the tool frame; `fit`: its place is only roughly known."""
 
-    xyz: tuple[_Finite, _Finite, _Finite]
+    xyz: Vector
     unit: str
     fit: bool = False
 
@@ -35,7 +30,7 @@ class PointEntry(_Entry):
         return float(x), float(y), float(z)
 
 
-class ForceEntry(_Entry):
+class ForceEntry(Strict):
     """Axes of the reported wrench, and its point of attack if that is not the measured point.
 
     Whoever writes about the force says its frame; only without the section it is the base.
@@ -45,50 +40,50 @@ class ForceEntry(_Entry):
     point: PointEntry | None = None
 
 
-class DisplacementEntry(_Entry):
+class DisplacementEntry(Strict):
     """Axes of the readings, and how the zero reading is shared."""
 
     frame: _Frame = "base"
     zero: Literal["shared", "separate", "unknown"] = "unknown"
 
 
-class PositionEntry(_Entry):
+class PositionEntry(Strict):
     """Axes of positions: of the base, or the tracker's own, which the fit then finds."""
 
     frame: Literal["base", "unknown"] = "base"
 
 
-class RegisteredEntry(_Entry):
+class RegisteredEntry(Strict):
     """A record of how positions came into base axes: where the tracker had the base.
 
     A position of the tracker was rotation · (position here) + xyz; the rotation is a vector, its
     standard errors are about the tracker's axes.
     """
 
-    xyz: tuple[_Finite, _Finite, _Finite]
+    xyz: Vector
     unit: str
-    rotation: tuple[_Finite, _Finite, _Finite]
+    rotation: Vector
     rotation_unit: str
-    std_xyz: tuple[_Finite, _Finite, _Finite]
-    std_rotation: tuple[_Finite, _Finite, _Finite]
-    rms: _Finite
+    std_xyz: Vector
+    std_rotation: Vector
+    rms: Finite
     poses: int
 
 
-class PayloadEntry(_Entry):
+class PayloadEntry(Strict):
     """Where the mass of the column ``payload[kg]`` hangs; `fit`: mass and centre are in doubt."""
 
     point: PointEntry | None = None
     fit: bool = False
 
 
-class InstrumentEntry(_Entry):
+class InstrumentEntry(Strict):
     """Where the instrument stands in the base frame, and its uncertainty along and across its ray.
 
     Uncertainties are in `noise.unit`; those per metre of distance are added in squares.
     """
 
-    xyz: tuple[_Finite, _Finite, _Finite]
+    xyz: Vector
     unit: str
     along: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     across: Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -96,7 +91,7 @@ class InstrumentEntry(_Entry):
     across_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
 
 
-class NoiseEntry(_Entry):
+class NoiseEntry(Strict):
     """Standard uncertainty of one reading per axis, and the part that grows with displacement.
 
     `rotation` is that of an orientation about each axis; `instrument` is given in the place of
@@ -111,7 +106,7 @@ class NoiseEntry(_Entry):
     instrument: InstrumentEntry | None = None
 
 
-class Settings(_Entry):
+class Settings(Strict):
     """All keys of the file. An absent file and an absent key mean the defaults below.
 
     The robot and its frames default to what the command or the robot says, the point to the
@@ -130,7 +125,7 @@ class Settings(_Entry):
     points: dict[str, PointEntry] = Field(default_factory=dict)
     payload: PayloadEntry | None = None
     joints: dict[str, str | float] = Field(default_factory=dict)
-    gravity: tuple[_Finite, _Finite, _Finite] | Literal[0] | None = None
+    gravity: Vector | Literal[0] | None = None
     noise: NoiseEntry = NoiseEntry()
     source: str = ""
 
@@ -216,13 +211,9 @@ def settings_of(
         InputError: An unknown or missing key, or a value that does not fit.
     """
     known = dict(lines or {})
-    keys: dict[object, object] = dict(content.items())
-    try:
-        settings = Settings.model_validate(_without_empty(keys))
-    except ValidationError as error:
-        draft = SettingsFile(Settings(), path, known)
-        raise schema_error(error, draft.place, Settings, _EXAMPLES) from None
-    return SettingsFile(settings, path, known)
+    draft = SettingsFile(Settings(), path, known)
+    settings = validated(Settings, _without_empty(content), draft.place, _EXAMPLES)
+    return replace(draft, settings=settings)
 
 
 def _keys(node: yaml.Node | None, path: str, above: str = "") -> Iterator[tuple[str, int]]:
@@ -244,7 +235,7 @@ def _keys(node: yaml.Node | None, path: str, above: str = "") -> Iterator[tuple[
         yield from _keys(value, path, key)
 
 
-def _without_empty(content: dict[object, object]) -> dict[str, object]:
+def _without_empty(content: Mapping[Any, Any]) -> dict[str, object]:
     """A key without a value means its default."""
     return {
         str(key): _without_empty(value) if isinstance(value, dict) else value

@@ -1,6 +1,5 @@
 """Robot + effects with values: predict, differentiate, read, write."""
 
-from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.budget import Share, joint_shares, moved_by, shares, with_own_errors
 from sk120stiff.model.compliance import (
     ModelCompliance,
@@ -27,7 +26,6 @@ from sk120stiff.model.loaded import (
 from sk120stiff.model.model import Model, joint_spring_model
 from sk120stiff.model.parameter import ON_BOUND, TOGETHER, UNSEEN, Parameter, parameter_frame
 from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty
-from sk120stiff.model.standing import Solution
 from sk120stiff.model.typical import typical_model, typical_parameters
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
@@ -35,7 +33,6 @@ __all__ = [
     "ON_BOUND",
     "TOGETHER",
     "UNSEEN",
-    "Assembly",
     "LoadedStiffness",
     "LoadedUncertainty",
     "Model",
@@ -44,7 +41,6 @@ __all__ = [
     "Predicted",
     "Remainder",
     "Share",
-    "Solution",
     "Uncertainty",
     "base_model",
     "held_loads",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Elastic, Geometric, LinearElastic, LoadCases, load_case
@@ -129,7 +130,7 @@ class ModelCompliance:
 
 
 def model_compliance(
-    model: Model, frame: str | None = None, point: Array | None = None
+    model: Model, frame: str | None = None, point: ArrayLike | None = None
 ) -> ModelCompliance:
     """The arm that a model describes, seen from a point of a frame; instruments have no say.
 
@@ -140,11 +141,7 @@ def model_compliance(
     Raises:
         InputError: Nothing in the model yields under small loads, or there is no such frame.
     """
-    physical, at = seen_from(
-        model.physical(),
-        frame or model.robot.tool_frame,
-        np.zeros(3) if point is None else np.asarray(point, dtype=float),
-    )
+    physical, at = seen_from(model.physical(), frame, point)
     arm = ModelCompliance(physical, at)
     if not arm.compliance_at(physical.robot.rest[None]).any():
         raise InputError(
@@ -155,9 +152,16 @@ def model_compliance(
     return arm
 
 
-def seen_from(model: Model, frame: str, point: Array) -> tuple[Model, Array]:
-    """The model of the arm up to a frame, and a point of the frame in that arm's tool frame."""
+def seen_from(
+    model: Model, frame: str | None = None, point: ArrayLike | None = None
+) -> tuple[Model, Array]:
+    """The model of the arm up to a frame, and a point of the frame in that arm's tool frame.
+
+    By default the tool frame and the frame's origin.
+    """
     robot = model.robot
+    frame = frame or robot.tool_frame
+    point = np.zeros(3) if point is None else np.asarray(point, dtype=float)
     if robot.mechanism(frame).chain.names == robot.mechanism().chain.names:
         at = robot.placement(robot.rest, frame, point)
         return model, (np.linalg.inv(robot.placement(robot.rest)) @ at)[:3, 3]

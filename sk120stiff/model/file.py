@@ -21,15 +21,15 @@ import math
 import os
 import re
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from sk120stiff.effects import CATALOGUE, Catalogue, comment_lines
 from sk120stiff.errors import InputError, warn
-from sk120stiff.files import parse_yaml, read_text, schema_error, write_atomically
+from sk120stiff.files import Vector, parse_yaml, read_text, validated, write_atomically
 from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model
 from sk120stiff.model.parameter import Parameter
@@ -48,9 +48,6 @@ _EFFECT = (
     "{name: joint_springs, where: joint_1, parameters: {stiffness: {value: 1e6, unit: N*m/rad}}}"
 )
 LIKE = dict.fromkeys(("effects", "name", "where", "parameters"), f"effects: [{_EFFECT}]")
-
-
-_Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class _Strict(BaseModel):
@@ -75,7 +72,7 @@ class _File(_Strict):
     robot: str
     base_frame: str | None = None
     tool_frame: str | None = None
-    gravity: tuple[_Finite, _Finite, _Finite] | None = None
+    gravity: Vector | None = None
     effects: list[_Effect] = Field(default_factory=list)
     provenance: dict[str, str] = Field(default_factory=dict)
     uncertainty: UncertaintySection | None = None
@@ -300,10 +297,7 @@ def _same_file(said: str, source: str, folder: Path | None) -> bool:
 
 
 def _parsed(text: str, where: str) -> _File:
-    try:
-        return _File.model_validate(parse_yaml(text, where).content or {})
-    except ValidationError as error:
-        raise schema_error(error, where, _File, LIKE) from error
+    return validated(_File, parse_yaml(text, where).content, where, LIKE)
 
 
 def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:

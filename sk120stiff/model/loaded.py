@@ -257,7 +257,7 @@ def loaded_uncertainty(
     known = model.uncertainty
     if known is None:
         return None
-    model, point = seen_from(model.physical(), frame or model.robot.tool_frame, np.zeros(3))
+    model, point = seen_from(model.physical(), frame)
     load = np.asarray(wrench, dtype=float)
     C = _compliance(model, model.values, a, load, point)
     derivatives = by_parameters(model, lambda values: _compliance(model, values, a, load, point))

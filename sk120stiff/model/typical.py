@@ -42,7 +42,6 @@ def typical_model(robot: Robot) -> Model:
 
 def typical_stiffness(robot: Robot) -> Array:
     """(n,) stiffness [N·m/rad or N/m] to two digits, since it knows no more."""
-    efforts = {joint.name: joint.effort for joint in robot.document.joints}
     levers = _levers(robot)
     found = np.empty(robot.n)
     for k, name in enumerate(robot.actuated):
@@ -50,7 +49,7 @@ def typical_stiffness(robot: Robot) -> Array:
         usual = spec.public(spec.typical)
         if not robot.prismatic[k]:
             usual *= max(levers[k], LEAST_LEVER)
-        wound = (efforts.get(name) or 0.0) / (SHIFT if robot.prismatic[k] else WIND_UP)
+        wound = robot.efforts[k] / (SHIFT if robot.prismatic[k] else WIND_UP)
         stated = usual / BELIEVABLE <= wound <= usual * BELIEVABLE
         found[k] = float(f"{wound if stated else usual:.1e}")
     return found

@@ -1,5 +1,5 @@
 """The 2005 paper recomputed: its tables, figures and claims beside ours."""
 
-from sk120stiff.paper.reproduction import Claim, Reproduction, Verdict, reproduce
+from sk120stiff.paper.reproduction import Reproduction, Verdict, reproduce
 
-__all__ = ["Claim", "Reproduction", "Verdict", "reproduce"]
+__all__ = ["Reproduction", "Verdict", "reproduce"]

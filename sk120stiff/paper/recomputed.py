@@ -19,7 +19,7 @@ from itertools import combinations
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, rms
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements, read_measurements
 from sk120stiff.paper.printed import (
@@ -29,7 +29,7 @@ from sk120stiff.paper.printed import (
     printed_counts,
     printed_loads,
 )
-from sk120stiff.paper.setting import Setting, motion_grid, rms, straight, wrench_of
+from sk120stiff.paper.setting import Setting, motion_grid, straight, wrench_of
 from sk120stiff.stiffness import CLASSES, PaperWork, loading_balance, paper_work
 
 #: The formulas of `UnderLoad`, from crude to exact.

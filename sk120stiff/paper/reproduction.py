@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.errors import listed
 from sk120stiff.paper import printed
 from sk120stiff.paper.forces import (
@@ -31,7 +31,7 @@ from sk120stiff.paper.forces import (
 from sk120stiff.paper.formulation import Appendix, Formulation, appendix, formulation
 from sk120stiff.paper.identified import FITS, Identified, identify_springs
 from sk120stiff.paper.recomputed import Table2, Table3, Table4, table2, table3, table4
-from sk120stiff.paper.setting import Setting, rms, setting
+from sk120stiff.paper.setting import Setting, setting
 
 T = TypeVar("T")
 

@@ -119,8 +119,3 @@ def wrench_of(force: ArrayLike) -> Array:
     """(..., 6) wrench of a force (..., 3) [N]."""
     given = np.asarray(force, dtype=float)
     return np.concatenate([given, np.zeros_like(given)], axis=-1)
-
-
-def rms(values: ArrayLike) -> float:
-    """Root mean square over all entries."""
-    return float(np.sqrt(np.mean(np.square(values))))

@@ -11,7 +11,7 @@ negative count for as much as their posterior lies above zero.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
@@ -57,18 +57,16 @@ class Belief:
     Attributes:
         linear: The candidates.
         sums: The readings.
-        given: Probabilities that the user gave to effects beforehand.
     """
 
     linear: LinearMap
     sums: Sums
-    given: dict[str, float] = field(default_factory=dict)
 
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """All that were weighed, the most probable first."""
         count = len(self.linear.effects)
-        odds = np.array([-0.5 * price(effect, self.given) for effect in self.linear.effects])
+        odds = np.array([-0.5 * price(effect, {}) for effect in self.linear.effects])
         share = odds - logsumexp(odds)
         singles = [
             self._weighed((e,), np.log((1 - NOTHING) * (1 - TWO)) + share[e]) for e in range(count)

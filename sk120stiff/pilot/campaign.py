@@ -5,7 +5,7 @@ Everything follows from the readings alone: a campaign can be left and taken up 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -85,7 +85,6 @@ class Campaign:
         target: Relative standard error of every spring at which enough is known; None: go on until
             a name is sure.
         most: Readings after which to stop in any case.
-        given: Probabilities of effects beforehand.
     """
 
     model: Model
@@ -95,7 +94,6 @@ class Campaign:
     X: Array
     target: float | None = None
     most: int = 60
-    given: dict[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -106,11 +104,10 @@ class Campaign:
         *,
         target: float | None = None,
         most: int = 60,
-        given: dict[str, float] | None = None,
     ) -> Campaign:
         """A campaign with a base model and the readings that can be taken."""
         linear, X = LinearMap.of(model, pool.load_cases, sigma * DISPLACEMENT)
-        return cls(model, pool, sigma, linear, X, target, most, given or {})
+        return cls(model, pool, sigma, linear, X, target, most)
 
     def belief(self, readings: Measurements | None) -> Belief:
         """What readings say, the linearisation put where the most probable hypothesis is.
@@ -119,7 +116,7 @@ class Campaign:
         """
         linear = self.linear
         size = len(linear.scale)
-        found = Belief(linear, Sums.none(size), self.given)
+        found = Belief(linear, Sums.none(size))
         if readings is None:
             return found
         used = without_copies(readings)[0].masked()
@@ -132,7 +129,7 @@ class Campaign:
             predicted, derivative = self.rows(problem.load_cases, v)
             X = problem.whitener.apply(derivative)
             y = problem.whitener.apply(problem.measured - predicted) + X @ v
-            found = Belief(linear, Sums.none(size).plus(X, y), self.given)
+            found = Belief(linear, Sums.none(size).plus(X, y))
             leader = found.leader
             v = np.zeros(size)
             v[leader.columns] = leader.mean
@@ -154,7 +151,7 @@ class Campaign:
         """What is known, what comes next, or why to stop."""
         belief, stop = self.judged(readings)
         taken = self._taken(readings)
-        row = best(belief, self.X, ~taken)[0]
+        row = best(belief, self.X, ~taken)
         decides, springs = self._decides(belief, row), self._springs(belief)
         count = _count(readings)
         return State(count, belief, springs, None if taken.all() else row, decides, stop)

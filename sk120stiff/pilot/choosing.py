@@ -102,7 +102,6 @@ def separation(
     return float(np.sqrt(each[:count].sum()))
 
 
-def best(belief: Belief, X: Array, open_: Mask) -> tuple[int, Expected]:
+def best(belief: Belief, X: Array, open_: Mask) -> int:
     """The reading of the pool that is worth most among those that are open."""
-    found = expected(belief, X)
-    return int(np.argmax(np.where(open_, found.worth, -np.inf))), found
+    return int(np.argmax(np.where(open_, expected(belief, X).worth, -np.inf)))

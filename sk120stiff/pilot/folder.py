@@ -15,17 +15,18 @@ from typing import Annotated, Literal
 
 import numpy as np
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field
 
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.files import (
+    Strict,
     csv_text,
     read_text,
     read_yaml,
     running,
-    schema_error,
+    validated,
     write_atomically,
 )
 from sk120stiff.measurements import Measurements, read_measurements, write_measurements
@@ -44,10 +45,10 @@ SAME = 1e-6  # m by which two statements of a point may differ
 SETTINGS, READINGS, NEXT = "pilot.yaml", "readings.csv", "next.csv"
 
 
-class Settings(BaseModel):
+class Settings(Strict):
     """The keys of `pilot.yaml`."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, coerce_numbers_to_str=True)
+    model_config = ConfigDict(coerce_numbers_to_str=True)
 
     model: str
     cell: str | None = None
@@ -134,10 +135,9 @@ class Folder:
                 "no campaign was begun here", where=str(self.path),
                 remedy=f"Begin one: sk120stiff pilot {self.path} --model model.yaml",
             )  # fmt: skip
+        said = validated(Settings, read_yaml(file).content, str(file), LIKE)
         try:
-            return Settings.model_validate(read_yaml(file).content or {}).checked()
-        except ValidationError as error:
-            raise schema_error(error, str(file), Settings, LIKE) from error
+            return said.checked()
         except InputError as error:
             place = f"{file}, key {error.where!r}"
             raise InputError(error.what, where=place, remedy=error.remedy) from error

@@ -1,23 +1,16 @@
 """Which poses and loads to measure next, and what such a measurement would read."""
 
-from sk120stiff.plan.cell import Cell, Tracker, read_cell
-from sk120stiff.plan.design import Design, d_optimal, random_choice, well_spread
-from sk120stiff.plan.discriminate import (
-    Choice,
-    Rivalry,
-    discriminating_readings,
-    readings_for_all,
-    rivalry,
-    signature_columns,
-)
+from sk120stiff.plan.cell import Cell, read_cell
+from sk120stiff.plan.design import d_optimal, random_choice, well_spread
+from sk120stiff.plan.discriminate import Rivalry, readings_for_all, rivalry, signature_columns
 from sk120stiff.plan.feasible import Verdict, feasible
 from sk120stiff.plan.places import Places
-from sk120stiff.plan.planned import Plan, numbered, plan, promised, to_be_taken
+from sk120stiff.plan.planned import Plan, plan, promised, to_be_taken
 from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.rig import Rig
-from sk120stiff.plan.route import Jump, NoWay, Route, jumps, route, straight_on
+from sk120stiff.plan.route import NoWay, Route, jumps, route, straight_on
 from sk120stiff.plan.schedule import Schedule, scheduled
-from sk120stiff.plan.simulation import Simulated, as_positions, simulate
+from sk120stiff.plan.simulation import as_positions, simulate
 from sk120stiff.plan.surroundings import (
     as_measured,
     assumed_around,
@@ -28,9 +21,6 @@ from sk120stiff.plan.surroundings import (
 
 __all__ = [
     "Cell",
-    "Choice",
-    "Design",
-    "Jump",
     "NoWay",
     "Places",
     "Plan",
@@ -39,8 +29,6 @@ __all__ = [
     "Rivalry",
     "Route",
     "Schedule",
-    "Simulated",
-    "Tracker",
     "Verdict",
     "as_measured",
     "as_positions",
@@ -48,12 +36,10 @@ __all__ = [
     "assumptions",
     "cell_from_data",
     "d_optimal",
-    "discriminating_readings",
     "feasible",
     "feasible_pool",
     "jumps",
     "lowest_points",
-    "numbered",
     "plan",
     "promised",
     "random_choice",

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field
 
 from sk120stiff import units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.files import read_yaml, schema_error
+from sk120stiff.files import Strict, Vector, read_yaml, validated
 from sk120stiff.plan.rig import Rig, unit
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import frame_about, homogeneous, rotation_from_rpy
@@ -49,9 +49,6 @@ LIKE = {  # what can be written, by key
     "anchors": "anchors: [[1.5, 0, 2.0]]",
     "tracker": "tracker: {xyz: [3, 0, 1], axis: [1, 0, 0], cone: 40 deg, range: '0.5, 20 m'}",
 }
-
-_Finite = Annotated[float, Field(allow_inf_nan=False)]
-_Vector = tuple[_Finite, _Finite, _Finite]
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,44 +114,44 @@ class Cell:
             )
 
 
-class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, coerce_numbers_to_str=True)
+class _Entry(Strict):
+    model_config = ConfigDict(coerce_numbers_to_str=True)
 
 
 class _Placed(_Entry):
     name: str = ""
-    xyz: _Vector = (0.0, 0.0, 0.0)
-    rpy: _Vector = (0.0, 0.0, 0.0)
-    box: _Vector | None = None
+    xyz: Vector = (0.0, 0.0, 0.0)
+    rpy: Vector = (0.0, 0.0, 0.0)
+    box: Vector | None = None
     sphere: float | None = None
     cylinder: tuple[float, float] | None = None
     capsule: tuple[float, float] | None = None
-    plane: _Vector | None = None
+    plane: Vector | None = None
     mesh: str | None = None
     scale: float = 1.0
     unit: Literal["m", "mm"] = "m"
 
 
 class _Region(_Entry):
-    low: _Vector | None = None
-    high: _Vector | None = None
+    low: Vector | None = None
+    high: Vector | None = None
     unit: Literal["m", "mm"] = "m"
 
 
 class _Rig(_Entry):
     kind: Literal["any", "weight", "cable", "jack"] = "any"
-    directions: tuple[_Vector, ...] = ()
-    axis: _Vector | None = None
+    directions: tuple[Vector, ...] = ()
+    axis: Vector | None = None
     angle: str = "0 deg"
-    anchors: tuple[_Vector, ...] = ()
+    anchors: tuple[Vector, ...] = ()
     unit: Literal["m", "mm"] = "m"
     steps: str | None = None
 
 
 class _Tracker(_Entry):
-    xyz: _Vector
+    xyz: Vector
     unit: Literal["m", "mm"] = "m"
-    axis: _Vector | None = None
+    axis: Vector | None = None
     cone: str = "180 deg"
     range: str | None = None
 
@@ -182,10 +179,7 @@ def read_cell(path: Path, robot: Robot) -> Cell:
         InputError: Not YAML, an unknown key, a value without unit or of the wrong kind, a solid
             without a shape, a mesh that cannot be read; file and key are named.
     """
-    try:
-        said = CellFile.model_validate(read_yaml(path).content or {})
-    except ValidationError as error:
-        raise schema_error(error, str(path), CellFile, LIKE) from error
+    said = validated(CellFile, read_yaml(path).content, str(path), LIKE)
 
     def number(key: str, text: str, kind: str) -> float:
         (value,) = _numbers(path, key, text, kind, LIKE[key].partition(": ")[2].partition("   ")[0])

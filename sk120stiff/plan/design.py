@@ -22,6 +22,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.plan.pool import Pool, usable_range
+from sk120stiff.plan.rig import unit
 
 #: information (M, k, k) → what it is worth (M,); more is better
 Worth = Callable[[Array], Array]
@@ -222,7 +223,7 @@ def well_spread(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:
     load_cases = pool.load_cases
     lower, upper = usable_range(load_cases.robot)
     place = (load_cases.a - lower) / np.where(upper > lower, upper - lower, 1.0)
-    along = _directions(load_cases.wrench)
+    along = unit(load_cases.wrench[:, :3])
     distance = np.full(pool.count, np.inf)
     pick = int(rng.integers(pool.count))
     rows: list[int] = []
@@ -233,9 +234,3 @@ def well_spread(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:
         distance = np.minimum(distance, np.linalg.norm(place - place[pick], axis=1))
         pick = int(np.argmax(distance))
     return rows
-
-
-def _directions(wrench: Array) -> Array:
-    force = wrench[:, :3]
-    length = np.linalg.norm(force, axis=1, keepdims=True)
-    return np.asarray(force / np.where(length > 0.0, length, 1.0))

@@ -111,37 +111,6 @@ def readings_for_all(columns: Sequence[Array], *, count: int) -> tuple[tuple[int
     return tuple(rows), np.sqrt(apart((start + gains[rows].sum(axis=0))[None])[0])
 
 
-def discriminating_readings(
-    model: Model,
-    effect: Effect,
-    rival: Effect,
-    pool: Pool,
-    *,
-    count: int,
-    sigma: float,
-    known: Array | None = None,
-) -> Choice:
-    """Choose readings that tell `effect` from `rival`.
-
-    Args:
-        model: Fitted model that holds `effect` with its size.
-        effect, rival: What is to be told apart.
-        pool: Candidate readings.
-        count: How many to choose.
-        sigma: Standard uncertainty of one displacement per axis [m].
-        known: (k, k) information that is already there; none by default.
-    """
-    columns = signature_columns(model, effect, rival, pool) / sigma  # (M, 3, k)
-    gains = np.einsum("mik,mil->mkl", columns, columns)
-    start = prior(columns.shape[-1])
-    if known is not None:
-        start = start + known
-    rows = best_choice(_evidence, gains, start, min(count, len(gains)))
-    total = start + gains[rows].sum(axis=0)
-    before, after = _evidence(np.array([start, total]))
-    return Choice(tuple(rows), float(np.sqrt(before)), float(np.sqrt(after)))
-
-
 def rivalry(
     model: Model,
     effect: Effect,

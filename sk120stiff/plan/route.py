@@ -157,9 +157,9 @@ def straight_on(robot: Robot, stops: Array) -> tuple[Array, Index]:
 
 def joint_speeds(robot: Robot) -> Array:
     """(n,) speeds at which a campaign is driven [rad/s or m/s]."""
-    stated = {joint.name: joint.velocity for joint in robot.document.joints}
+    joints = robot.document.by_name
     usual = np.where(robot.prismatic, USUAL_SLIDE, USUAL_SPEED)
-    own = [SPEED_SHARE * (stated.get(name) or 0.0) for name in robot.actuated]
+    own = [SPEED_SHARE * (joints[name].velocity or 0.0) for name in robot.actuated]
     return np.where(np.array(own) > 0.0, own, usual)
 
 

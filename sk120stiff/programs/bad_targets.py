@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -47,7 +47,6 @@ def least_turn(
     robot: Robot,
     turned: Callable[[float], LoadedPath],
     find: Callable[[LoadedPath], Array],
-    degrees: Sequence[int] = TURNS,
 ) -> tuple[int, LoadedPath, Array]:
     """The turn of the tool about its own axis that a path needs [deg], the path and its joints.
 
@@ -63,7 +62,7 @@ def least_turn(
     """
     found: tuple[int, LoadedPath, Array] | None = None
     refused: Refusal | None = None
-    for each in degrees:
+    for each in TURNS:
         path = turned(np.radians(each))
         try:
             a = find(path)

@@ -79,12 +79,11 @@ def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
 
 def _on_the_way(robot: Robot) -> tuple[ArmJoint, ...]:
     chain = robot.mechanism().chain
-    moved = {joint.name: joint.child for joint in robot.document.joints}
     position = {name: k for k, name in enumerate(robot.actuated)}
     return tuple(
         ArmJoint(
             name=name,
-            link=moved[name],
+            link=robot.document.by_name[name].child,
             index=k,
             actuated=position.get(name),
             revolute=bool(chain.revolute[k]),

@@ -5,16 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
-from sk120stiff.files import read_yaml, schema_error
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+from sk120stiff.files import Strict, read_yaml, validated
 
 
-class CouplingRule(_Strict):
+class CouplingRule(Strict):
     """value = multiplier · driver + offset, in rad or m."""
 
     driver: str
@@ -22,7 +18,7 @@ class CouplingRule(_Strict):
     offset: float = 0.0
 
 
-class Foundation(_Strict):
+class Foundation(Strict):
     """The point about which the base rocks, in a frame that does not move against the base."""
 
     frame: str | None = None
@@ -30,7 +26,7 @@ class Foundation(_Strict):
     unit: Literal["m", "mm"] = "m"
 
 
-class LinkageRule(_Strict):
+class LinkageRule(Strict):
     """A driven rod of a closed linkage.
 
     `corners` are three frames whose origins are the crank's pivot, the joint of crank and rod, and
@@ -43,7 +39,7 @@ class LinkageRule(_Strict):
     corners: tuple[str, str, str]
 
 
-class ClosureRule(_Strict):
+class ClosureRule(Strict):
     """A closed loop, which the tree of a URDF holds open: two frames that must coincide.
 
     `type` is ``point`` where their origins meet (a ball joint, or any pin of a planar linkage), or
@@ -61,7 +57,7 @@ class ClosureRule(_Strict):
     start: dict[str, float] = Field(default_factory=dict)
 
 
-class ControllerRule(_Strict):
+class ControllerRule(Strict):
     """How the controller counts: its axes as linear expressions of the joints, and motor pulses.
 
     ``axes: {A1: -joint_1, A2: joint_2 - 90 deg}``; pulses per degree, per mm of a slide, in their
@@ -72,7 +68,7 @@ class ControllerRule(_Strict):
     pulses_per_degree: tuple[float, ...] = ()
 
 
-class RobotDescription(_Strict):
+class RobotDescription(Strict):
     """The keys of `robot.yaml`; every one has a default."""
 
     name: str | None = None
@@ -102,8 +98,4 @@ def read_description(path: Path) -> RobotDescription:
         InputError: Not YAML, an unknown key, or a value of the wrong kind; file, line or key are
             named.
     """
-    content = read_yaml(path).content
-    try:
-        return RobotDescription.model_validate(content or {})
-    except ValidationError as error:
-        raise schema_error(error, str(path), RobotDescription) from error
+    return validated(RobotDescription, read_yaml(path).content, str(path))

@@ -317,11 +317,10 @@ def _check_actuated(
 
 def _limits(document: UrdfDocument, chosen: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """Limits the URDF states for the actuated joints; infinite where it states none."""
-    specs = {joint.name: joint for joint in document.joints}
     lower = np.full(len(chosen), -np.inf)
     upper = np.full(len(chosen), np.inf)
     for k, name in enumerate(chosen):
-        joint = specs[name]
+        joint = document.by_name[name]
         if joint.type == "continuous" or joint.lower is None or joint.upper is None:
             continue
         if joint.lower < joint.upper:

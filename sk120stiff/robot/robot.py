@@ -222,8 +222,8 @@ class Robot:
     @cached_property
     def efforts(self) -> Array:
         """(n,) largest efforts of the actuated joints [N·m or N]; infinite where none is stated."""
-        stated = {joint.name: joint.effort for joint in self.document.joints}
-        return np.array([stated.get(name) or np.inf for name in self.actuated])
+        joints = self.document.by_name
+        return np.array([joints[name].effort or np.inf for name in self.actuated])
 
     @cached_property
     def gravity_in_base(self) -> Array:

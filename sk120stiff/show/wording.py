@@ -109,6 +109,6 @@ def load_in_words(wrench: Sequence[float]) -> str:
     return text
 
 
-def counted(count: int, one: str, many: str = "") -> str:
+def counted(count: int, one: str) -> str:
     """``1 pose``, ``3 poses``."""
-    return f"{count} {one if count == 1 else many or one + 's'}"
+    return f"{count} {one}{'s' * (count != 1)}"

@@ -22,11 +22,9 @@ from sk120stiff.stiffness.principal import (
     Definiteness,
     Principal,
     definiteness,
-    definiteness_of,
-    principal_compliance,
     principal_stiffness,
 )
-from sk120stiff.stiffness.quantities import BY_LOAD, BY_POSE, COMPILED, QUANTITIES
+from sk120stiff.stiffness.quantities import BY_LOAD, BY_POSE, COMPILED
 from sk120stiff.stiffness.under_load import POSITIONS, ROTATIONS, UnderLoad, under_load
 
 __all__ = [
@@ -35,7 +33,6 @@ __all__ = [
     "CLASSES",
     "COMPILED",
     "POSITIONS",
-    "QUANTITIES",
     "ROTATIONS",
     "Compliant",
     "ConstantCompliance",
@@ -50,13 +47,11 @@ __all__ = [
     "cartesian_stiffness",
     "complementary_stiffness",
     "definiteness",
-    "definiteness_of",
     "equilibrium",
     "gravity_stiffness",
     "linear_springs",
     "loading_balance",
     "paper_work",
-    "principal_compliance",
     "principal_stiffness",
     "quadratic",
     "spring_matrix",

@@ -92,8 +92,3 @@ def definiteness(matrix: Array, *, tolerance: float = 1e-12) -> Index:
         [4, 3, 2, 1],
         default=0,
     ).astype(np.intp)
-
-
-def definiteness_of(matrix: Array) -> Definiteness:
-    """Class of the symmetric part of one matrix (n, n)."""
-    return CLASSES[int(definiteness(matrix))]

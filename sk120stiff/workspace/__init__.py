@@ -4,7 +4,6 @@ from sk120stiff.workspace.arm import ElasticArm, elastic_arm
 from sk120stiff.workspace.branch import (
     Branch,
     branch_of,
-    elbow_sides,
     joint_heights,
     lowest_floor,
     stays_above,
@@ -27,7 +26,6 @@ from sk120stiff.workspace.map_postures import MapPostures, map_postures
 from sk120stiff.workspace.mapping import MapReport, write_map
 from sk120stiff.workspace.path import (
     LoadedPath,
-    different,
     joints_along,
     read_path,
     write_joints,
@@ -37,7 +35,6 @@ from sk120stiff.workspace.posture import BestPosture, best_posture
 from sk120stiff.workspace.returned import Returned, read_returned
 from sk120stiff.workspace.standing_uncertainty import (
     StandingUncertainty,
-    standing_budget,
     standing_budgets,
     standing_uncertainty,
 )
@@ -69,9 +66,7 @@ __all__ = [
     "branch_of",
     "compensate",
     "damaged_map",
-    "different",
     "elastic_arm",
-    "elbow_sides",
     "joint_heights",
     "joints_along",
     "lowest_floor",
@@ -84,7 +79,6 @@ __all__ = [
     "read_returned",
     "solve_inverse",
     "standing",
-    "standing_budget",
     "standing_budgets",
     "standing_uncertainty",
     "starting_poses",

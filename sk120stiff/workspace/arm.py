@@ -149,7 +149,7 @@ def elastic_arm(
     Warns:
         ToolkitWarning: Something does not yield in proportion to the load.
     """
-    model_arm = model_compliance(model, frame, None if point is None else np.asarray(point, float))
+    model_arm = model_compliance(model, frame, point)
     model_arm.warn_of_small_loads()
     physical = model_arm.model
     robot = physical.robot

@@ -112,8 +112,7 @@ def compensate(
         >>> bool(mended.after.distance[0] < 1e-6 < mended.before.distance[0])  # m
         True
     """
-    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(without_marker(model), frame or model.robot.tool_frame, at)
+    physical, at = seen_from(without_marker(model), frame, point)
     given = np.atleast_2d(physical.robot.coordinates(a))
     load = wrenches(wrench, len(given))
     if not np.isfinite(load).all():
@@ -139,14 +138,12 @@ def standing(
     wrench: ArrayLike,
     *,
     frame: str | None = None,
-    point: ArrayLike | None = None,
 ) -> Standing:
     """Where a tool stands under load for commands (N, n), away from what was `meant` (N, n).
 
     With another model than the one that corrected the commands this shows what a wrong model costs.
     """
-    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(without_marker(model), frame or model.robot.tool_frame, at)
+    physical, at = seen_from(without_marker(model), frame)
     robot = physical.robot
     a, goal = np.atleast_2d(robot.coordinates(commanded)), np.atleast_2d(robot.coordinates(meant))
     load = wrenches(wrench, len(a))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.stiffness import CLASSES
 from sk120stiff.workspace.arm import BENDING, ElasticArm
@@ -83,7 +83,6 @@ STD_PARAMETERS = Variable(
 STD_REMAINDER = Variable(
     "deflection_std_remainder", "m", "standard size of what the model leaves unexplained, along it"
 )
-POSITION = Variable("position", "m", "of the point, base axes", False, extra=_AXES)
 STATUS_VARIABLE = Variable("status", "", "was the point reached", False, "u1", labels=STATUS)
 
 
@@ -120,9 +119,8 @@ class PositionGrid:
 
     Attributes:
         grid: Axes x, y, z.
-        rest: (n,) first start of the search, and where joints stay that may not move [rad or m].
+        rest: (n,) first start of the search [rad or m].
         axis, rotation: Wanted orientation of the tool, see `Task`.
-        movable: (n,) joints that may move.
         starts: Number of poses from which postures are searched.
         start: (n,) coordinates whose branch the arm stays in [rad or m].
     """
@@ -131,7 +129,6 @@ class PositionGrid:
     rest: Array
     axis: Array | None = None
     rotation: Array | None = None
-    movable: Mask | None = None
     starts: int = 12
     start: Array | None = None
     cartesian: bool = field(default=True, init=False)
@@ -146,14 +143,14 @@ class PositionGrid:
             )
         task = Task(self._positions(begin, end), self.axis, self.rotation)
         if self.start is not None:
-            led = lead_straight(arm, task, self.start, movable=self.movable)
+            led = lead_straight(arm, task, self.start)
             return led.a, np.where(led.found, REACHED, NOT_FROM_START).astype(np.uint8)
-        starts = self._starts(arm)
+        starts = starting_poses(arm, self.starts, self.rest)
         best = np.tile(self.rest, (task.count, 1))
         stiffest = np.full(task.count, -np.inf)
         found = np.zeros(task.count, dtype=bool)
         for start in starts:
-            tried = self._search(arm, task, start, limits=True)
+            tried = solve_inverse(arm, task, np.tile(start, (task.count, 1)))
             met = np.flatnonzero(tried.found)
             if not len(met):
                 continue
@@ -172,23 +169,16 @@ class PositionGrid:
         order = [[axis.name for axis in self.grid.axes].index(name) for name in ("x", "y", "z")]
         return self.grid.points(begin, end)[:, order]
 
-    def _starts(self, arm: ElasticArm) -> Array:
-        starts = starting_poses(arm, self.starts, self.rest)
-        return starts if self.movable is None else np.where(self.movable, starts, self.rest)
-
-    def _search(self, arm: ElasticArm, task: Task, start: Array, *, limits: bool) -> Any:
-        many = np.tile(start, (task.count, 1))
-        return solve_inverse(arm, task, many, movable=self.movable, limits=limits)
-
     def _reason(self, arm: ElasticArm, task: Task, starts: Array) -> NDArray[np.uint8]:
         """Why targets were not met: without limits, without orientation, or not at all."""
         status = np.full(task.count, OUT_OF_REACH, dtype=np.uint8)
         anywhere = np.zeros(task.count, dtype=bool)
         turned = np.zeros(task.count, dtype=bool)
         for start in starts:
-            anywhere |= self._search(arm, task, start, limits=False).found
+            many = np.tile(start, (task.count, 1))
+            anywhere |= solve_inverse(arm, task, many, limits=False).found
             if task.axis is not None or task.rotation is not None:
-                turned |= self._search(arm, Task(task.position), start, limits=True).found
+                turned |= solve_inverse(arm, Task(task.position), many).found
         status[turned] = WRONG_ORIENTATION
         status[anywhere & ~turned] = BEYOND_LIMITS
         if task.axis is not None or task.rotation is not None:
@@ -204,15 +194,13 @@ class MapJob:
         arm: The arm and its stiffness.
         points: Grid, and how its points become joint coordinates.
         loads: (Q, 6) forces [N] and moments [N·m] at the point, base axes.
-        with_directions, with_position: Store principal directions, and positions of a joint grid's
-            points.
+        with_directions: Store principal directions.
     """
 
     arm: ElasticArm
     points: JointGrid | PositionGrid
     loads: Array
     with_directions: bool = False
-    with_position: bool = False
 
     @property
     def bends(self) -> bool:
@@ -239,7 +227,6 @@ class MapJob:
             chosen += [STATUS_VARIABLE, joints]
         else:
             chosen += [STATUS_VARIABLE] if self.arm.has_loops else []
-            chosen += [POSITION] if self.with_position else []
         return tuple(chosen)
 
     @property
@@ -257,7 +244,6 @@ class MapJob:
         a, status = self.points.poses(self.arm, begin, end)
         want = ["values", "critical", "stiffness_class", "complementary_class", "condition"]
         want += ["directions"] if self.with_directions else []
-        want += ["position"] if self.with_position else []
         want += BENDING if self.bends else []
         found = self.arm.batch(a, self.loads[:, None, :], want, threads=threads)
         values = found.of("values")
@@ -278,8 +264,6 @@ class MapJob:
         if self.bends:
             answers |= _deflections(self.arm.bending(a, found, self.loads))
         answers |= {"status": status, "joints": a}
-        if self.with_position:
-            answers["position"] = found.of("position")
         lost = status != REACHED
         for variable in self.variables:
             array = answers[variable.name].astype(variable.kind, copy=False)

@@ -97,9 +97,7 @@ def solve_inverse(
     task: Task,
     start: Array,
     *,
-    movable: Mask | None = None,
     limits: bool = True,
-    iterations: int = ITERATIONS,
 ) -> Reached:
     """Damped Newton steps from one start per target, all targets at once.
 
@@ -110,15 +108,13 @@ def solve_inverse(
         arm: The arm.
         task: N targets.
         start: (N, n) starting coordinates [rad or m].
-        movable: (n,) joints that may move; the others keep their start. All by default.
         limits: Keep joints within their limits.
     """
     a = start.copy()
-    moves = np.ones(arm.n, dtype=bool) if movable is None else movable
     found = np.zeros(task.count, dtype=bool)
     active = np.arange(task.count)
     before = np.full(task.count, np.inf)
-    for step_number in range(iterations):
+    for step_number in range(ITERATIONS):
         if not len(active):
             break
         now = arm.kinematics(a[active])
@@ -134,7 +130,7 @@ def solve_inverse(
         active, error, size = active[go_on], error[go_on], size[go_on]
         if not len(active):
             break
-        J = now.jacobian[go_on][:, : error.shape[-1]][..., moves]
+        J = now.jacobian[go_on][:, : error.shape[-1]]
         if task.rotation is None and task.axis is not None:
             J = _without_spin(J, now.rotation[go_on][..., 2])
         damping = 0.5 * size / REACH**2 + BIAS
@@ -142,15 +138,13 @@ def solve_inverse(
         step = np.linalg.solve(normal, np.swapaxes(J, -1, -2) @ error[..., None])[..., 0]
         largest = np.abs(step).max(axis=-1, keepdims=True)
         step *= np.minimum(1.0, 1.0 / np.maximum(largest, 1e-300))
-        a[np.ix_(active, np.flatnonzero(moves))] += step
+        a[active] += step
         if limits:
             a[active] = np.clip(wrapped(arm, a[active]), arm.lower, arm.upper)
     return Reached(wrapped(arm, a), found)
 
 
-def lead_straight(
-    arm: ElasticArm, task: Task, start: Array, *, movable: Mask | None = None
-) -> Reached:
+def lead_straight(arm: ElasticArm, task: Task, start: Array) -> Reached:
     """Lead the arm from one pose along straight lines to N targets, all at once.
 
     The point moves in equal steps, the tool turns first to the orientation that is wanted. A target
@@ -159,12 +153,11 @@ def lead_straight(
     Args:
         arm, task: The arm and the targets.
         start: (n,) where the arm begins [rad or m].
-        movable: (n,) joints that may move; all by default.
     """
     begin = arm.kinematics(start[None])
     a = np.tile(start, (task.count, 1))
     on_the_way = np.arange(task.count)
-    turning, away = _turned_first(arm, task, start, begin, movable)
+    turning, away = _turned_first(arm, task, start, begin)
     a[:] = turning
     on_the_way = on_the_way if away else on_the_way[:0]
     for share in np.arange(1, LEADING_STEPS + 1) / LEADING_STEPS:
@@ -173,7 +166,7 @@ def lead_straight(
         here = task.rows(on_the_way)
         between = begin.position + share * (here.position - begin.position)
         step = Task(between, here.axis, here.rotation)
-        reached = solve_inverse(arm, step, a[on_the_way], movable=movable)
+        reached = solve_inverse(arm, step, a[on_the_way])
         calm = np.abs(reached.a - a[on_the_way]).max(axis=1) <= LONGEST_LEAD
         good = reached.found & calm
         a[on_the_way[good]] = reached.a[good]
@@ -184,7 +177,7 @@ def lead_straight(
 
 
 def _turned_first(
-    arm: ElasticArm, task: Task, start: Array, begin: Kinematics, movable: Mask | None
+    arm: ElasticArm, task: Task, start: Array, begin: Kinematics
 ) -> tuple[Array, bool]:
     """(n,) the start with its tool as the task wants it, all targets alike; and is that reached?"""
     if task.axis is None and task.rotation is None:
@@ -194,7 +187,7 @@ def _turned_first(
     ):
         raise ValueError("all targets need one orientation")
     turned = Task(begin.position, task.axis, task.rotation)
-    reached = solve_inverse(arm, turned, start[None], movable=movable)
+    reached = solve_inverse(arm, turned, start[None])
     return reached.a[0], bool(reached.found[0])
 
 

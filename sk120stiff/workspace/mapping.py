@@ -52,7 +52,6 @@ def write_map(
     path: str | os.PathLike[str],
     *,
     scheduler: str | None = None,
-    threads: int | None = None,
     chunk_points: int | None = None,
     overwrite: bool = False,
     progress: Progress | None = None,
@@ -69,7 +68,6 @@ def write_map(
         path: Folder of the map, by custom ``….zarr``.
         scheduler: Address of a Dask scheduler (``tcp://host:8786``) whose workers see the same
             folder; without it the map is computed here.
-        threads: Threads per process; one per available core by default.
         chunk_points: Points that are computed, held in memory and written together; by default as
             many as make about a second's work.
         overwrite: Replace another map of that name.
@@ -95,9 +93,9 @@ def write_map(
             if progress:
                 progress(counted, size)
             written = (
-                (store.write_chunk(chunk, threads=threads) for chunk in missing)
+                (store.write_chunk(chunk) for chunk in missing)
                 if client is None
-                else _on_cluster(client, store, missing, threads)
+                else _on_cluster(client, store, missing)
             )
             for points in written:
                 computed += points
@@ -139,9 +137,7 @@ def _connect(address: str) -> Any:
         ) from error
 
 
-def _on_cluster(
-    client: Any, store: MapStore, missing: list[int], threads: int | None
-) -> Iterator[int]:
+def _on_cluster(client: Any, store: MapStore, missing: list[int]) -> Iterator[int]:
     """Hand chunks out a few at a time, and again those that a lost worker had."""
     import distributed
 
@@ -154,7 +150,7 @@ def _on_cluster(
         for _ in range(min(room, len(waiting))):
             chunk = waiting.pop()
             tries[chunk] += 1
-            future = client.submit(_write, store, chunk, threads, pure=False)
+            future = client.submit(_write, store, chunk, pure=False)
             running[future] = chunk
         try:
             found = wait(list(running), timeout=STARVED_SECONDS, return_when="FIRST_COMPLETED")
@@ -190,15 +186,15 @@ def _is_loss(error: BaseException) -> bool:
     return isinstance(error, KilledWorker | OSError)
 
 
-def _write(store: MapStore, chunk: int, threads: int | None) -> int:
-    """Body of a worker's task; a worker computes with one thread unless it is told otherwise."""
+def _write(store: MapStore, chunk: int) -> int:
+    """Body of a worker's task; a worker computes with one thread."""
     if not store.path.is_dir():
         raise Refusal(
             "a worker of the cluster does not see the folder of the map",
             where=str(store.path),
             remedy="Choose a folder that all workers share.",
         )
-    return store.write_chunk(chunk, threads=threads or 1)
+    return store.write_chunk(chunk, threads=1)
 
 
 def _workers(client: Any) -> int:

@@ -81,10 +81,9 @@ def identity_of(job: MapJob, chunks: Chunks) -> str:
         chain.placements, chain.axes, chain.revolute, chain.coordinates,
         motion.q, motion.first,
         [(axis.name, axis.values) for axis in points.grid.axes], points.rest,
-        *(
-            getattr(points, name, None)
-            for name in ("axis", "rotation", "movable", "starts", "start")
-        ),
+        # None: joints that were held still, which maps of an earlier program could state.
+        *(getattr(points, name, None) for name in ("axis", "rotation")), None,
+        *(getattr(points, name, None) for name in ("starts", "start")),
         job.loads, [variable.name for variable in job.variables],
         chunks.chunk_shape,
         elastic.model.values if isinstance(elastic, ModelCompliance) else None,

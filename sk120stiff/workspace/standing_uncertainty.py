@@ -73,7 +73,6 @@ def standing_uncertainty(
     wrench: ArrayLike,
     *,
     frame: str | None = None,
-    point: ArrayLike | None = None,
 ) -> StandingUncertainty | None:
     """± of where a tool stands for commands (N, n) under loads (N, 6), as `standing` tells it.
 
@@ -82,7 +81,7 @@ def standing_uncertainty(
     known = model.uncertainty
     if known is None:
         return None
-    physical, a, load, at = _seen(model, commanded, wrench, frame, point)
+    physical, a, load, at = _seen(model, commanded, wrench, frame)
     L, B = known.factors(physical.names)
     std = np.full(len(a), np.nan)
     blame: list[str] = []
@@ -97,68 +96,41 @@ def standing_uncertainty(
     return StandingUncertainty(std, left, tuple(dict.fromkeys(blame)))
 
 
-def standing_budget(
-    model: Model,
-    commanded: ArrayLike,
-    wrench: ArrayLike,
-    *,
-    frame: str | None = None,
-    point: ArrayLike | None = None,
-) -> tuple[Share, ...]:
-    """What each effect moves a loaded tool by, for commands (N, n) under loads (N, 6).
-
-    Weight and wrong geometry count too. Standard errors where the model stores its uncertainty, and
-    the readings of its fit show the effect.
-    """
-    parts = _parts(model, commanded, wrench, frame, point)
-    return () if parts is None else shares(*parts)
-
-
 def standing_budgets(
     model: Model,
     commanded: ArrayLike,
     wrench: ArrayLike,
     *,
     frame: str | None = None,
-    point: ArrayLike | None = None,
 ) -> tuple[tuple[Share, ...], tuple[Share, ...]]:
-    """The same, and the sums of all that yields at each joint: spring, gear and bearing."""
-    parts = _parts(model, commanded, wrench, frame, point)
-    return ((), ()) if parts is None else (shares(*parts), joint_shares(*parts))
+    """What each effect moves a loaded tool by, for commands (N, n) under loads (N, 6).
 
+    Weight and wrong geometry count too. Standard errors where the model stores its uncertainty, and
+    the readings of its fit show the effect.
 
-def _parts(
-    model: Model,
-    commanded: ArrayLike,
-    wrench: ArrayLike,
-    frame: str | None,
-    point: ArrayLike | None,
-) -> tuple[Model, Array, Array | None] | None:
-    """The arm, (N, 3, P) where it stands by its values, their covariance; None: it holds none."""
-    physical, a, load, at = _seen(model, commanded, wrench, frame, point)
+    Returns:
+        tuple: The effects, and the sums of all that yields at each joint: spring, gear and bearing.
+    """
+    physical, a, load, at = _seen(model, commanded, wrench, frame)
     found = [derivative for _, derivative in _derivatives(physical, a, load, at)]
     derivative = np.concatenate([np.zeros((0, 3, len(physical.values))), *found])
     if not len(derivative):
-        return None
+        return (), ()
     covariance = None
     if model.uncertainty is not None:
         L, B = model.uncertainty.factors(physical.names)
         covariance = L @ L.T + B @ B.T
         unknown = np.isinf(spread(L, B, 0.0))
         covariance[unknown, unknown] = np.inf
-    return physical, derivative, covariance
+    parts = physical, derivative, covariance
+    return shares(*parts), joint_shares(*parts)
 
 
 def _seen(
-    model: Model,
-    commanded: ArrayLike,
-    wrench: ArrayLike,
-    frame: str | None,
-    point: ArrayLike | None,
+    model: Model, commanded: ArrayLike, wrench: ArrayLike, frame: str | None
 ) -> tuple[Model, Array, Array, Array]:
     """The arm up to a frame, commands (N, n), loads (N, 6), and the point in its tool frame."""
-    at = np.zeros(3) if point is None else np.asarray(point, dtype=float)
-    physical, at = seen_from(without_marker(model), frame or model.robot.tool_frame, at)
+    physical, at = seen_from(without_marker(model), frame)
     a = np.atleast_2d(physical.robot.coordinates(commanded))
     return physical, a, np.broadcast_to(np.asarray(wrench, dtype=float), (len(a), 6)), at
 

@@ -9,7 +9,7 @@ import pytest
 
 from sk120stiff.model import joint_spring_model, read_model, write_model
 from sk120stiff.robot import load_robot
-from sk120stiff.workspace import read_path, read_returned, standing, standing_budget
+from sk120stiff.workspace import read_path, read_returned, standing, standing_budgets
 from tests.cli.conftest import Run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -157,7 +157,7 @@ def test_shares_are_what_each_spring_alone_does() -> None:
     stiffness = np.array([3e8, 1e8, 2e8, np.inf, np.inf, np.inf])
     a = np.radians([[10, 20, -30, 0, -60, 0], [-20, 0, 10, 5, -30, 0]])
     load = np.array([[100.0, 200.0, -490.0, 0, 0, 0], [0, 300.0, 0, 0, 20.0, 0]])
-    found = standing_budget(joint_spring_model(robot, stiffness), a, load)
+    found, _ = standing_budgets(joint_spring_model(robot, stiffness), a, load)
     for share in found:
         k = robot.actuated.index(share.name.partition(":")[2])
         alone = np.full(6, np.inf)
@@ -174,7 +174,7 @@ def test_the_error_of_a_share_is_that_of_its_spring(fitted: Path) -> None:
     known = model.uncertainty
     assert known is not None
     a = np.radians([[10, 20, -30, 0, -60, 0]])
-    for share in standing_budget(model, a, [[100, 0, -490, 0, 0, 0]]):
+    for share in standing_budgets(model, a, [[100, 0, -490, 0, 0, 0]])[0]:
         k = known.names.index(f"{share.name}.stiffness")
         assert share.std == pytest.approx(share.rms * known.std[k] / known.values[k], rel=1e-6)
 
@@ -187,7 +187,7 @@ def test_a_share_that_no_reading_shows_has_no_error(fitted: Path) -> None:
     unseen[0, known.names.index("joint_springs:joint_2_l.stiffness")] = known.values.max()
     doubtful = model.known(replace(known, unseen=unseen))
     a = np.radians([[10, 20, -30, 0, -60, 0]])
-    found = standing_budget(doubtful, a, [[100, 0, -490, 0, 0, 0]])
+    found, _ = standing_budgets(doubtful, a, [[100, 0, -490, 0, 0, 0]])
     told = {share.name: share.std for share in found}
     assert told["joint_springs:joint_2_l"] is None
     assert told["joint_springs:joint_3_u"] is not None

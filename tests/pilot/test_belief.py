@@ -96,7 +96,7 @@ def test_between_two_names_that_are_left_a_reading_tells_names_not_sizes() -> No
     belief = belief_after(8, truth="joint_tilt:joint_2_l", size=1.0)
     first, second = list(belief.probabilities.values())[:2]
     assert 0.05 < second < first < 0.95
-    row, found = best(belief, made.X, np.ones(len(made.X), dtype=bool))
+    row, found = best(belief, made.X, np.ones(len(made.X), dtype=bool)), expected(belief, made.X)
     assert found.names[row] > 0.9 * found.names.max()
     assert found.sizes[row] < found.sizes.max()
 

@@ -14,11 +14,11 @@ from sk120stiff.plan import (
     Cell,
     Pool,
     d_optimal,
-    discriminating_readings,
     plan,
     promised,
     random_choice,
     random_pool,
+    readings_for_all,
     rivalry,
     signature_columns,
     simulate,
@@ -107,16 +107,13 @@ def test_evidence_by_explicit_projection(springs, robot, pool) -> None:
     model = springs + effect(robot, "link_bending", "link_2_l")
     model = model.with_public(**{"link_bending:link_2_l.EI": 8e6})
     bending, tilt = model.effects[-1], effect(robot, "joint_tilt", "joint_2_l")
-    choice = discriminating_readings(
-        model, bending, tilt, pool, count=5, sigma=np.sqrt(2.0) * SIGMA
-    )
     columns = signature_columns(model, bending, tilt, pool) / (np.sqrt(2.0) * SIGMA)
-    A = columns[list(choice.rows)].reshape(-1, columns.shape[-1])
+    rows, (apart,) = readings_for_all([columns], count=5)
+    A = columns[list(rows)].reshape(-1, columns.shape[-1])
     others = np.vstack([A[:, :-1], np.eye(A.shape[1] - 1)])
     u = np.concatenate([A[:, -1], np.zeros(A.shape[1] - 1)])
     left = u - others @ np.linalg.lstsq(others, u, rcond=None)[0]
-    assert choice.after == pytest.approx(np.linalg.norm(left), rel=1e-6)
-    assert choice.before == 0.0
+    assert apart == pytest.approx(np.linalg.norm(left), rel=1e-6)
 
 
 def test_rivals_are_told_whichever_is_true(springs, robot, pool) -> None:

@@ -37,6 +37,11 @@ def sk120_poses(count, seed):
     return poses[np.abs(poses[:, 1] + poses[:, 2]) < 1.45][:count]
 
 
+def dense(curvature, m, n):
+    """(m, n, n) second derivatives of m joints by n coordinates, with all the zeros."""
+    return np.array([curvature.contracted(torque, n) for torque in np.eye(m)])
+
+
 @pytest.fixture(scope="module", params=["point", "axis"])
 def loop(request, tmp_path_factory):
     return sk120_loop(tmp_path_factory.mktemp("sk120") / request.param, request.param)
@@ -136,7 +141,7 @@ def test_four_bar_derivatives_are_those_of_the_circles(kind, tmp_path):
         slope = differences(lambda x: robot.coupling.motion(x).q, pose)
         assert np.abs(motion.first - slope).max() < 1e-9
         bend = differences(lambda x: robot.coupling.motion(x).first, pose)
-        assert np.abs(motion.second.dense(robot.coupling.m, 2) - bend).max() < 1e-8
+        assert np.abs(dense(motion.second, robot.coupling.m, 2) - bend).max() < 1e-8
 
 
 def test_stiffness_of_the_load_needs_the_curvature_of_the_loop(quad):
@@ -179,7 +184,7 @@ def test_a_cylinder_lifts_by_the_law_of_cosines(tmp_path):
         row = robot.tree.joint_index("lift")
         assert np.allclose(motion.first[row], [0, 0, rate], atol=1e-11)
         second = (1 - side * arm * np.cos(inner) * rate**2) / (side * arm * np.sin(inner))
-        assert np.isclose(motion.second.dense(robot.coupling.m, 3)[row, 2, 2], second, atol=1e-9)
+        assert np.isclose(dense(motion.second, robot.coupling.m, 3)[row, 2, 2], second, atol=1e-9)
 
 
 def test_rules_that_follow_dependent_joints(tmp_path):
@@ -303,10 +308,10 @@ def test_answers_do_not_depend_on_what_was_asked_before(tmp_path):
 def test_curvature_keeps_only_what_is_not_zero():
     hessian = np.arange(8.0).reshape(2, 2, 2) + np.arange(8.0).reshape(2, 2, 2).swapaxes(1, 2)
     bend = Curvature(np.array([1, 4]), np.array([0, 2]), hessian)
-    dense = bend.dense(5, 3)
-    assert dense.shape == (5, 3, 3) and dense[4, 2, 0] == hessian[1, 1, 0]
+    whole = dense(bend, 5, 3)
+    assert whole[4, 2, 0] == hessian[1, 1, 0]
     torques = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
-    assert np.array_equal(bend.contracted(torques, 3), np.einsum("k,kij->ij", torques, dense))
+    assert np.array_equal(bend.contracted(torques, 3), np.einsum("k,kij->ij", torques, whole))
     order = np.array([4, 3, 1])
-    assert np.array_equal(bend.picked(order).dense(3, 3), dense[order])
+    assert np.array_equal(dense(bend.picked(order), 3, 3), whole[order])
     assert bend.picked(np.array([0, 2])) is None

@@ -42,7 +42,7 @@ def every_figure() -> dict[str, Figure]:
             X, Y, (GRID > 0).astype(int) * 4, x_label="q2", y_label="q3"
         ),
         "plane_ellipses": f.plane_ellipses(
-            [f.PlaneEllipse(np.array([1.0, 0.0, 0.5]), C, "pose 1", reference=1.1 * C)]
+            [f.PlaneEllipse(np.array([1.0, 0.0, 0.5]), C, "pose 1")]
         ),
         "gap_per_pose": f.gap_per_pose(
             ["1", "2"], {"before": [4e-5, 3e-5], "after": [1e-5, 2e-5]}, noise_floor=1e-5

@@ -10,7 +10,6 @@ from sk120stiff.stiffness import (
     CLASSES,
     Definiteness,
     definiteness,
-    definiteness_of,
     principal_stiffness,
 )
 
@@ -18,6 +17,10 @@ PD, PSD, ND, NSD, ID = CLASSES
 sizes = st.floats(1e-3, 1e3)
 scales = st.sampled_from([1e-9, 1.0, 1e9])
 signs = {PD: (1, 1, 1), PSD: (1, 0, 1), ND: (-1, -1, -1), NSD: (-1, 0, 0), ID: (1, 0, -1)}
+
+
+def definiteness_of(matrix) -> Definiteness:
+    return CLASSES[int(definiteness(matrix))]
 
 
 def with_eigenvalues(values, seed):

@@ -61,12 +61,3 @@ def test_nothing_is_found_where_nothing_is() -> None:
     task = Task(np.array([[5.0, 0.0, 0.0], [1.8, 0.0, 0.3]]))
     tried = solve_inverse(arm, task, np.zeros((2, arm.n)))
     assert tried.found.tolist() == [False, True]
-
-
-def test_joints_that_may_not_move_do_not() -> None:
-    arm = sk120()
-    movable = np.array([True, True, True, False, False, False])
-    start = np.array([[0.1, 0.2, -0.3, 0.4, 0.5, 0.6]])
-    tried = solve_inverse(arm, Task(np.array([[1.5, 0.3, 0.4]])), start, movable=movable)
-    assert tried.found.all()
-    np.testing.assert_array_equal(tried.a[0, 3:], start[0, 3:])

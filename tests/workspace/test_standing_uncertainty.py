@@ -6,7 +6,7 @@ import pytest
 from sk120stiff.effects import effect, load_case
 from sk120stiff.model import Model, Uncertainty, joint_spring_model
 from sk120stiff.robot import load_robot
-from sk120stiff.workspace import standing, standing_budget, standing_uncertainty
+from sk120stiff.workspace import standing, standing_budgets, standing_uncertainty
 from tests.oracles.sample_urdfs import six_axis_arm
 
 LOAD = np.array([30.0, -20.0, -80.0, 0.0, 2.0, 1.0])
@@ -72,7 +72,7 @@ def test_what_does_not_show_is_unknown_and_what_cannot_stand_has_none(model: Mod
     found = standing_uncertainty(known(model, unseen=blind), POSES, LOAD)
     assert np.isinf(found.std_parameters).all()
     assert found.blame == (model.names[1],)
-    budget = standing_budget(known(model, unseen=blind), POSES, LOAD)
+    budget, _ = standing_budgets(known(model, unseen=blind), POSES, LOAD)
     unknown = [share.name for share in budget if share.std is None]
     assert unknown == [model.parameters[1].effect.id]
     loads = np.stack([LOAD, 1e5 * LOAD])

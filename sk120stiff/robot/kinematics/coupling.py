@@ -63,13 +63,6 @@ class Curvature:
         out[..., self.coordinates[:, None], self.coordinates] = bent
         return out
 
-    def dense(self, m: int, n: int) -> Array:
-        """(..., m, n, n) with all the zeros."""
-        out = np.zeros((*self.hessian.shape[:-3], m, n, n))
-        rows, columns = self.joints[:, None, None], self.coordinates
-        out[..., rows, columns[:, None], columns] = self.hessian
-        return out
-
 
 @dataclass(frozen=True, eq=False)
 class JointMotion:

@@ -8,14 +8,13 @@ it: a wrong frame id would corrupt its memory instead of raising.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from difflib import get_close_matches
 from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, meant
 from sk120stiff.robot.kinematics.chain import Chain
 from sk120stiff.robot.rotations import crossed
 from sk120stiff.robot.urdf import captured_stderr
@@ -87,7 +86,7 @@ class Tree:
         """
         if name not in self.joint_names:
             raise InputError(
-                f"there is no moving joint {name!r}{_hint(name, self.joint_names)}",
+                f"there is no moving joint {name!r}{meant(name, self.joint_names)}",
                 remedy=f"Moving joints are: {', '.join(self.joint_names)}.",
             )
         return self.joint_names.index(name)
@@ -100,7 +99,7 @@ class Tree:
         """
         if frame not in self.frame_names:
             raise InputError(
-                f"there is no frame {frame!r}{_hint(frame, self.frame_names)}",
+                f"there is no frame {frame!r}{meant(frame, self.frame_names)}",
                 remedy=f"Frames are: {', '.join(self.frame_names)}.",
             )
         found = self._model.frames[self._model.getFrameId(frame, pin.FrameType.BODY)]
@@ -216,8 +215,3 @@ class Tree:
             if joint.nq == 2:  # a continuous joint is stored as (cos, sin)
                 start[joint.idx_q] = 1.0
         return np.asarray(pin.integrate(self._model, start, values))
-
-
-def _hint(name: str, known: tuple[str, ...]) -> str:
-    close = get_close_matches(name, known, n=1)
-    return f" (did you mean {close[0]!r}?)" if close else ""

@@ -50,7 +50,7 @@ def _joint(joint: JointSpec) -> str:
         f"<parent link={quoteattr(joint.parent)}/><child link={quoteattr(joint.child)}/>",
     ]
     if joint.moves:
-        parts.append(f'<axis xyz="{_numbers(joint.axis)}"/>')
+        parts.append(f'<axis xyz="{numbers(joint.axis)}"/>')
         lower = -UNLIMITED if joint.lower is None else joint.lower
         upper = UNLIMITED if joint.upper is None else joint.upper
         parts.append(
@@ -71,12 +71,13 @@ def _origin(T: Array) -> str:
     if np.array_equal(T, np.eye(4)):
         return ""
     rpy = rpy_from_rotation(T[:3, :3])
-    return f'<origin xyz="{_numbers(T[:3, 3])}" rpy="{_numbers(rpy)}"/>'
+    return f'<origin xyz="{numbers(T[:3, 3])}" rpy="{numbers(rpy)}"/>'
 
 
 def _number(value: float) -> str:
-    return repr(float(value))
+    return repr(float(value) + 0.0)  # no -0.0
 
 
-def _numbers(values: Array) -> str:
+def numbers(values: Array) -> str:
+    """Numbers between blanks, each to its last digit."""
     return " ".join(_number(value) for value in values)

@@ -21,7 +21,8 @@ from lxml import etree
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.robot.rotations import homogeneous, rotation_from_rpy
+from sk120stiff.robot.rotations import homogeneous, rotation_from_rpy, rpy_from_rotation
+from sk120stiff.robot.urdf.clean import numbers
 from sk120stiff.units import split_header, to_si
 
 _ANGLES, _LENGTHS = ("theta", "alpha", "beta"), ("d", "a", "b")
@@ -30,7 +31,6 @@ _LIMITS = ("lower", "upper")
 _WORDS = ("convention", "joint", "moves", "driver", "factor", "form")
 _CONVENTIONS = ("standard", "modified")
 _EXAMPLE = "convention,joint,theta[deg],d[mm],a[mm],alpha[deg]"
-_LOCKED = 1e-9  # cosine of a pitch below which roll and yaw are one angle
 MARKER = " (measured)"  # ends the row that `export` writes for the point that a tracker saw
 
 
@@ -165,20 +165,9 @@ def _element(name: str, kind: str, parent: str, child: str, T: Array) -> etree._
     element = etree.Element("joint", name=name, type=kind)
     etree.SubElement(element, "parent", link=parent)
     etree.SubElement(element, "child", link=child)
-    etree.SubElement(element, "origin", xyz=_text(T[:3, 3]), rpy=_text(_rpy(T[:3, :3])))
+    rpy = rpy_from_rotation(T[:3, :3])
+    etree.SubElement(element, "origin", xyz=numbers(T[:3, 3]), rpy=numbers(rpy))
     return element
-
-
-def _text(numbers: Array) -> str:
-    return " ".join(repr(float(x) + 0.0) for x in numbers)
-
-
-def _rpy(R: Array) -> Array:
-    """(3,) fixed-axis roll, pitch, yaw of a rotation; yaw is zero where roll is the same turn."""
-    pitch = np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0]))
-    if np.cos(pitch) < _LOCKED:
-        return np.array([np.arctan2(-R[1, 2], R[1, 1]), pitch, 0.0])
-    return np.array([np.arctan2(R[2, 1], R[2, 2]), pitch, np.arctan2(R[1, 0], R[0, 0])])
 
 
 def _placed(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -185,14 +186,31 @@ class UrdfDocument:
         """Joints with a degree of freedom, mimics included."""
         return tuple(joint for joint in self.joints if joint.moves)
 
+    @cached_property
+    def by_name(self) -> Mapping[str, JointSpec]:
+        """The joints by their names."""
+        return {joint.name: joint for joint in self.joints}
+
+    @cached_property
+    def above(self) -> Mapping[str, JointSpec]:
+        """The joint that carries each link but the root."""
+        return {joint.child: joint for joint in self.joints}
+
+    @cached_property
+    def below(self) -> Mapping[str, list[JointSpec]]:
+        """The joints on each link that carries any, in the order of the file."""
+        found: dict[str, list[JointSpec]] = {}
+        for joint in self.joints:
+            found.setdefault(joint.parent, []).append(joint)
+        return found
+
     def way(self, base: str, tool: str) -> tuple[JointSpec, ...]:
         """Joints of any type from `base` outwards to `tool`; from the root if `base` is not met."""
-        above = {joint.child: joint for joint in self.joints}
         found: list[JointSpec] = []
         name = tool
-        while name != base and name in above:
-            found.append(above[name])
-            name = above[name].parent
+        while name != base and name in self.above:
+            found.append(self.above[name])
+            name = found[-1].parent
         return tuple(reversed(found))
 
     @property

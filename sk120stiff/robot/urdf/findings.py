@@ -62,3 +62,9 @@ def close_name(name: str, known: Collection[str]) -> str | None:
         return None
     close = get_close_matches(name, [other for other in known if len(other) <= 100], n=1)
     return close[0] if close else None
+
+
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """A question before a remedy; nothing where no known name is near."""
+    close = close_name(name, known)
+    return f"Did you mean {close!r}? " if close else ""

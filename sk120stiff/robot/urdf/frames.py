@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.robot.urdf.document import Finding, JointSpec, UrdfDocument
 from sk120stiff.robot.urdf.findings import at
-from sk120stiff.robot.urdf.hands import FINGER, Children, children_of, finger_joints
+from sk120stiff.robot.urdf.hands import FINGER, finger_joints
 
 # Frames that only help: sensors, shapes for collision checks, pictures.
 _HELPER = re.compile(
@@ -129,18 +129,17 @@ def default_frames(document: UrdfDocument, arm: Collection[str] = ()) -> FrameCh
         document: The robot.
         arm: Joints that are known to belong to the arm, such as those of its closed linkages.
     """
-    children = children_of(document)
     fingers = finger_joints(document, arm)
-    ends = _ends(document, children, set(fingers))
+    ends = _ends(document, set(fingers))
     arms = [end for end in ends if not end.is_leg and len(end.motors) >= _FEWEST_OF_AN_ARM]
     longest = max(len(end.motors) for end in arms or ends)
     tied = [end for end in arms or ends if len(end.motors) == longest]
-    tools = {id(end): _tool_of(end, document, children) for end in ends}
+    tools = {id(end): _tool_of(end, document) for end in ends}
     order = {link.name: k for k, link in enumerate(document.links)}
     chosen = min(tied, key=lambda end: (_rank(tools[id(end)]), order[tools[id(end)]]))
     tool = tools[id(chosen)]
     others = sorted((end for end in ends if end is not chosen), key=lambda end: -len(end.motors))
-    reach = _places(chosen, document, children)
+    reach = _places(chosen, document)
     return FrameChoice(
         base=document.root,
         tool=tool,
@@ -173,7 +172,7 @@ def _rank(link: str) -> int:
     return next(fits, len(_TOOL_NAMES))
 
 
-def _ends(document: UrdfDocument, children: Children, fingers: set[str]) -> list[_End]:
+def _ends(document: UrdfDocument, fingers: set[str]) -> list[_End]:
     """Every way from the root outwards that ends with a motor, in the order of the file.
 
     A motor is a moving joint that follows no other and is no finger. Links behind mimic joints
@@ -184,7 +183,7 @@ def _ends(document: UrdfDocument, children: Children, fingers: set[str]) -> list
     stack = [document.root]
     while stack:
         link = stack.pop()
-        for joint in children.get(link, ()):
+        for joint in document.below.get(link, ()):
             if joint.name in fingers:
                 continue
             drives = joint.moves and joint.mimic is None
@@ -206,26 +205,26 @@ def _ends(document: UrdfDocument, children: Children, fingers: set[str]) -> list
     ]
 
 
-def _places(end: _End, document: UrdfDocument, children: Children) -> dict[str, Array]:
+def _places(end: _End, document: UrdfDocument) -> dict[str, Array]:
     """Position of each link that the last motor carries rigidly, in that motor's frame [m]."""
     start = end.joint.child if end.joint is not None else document.root
     found = {start: np.eye(4)}
     stack = [start]
     while stack:
         link = stack.pop()
-        for joint in children.get(link, ()):
+        for joint in document.below.get(link, ()):
             if not joint.moves:
                 found[joint.child] = found[link] @ joint.origin
                 stack.append(joint.child)
     return {link: T[:3, 3] for link, T in found.items()}
 
 
-def _tool_of(end: _End, document: UrdfDocument, children: Children) -> str:
+def _tool_of(end: _End, document: UrdfDocument) -> str:
     """The best named link of an end, else the farthest one that is no helper."""
     best = min(end.links, key=_rank)
     if _rank(best) < len(_TOOL_NAMES):
         return best
-    places = _places(end, document, children)
+    places = _places(end, document)
     helpful = [link for link in places if not _HELPER.search(link)]
     sensible = [link for link in helpful if not FINGER.search(link)] or helpful or list(places)[:1]
     # Of frames at one point, within 1 µm, the one nearest to the motor is the real link.

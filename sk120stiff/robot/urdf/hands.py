@@ -8,7 +8,7 @@ that follows a joint of the arm belongs to a linkage, and what carries a flange 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
 import numpy as np
 
@@ -24,16 +24,6 @@ SHORT = 0.3  # of the way from the root to the palm
 _FEWEST_BEFORE = 3  # motors between root and palm: a base with legs is no palm
 _MOST_IN_FINGER = 5  # motors of one finger, where no name speaks of a hand
 
-Children = Mapping[str, list[JointSpec]]
-
-
-def children_of(document: UrdfDocument) -> dict[str, list[JointSpec]]:
-    """Joints below each link, in the order of the file."""
-    children: dict[str, list[JointSpec]] = {}
-    for joint in document.joints:
-        children.setdefault(joint.parent, []).append(joint)
-    return children
-
 
 def finger_joints(document: UrdfDocument, arm: Collection[str] = ()) -> tuple[str, ...]:
     """Moving joints that belong to hands, in the order of the file.
@@ -44,13 +34,12 @@ def finger_joints(document: UrdfDocument, arm: Collection[str] = ()) -> tuple[st
         document: The robot.
         arm: Joints that are known to belong to the arm, such as those of its closed linkages.
     """
-    children = children_of(document)
     named = {joint.name for joint in document.moving_joints if _is_named_finger(joint)}
-    first = named | _sliding_pairs(document, children) | _branches_of_palms(document, children)
+    first = named | _sliding_pairs(document) | _branches_of_palms(document)
     found: set[str] = set()
     for joint in document.joints:
         if joint.name in first and joint.name not in found:
-            found.update(_behind(joint, children))
+            found.update(_behind(joint, document))
     found -= set(arm)
     if not any(j.mimic is None and j.name not in found for j in document.moving_joints):
         return ()
@@ -65,17 +54,17 @@ def _is_named_finger(joint: JointSpec) -> bool:
     return bool(_GRIPPER.search(names)) and not _WRIST.search(joint.name)
 
 
-def _sliding_pairs(document: UrdfDocument, children: Children) -> set[str]:
+def _sliding_pairs(document: UrdfDocument) -> set[str]:
     """Joints that slide side by side on one link and carry nothing that moves: jaws."""
     jaws: set[str] = set()
-    for joints in children.values():
-        ends = [j.name for j in joints if j.type == "prismatic" and len(_behind(j, children)) == 1]
+    for joints in document.below.values():
+        ends = [j.name for j in joints if j.type == "prismatic" and len(_behind(j, document)) == 1]
         if len(ends) > 1 and len(document.moving_joints) > len(ends):
             jaws.update(ends)
     return jaws
 
 
-def _branches_of_palms(document: UrdfDocument, children: Children) -> set[str]:
+def _branches_of_palms(document: UrdfDocument) -> set[str]:
     """First joints of the chains into which a palm branches."""
     found: set[str] = set()
     bodies = [(document.root, 0.0, 0)]  # first link of a rigid body, way to it [m], motors before
@@ -85,13 +74,13 @@ def _branches_of_palms(document: UrdfDocument, children: Children) -> set[str]:
         links = [(start, way)]
         while links:
             link, here = links.pop()
-            for joint in children.get(link, ()):
+            for joint in document.below.get(link, ()):
                 there = here + _length(joint)
                 if joint.moves:
                     branches.append((joint, there))
                 else:
                     links.append((joint.child, there))
-        if motors >= _FEWEST_BEFORE and _is_palm(branches, children):
+        if motors >= _FEWEST_BEFORE and _is_palm(branches, document):
             found.update(joint.name for joint, _ in branches)
             continue
         for joint, there in branches:
@@ -99,17 +88,17 @@ def _branches_of_palms(document: UrdfDocument, children: Children) -> set[str]:
     return found
 
 
-def _is_palm(branches: list[tuple[JointSpec, float]], children: Children) -> bool:
+def _is_palm(branches: list[tuple[JointSpec, float]], document: UrdfDocument) -> bool:
     if len(branches) < 2:
         return False
-    below = {name for joint, _ in branches for name in _behind(joint, children)}
+    below = {name for joint, _ in branches for name in _behind(joint, document)}
     named = any(FINGER.search(name) or _HAND.search(name) for name in below)
     most = 2 * _MOST_IN_FINGER if named else _MOST_IN_FINGER
-    return all(_is_finger(joint, SHORT * way, most, below, children) for joint, way in branches)
+    return all(_is_finger(joint, SHORT * way, most, below, document) for joint, way in branches)
 
 
 def _is_finger(
-    first: JointSpec, longest: float, most: int, hand: set[str], children: Children
+    first: JointSpec, longest: float, most: int, hand: set[str], document: UrdfDocument
 ) -> bool:
     """A chain no longer [m] and of no more motors, that drives a hand and carries no flange."""
     stack = [(first, 0.0, 0)]
@@ -121,18 +110,18 @@ def _is_finger(
                 return False
         if length > longest or motors > most or _FLANGE.search(joint.child):
             return False
-        stack += [(j, length + _length(j), motors) for j in children.get(joint.child, ())]
+        stack += [(j, length + _length(j), motors) for j in document.below.get(joint.child, ())]
     return True
 
 
-def _behind(joint: JointSpec, children: Children) -> list[str]:
+def _behind(joint: JointSpec, document: UrdfDocument) -> list[str]:
     """Moving joints from this one outwards, itself included."""
     found, stack = [], [joint]
     while stack:
         here = stack.pop()
         if here.moves:
             found.append(here.name)
-        stack.extend(children.get(here.child, ()))
+        stack.extend(document.below.get(here.child, ()))
     return found
 
 

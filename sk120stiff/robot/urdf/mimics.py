@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from sk120stiff.robot.urdf.document import JointSpec, Mimic, UrdfDocument
-from sk120stiff.robot.urdf.findings import Notebook, at, close_name, shown
+from sk120stiff.robot.urdf.findings import Notebook, at, did_you_mean, shown
 
 
 def without_orphans(
@@ -29,8 +29,8 @@ def without_orphans(
                 "mimic_unknown",
                 at(joint.line, "joint", joint.name),
                 f"the joint mimics {shown(missing)}, which does not exist, and is held still. "
-                f"{_meant(missing, names)}Mend its <mimic>, or write the rule under couplings in "
-                "robot.yaml",
+                f"{did_you_mean(missing, names)}Mend its <mimic>, or write the rule under "
+                "couplings in robot.yaml",
             )
     kept = (replace(j, mimic=None) if j.name in orphans else j for j in joints)
     return tuple(kept), orphans
@@ -52,15 +52,10 @@ def refuse_orphans(document: UrdfDocument, base: str, tool: str, settled: Collec
             f"the joint mimics {shown(rule.joint)}, which does not exist; it lies between "
             f"{base!r} and {tool!r}",
             where=at(joint.line, "joint", joint.name),
-            remedy=f"{_meant(rule.joint, [j.name for j in document.joints])}Mend its <mimic>, or "
+            remedy=f"{did_you_mean(rule.joint, document.by_name)}Mend its <mimic>, or "
             f"say in robot.yaml what it does: couplings: {{{joint.name}: {{driver: JOINT}}}}, or "
             f"lock: {{{joint.name}: 0.0}}, or name it under actuated.",
         )
-
-
-def _meant(missing: str, names: Collection[str]) -> str:
-    close = close_name(missing, names)
-    return f"Did you mean {close!r}? " if close else ""
 
 
 def checked_mimics(

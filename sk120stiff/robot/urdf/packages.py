@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -18,17 +18,13 @@ _MOST_FOLDERS = 5_000  # looked into for one package
 _NO_PACKAGES = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})
 
 
-def package_folders(
-    path: Path | None, extra: Iterable[str | os.PathLike[str]] = ()
-) -> tuple[Path, ...]:
+def package_folders(path: Path | None) -> tuple[Path, ...]:
     """Folders that may be a package or hold packages, first match wins.
 
-    `extra`, then the parents of the description, then the `workspaces`.
+    The parents of the description, then the `workspaces`.
     """
-    folders = [Path(folder).expanduser() for folder in extra]
-    if path is not None:
-        folders.extend(list(path.absolute().parents)[:_LEVELS_UP])
-    return tuple(dict.fromkeys((*folders, *workspaces())))
+    around = [] if path is None else list(path.absolute().parents)[:_LEVELS_UP]
+    return tuple(dict.fromkeys((*around, *workspaces())))
 
 
 def workspaces() -> tuple[Path, ...]:

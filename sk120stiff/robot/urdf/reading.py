@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from lxml.etree import _Element as Element
@@ -16,7 +16,7 @@ from sk120stiff.robot.urdf.findings import Notebook, at
 from sk120stiff.robot.urdf.joints import read_joint, same_names
 from sk120stiff.robot.urdf.links import read_link, read_materials, read_shapes
 from sk120stiff.robot.urdf.mimics import checked_mimics, without_orphans
-from sk120stiff.robot.urdf.packages import package_folders as folders_around
+from sk120stiff.robot.urdf.packages import package_folders
 from sk120stiff.robot.urdf.source import RawSource, read_source
 from sk120stiff.robot.urdf.structure import declared_links, find_root
 from sk120stiff.robot.urdf.xacro import (
@@ -41,7 +41,6 @@ _FOREIGN = frozenset(
 def read_urdf(
     source: str | os.PathLike[str] | bytes,
     *,
-    package_folders: Iterable[str | os.PathLike[str]] = (),
     xacro_arguments: Mapping[str, str] | None = None,
 ) -> UrdfDocument:
     """Read a robot description in any form, repair what can be repaired, and say so.
@@ -49,8 +48,6 @@ def read_urdf(
     Args:
         source: ``.urdf`` or ``.xacro`` file, folder that holds exactly one, XML as text or bytes,
             or a ``.csv`` table of Denavit and Hartenberg's numbers (`dh_table.py`).
-        package_folders: Folders that hold packages, tried before the parent folders and
-            ROS_PACKAGE_PATH.
         xacro_arguments: Values of ``<xacro:arg>``; one that the xacro does not know is refused.
 
     Returns:
@@ -61,7 +58,7 @@ def read_urdf(
     """
     raw = read_source(source)
     notes = Notebook(raw.label)
-    folders = folders_around(raw.path, package_folders)
+    folders = package_folders(raw.path)
     text = decode(raw.data, notes)
     if raw.path is not None and is_dh_table(raw.path):
         text = urdf_of_table(text, raw.path.stem, raw.label)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from sk120stiff.errors import InputError
 from sk120stiff.robot.urdf.clean import clean_xml
-from sk120stiff.robot.urdf.document import Finding, JointSpec, UrdfDocument
+from sk120stiff.robot.urdf.document import Finding, UrdfDocument
 from sk120stiff.robot.urdf.findings import Notebook
 from sk120stiff.robot.urdf.mimics import drivers_first
 
@@ -39,11 +39,10 @@ def with_arm_only(
     moving = document.moving_joints
     if len(moving) <= MOST_FREE:
         return document
-    by_name = {joint.name: joint for joint in document.joints}
     free: set[str] = set()
     names = [*(joint.name for joint in document.way(base, tool)), *needed]
     while names:
-        joint = by_name.get(names.pop())
+        joint = document.by_name.get(names.pop())
         if joint is None or not joint.moves or joint.name in free:
             continue
         free.add(joint.name)
@@ -57,7 +56,7 @@ def with_arm_only(
         )
     held = {joint.name for joint in moving if joint.name not in free}
     locked = dict(document.locked)
-    values = _standing(document, by_name, rest)
+    values = _standing(document, rest)
     changed = []
     for joint in document.joints:
         if joint.name in held:
@@ -80,13 +79,11 @@ def with_arm_only(
     )
 
 
-def _standing(
-    document: UrdfDocument, by_name: Mapping[str, JointSpec], rest: Mapping[str, float]
-) -> dict[str, float]:
+def _standing(document: UrdfDocument, rest: Mapping[str, float]) -> dict[str, float]:
     """Where every joint stands while the drivers are at rest, by name."""
     values: dict[str, float] = {}
-    for name in drivers_first(document.joints, by_name, Notebook(document.place)):
-        rule = by_name[name].mimic
+    for name in drivers_first(document.joints, document.by_name, Notebook(document.place)):
+        rule = document.by_name[name].mimic
         values[name] = (
             rest.get(name, 0.0)
             if rule is None

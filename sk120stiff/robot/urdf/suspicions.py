@@ -55,12 +55,11 @@ def _masses(document: UrdfDocument) -> Iterator[Finding]:
 
 def _weightless(document: UrdfDocument) -> Iterator[Finding]:
     """Moving joints that carry a body without mass although the robot has masses elsewhere."""
-    above = {joint.child: joint for joint in document.joints}
     heavy: set[str] = set()
     for link in document.links:
         name = link.name
-        while link.mass > 0.0 and name in above:
-            joint = above[name]
+        while link.mass > 0.0 and name in document.above:
+            joint = document.above[name]
             if joint.moves:
                 heavy.add(joint.name)
                 break
@@ -134,12 +133,11 @@ def _together(code: str, joints: list[JointSpec], message: str) -> Iterator[Find
 
 
 def _couplings(document: UrdfDocument) -> Iterator[Finding]:
-    by_name = {joint.name: joint for joint in document.joints}
     for joint in document.moving_joints:
         if joint.mimic is None:
             continue
         where = at(joint.line, "joint", joint.name)
-        driver = by_name[joint.mimic.joint]
+        driver = document.by_name[joint.mimic.joint]
         rule = f"{joint.mimic.multiplier:g} · {driver.name} + {joint.mimic.offset:g}"
         yield Finding("mimic", where, f"coupled joint: {joint.name} = {rule}")
         if joint.mimic.multiplier == 0.0:
@@ -153,9 +151,8 @@ def _couplings(document: UrdfDocument) -> Iterator[Finding]:
 
 
 def _names(document: UrdfDocument) -> Iterator[Finding]:
-    joints = {joint.name: joint for joint in document.joints}
     for link in document.links:
-        clash = joints.get(link.name)
+        clash = document.by_name.get(link.name)
         if clash is not None:
             yield Finding(
                 "name_clash",
@@ -187,17 +184,12 @@ def _sizes(document: UrdfDocument) -> Iterator[Finding]:
 
 def _extent(document: UrdfDocument) -> float:
     """Longest distance along the tree from the root to a link, joints at zero [m]."""
-    above: dict[str, JointSpec] = {joint.child: joint for joint in document.joints}
-    distance = {document.root: 0.0}
-    for link in document.links:
-        way: list[str] = []
-        name = link.name
-        while name not in distance:
-            way.append(name)
-            name = above[name].parent
-        for step in reversed(way):
-            offset = float(np.linalg.norm(above[step].origin[:3, 3]))
-            distance[step] = distance[above[step].parent] + offset
+    distance, links = {document.root: 0.0}, [document.root]
+    for link in links:
+        for joint in document.below.get(link, ()):
+            offset = float(np.linalg.norm(joint.origin[:3, 3]))
+            distance[joint.child] = distance[link] + offset
+            links.append(joint.child)
     return max(distance.values())
 
 

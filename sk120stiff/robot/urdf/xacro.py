@@ -17,7 +17,7 @@ from typing import Any
 
 from sk120stiff.errors import require
 from sk120stiff.files import note_read
-from sk120stiff.robot.urdf.findings import Notebook, close_name, listed, shown
+from sk120stiff.robot.urdf.findings import Notebook, did_you_mean, listed, shown
 from sk120stiff.robot.urdf.source import MAX_BYTES, RawSource
 from sk120stiff.robot.urdf.xml_tree import without_comments
 
@@ -207,8 +207,7 @@ def _takes(declared: Mapping[str, str | None], without: Sequence[str] = ()) -> s
 def _refuse_unknown(known: Sequence[str], given: Mapping[str, str], notes: Notebook) -> None:
     for name in given:
         if name not in known:
-            close = close_name(name, known)
-            hint = f"Did you mean {close!r}? " if close else ""
+            hint = did_you_mean(name, known)
             takes = f"It takes: {', '.join(known)}." if known else "It takes none."
             notes.refuse(f"this xacro has no argument {shown(name)}", remedy=hint + takes)
 

@@ -32,24 +32,21 @@ class LoadCurve:
         force: (k,) size of the load at each reading [N].
         measured: (k, 3) measured displacement, base axes [m]; None where there is none.
         sigma: (k, 3) standard uncertainty of the readings [m], or None.
-        line_force: (l,) loads at which the models were evaluated [N]; default: `force`.
-        models: Model name → (l, 3) predicted displacement [m].
+        models: Model name → (k, 3) predicted displacement [m].
     """
 
     title: str
     force: Array
     measured: Array | None = None
     sigma: Array | None = None
-    line_force: Array | None = None
     models: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        loads = self.force if self.line_force is None else self.line_force
         for name, values in self.models.items():
-            if np.shape(values) != (len(loads), 3):
+            if np.shape(values) != (len(self.force), 3):
                 raise InputError(
                     f"model {name!r} has predictions of shape {np.shape(values)}, "
-                    f"not ({len(loads)}, 3)",
+                    f"not ({len(self.force)}, 3)",
                     where=self.title,
                 )
         if self.measured is not None and np.shape(self.measured) != (len(self.force), 3):
@@ -109,7 +106,7 @@ def _draw(panel: Axes, curve: LoadCurve, names: Sequence[str]) -> None:
                 capsize=2,
                 zorder=3,
             )
-        loads = np.asarray(curve.force if curve.line_force is None else curve.line_force)
+        loads = np.asarray(curve.force)
         for name, values in curve.models.items():
             style, colour = looks[name]
             panel.plot(loads, 1e6 * np.asarray(values)[:, axis], style, color=colour)

@@ -16,7 +16,6 @@ from sk120stiff.stiffness import symmetric_part
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,18 +27,16 @@ class PlaneEllipse:
         compliance: (3, 3) [m/N].
         label: Written beside the ellipse; may be empty.
         outline: (k, 3) points of the arm to draw through the plane, or None [m].
-        reference: (3, 3) a second compliance for comparison, drawn as an outline, or None.
     """
 
     centre: Array
     compliance: Array
     label: str = ""
     outline: Array | None = None
-    reference: Array | None = None
 
 
 def plane_ellipses(
-    ellipses: Sequence[PlaneEllipse], *, plane: str = "xz", names: tuple[str, str] = ("", "")
+    ellipses: Sequence[PlaneEllipse], *, plane: str = "xz", name: str = "compliance"
 ) -> Figure:
     """Displacement of the point for a force of fixed size in every direction of a plane.
 
@@ -48,7 +45,7 @@ def plane_ellipses(
 
     Args:
         plane: ``xy``, ``xz`` or ``yz`` of the base frame.
-        names: What the compliance and the reference are called.
+        name: What the compliance is called.
     """
     if plane not in ("xy", "xz", "yz") or not ellipses:
         raise InputError("give at least one ellipse, and a plane among xy, xz, yz")
@@ -64,6 +61,8 @@ def plane_ellipses(
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     circle = np.stack([np.cos(angle), np.sin(angle)])
     with styled():
+        from matplotlib.lines import Line2D
+
         figure = new_figure(5.0, width=6.0)
         panel = figure.subplots()
         for e, centre in zip(ellipses, centres, strict=True):
@@ -73,9 +72,6 @@ def plane_ellipses(
             curve = centre[:, None] + per_metre * (symmetric_part(e.compliance)[pick] @ circle)
             panel.fill(*curve, color=palette.ENHANCED, alpha=0.35, linewidth=0)
             panel.plot(*curve, color=palette.ENHANCED, linewidth=1.6)
-            if e.reference is not None:
-                other = centre[:, None] + per_metre * (symmetric_part(e.reference)[pick] @ circle)
-                panel.plot(*other, "--", color=palette.CONVENTIONAL, linewidth=1.2)
             panel.plot(*centre, ".", color=palette.INK, markersize=5)
             if e.label:
                 panel.annotate(e.label, centre, (7, 7), textcoords="offset points", fontsize=8.5)
@@ -83,7 +79,8 @@ def plane_ellipses(
         panel.margins(0.08)
         panel.set_xlabel(f"{plane[0]} [m]")
         panel.set_ylabel(f"{plane[1]} [m]")
-        panel.legend(handles=_key(ellipses, names, per_metre), loc="best")
+        scale = f"{name} (0.1 m = {0.1 / per_metre * 1e6:.3g} µm/N)"
+        panel.legend(handles=[Line2D([], [], color=palette.ENHANCED, label=scale)], loc="best")
     return figure
 
 
@@ -91,18 +88,3 @@ def _span(ellipses: Sequence[PlaneEllipse], centres: Array, u: int, v: int) -> f
     seen = [centres] + [e.outline[:, [u, v]] for e in ellipses if e.outline is not None]
     span = float(np.max(np.ptp(np.concatenate(seen), axis=0)))
     return span if span > 0.0 else 1.0
-
-
-def _key(
-    ellipses: Sequence[PlaneEllipse], names: tuple[str, str], per_metre: float
-) -> list[Line2D]:
-    from matplotlib.lines import Line2D
-
-    shown, reference = names[0] or "compliance", names[1] or "reference"
-    scale = 0.1 / per_metre * 1e6
-    handles = [
-        Line2D([], [], color=palette.ENHANCED, label=f"{shown} (0.1 m = {scale:.3g} µm/N)"),
-    ]
-    if any(e.reference is not None for e in ellipses):
-        handles.append(Line2D([], [], color=palette.CONVENTIONAL, linestyle="--", label=reference))
-    return handles

@@ -34,7 +34,6 @@ class Estimate:
     std: float | None
     unit: str
     reference: float | None = None
-    note: str = ""
 
     @property
     def shown(self) -> bool:
@@ -96,7 +95,6 @@ def _scale(e: Estimate) -> float:
 
 
 def _written(e: Estimate) -> str:
-    note = f"  {e.note}" if e.note else ""
     if not e.shown:
-        return f"{'rigid' if math.isinf(e.value) else 'cannot be seen'}{note}"
-    return f"{said_as(e.value, e.std, e.unit)}{note}"
+        return "rigid" if math.isinf(e.value) else "cannot be seen"
+    return said_as(e.value, e.std, e.unit)

@@ -75,12 +75,11 @@ class LiveServer(Served):
         server.add_sockets(self._listening)
         return server
 
-    async def run(self, ready: Callable[[str], None] | None = None) -> None:
+    async def run(self, ready: Callable[[str], None]) -> None:
         """Serve until cancelled."""
         server = self.start()
         try:
-            if ready is not None:
-                ready(self.url)
+            ready(self.url)
             await asyncio.Event().wait()
         finally:
             for socket in list(self.sockets):
@@ -88,14 +87,10 @@ class LiveServer(Served):
             server.stop()
             await server.close_all_connections()
 
-    def serve(
-        self, *, open_browser: bool = True, ready: Callable[[str], None] | None = None
-    ) -> None:
+    def serve(self, *, open_browser: bool = True) -> None:
         """Serve until the program is interrupted (Ctrl-C)."""
 
         def announce(url: str) -> None:
-            if ready is not None:
-                ready(url)
             if open_browser:
                 asyncio.get_running_loop().run_in_executor(None, webbrowser.open, url)
 

@@ -25,6 +25,7 @@ from sk120stiff.files import read_bytes, write_atomically
 from sk120stiff.show import palette
 from sk120stiff.show.figures.saving import inline_svg
 from sk120stiff.show.report.blocks import Block, Note, Picture, SceneFrame, Section, Table
+from sk120stiff.show.wording import raised
 
 WHOLE = 1e4  # up to here a number without digits after the point is easier read than a power
 _LOG = logging.getLogger(__name__)
@@ -129,17 +130,13 @@ def _cell(value: object, digits: int) -> str:
         text = f"{number:.0f}"
     if "e" in text:
         mantissa, exponent = text.split("e")
-        text = f"{mantissa.removesuffix('.')}·10{_superscript(int(exponent))}"
+        text = f"{mantissa.removesuffix('.')}·10{raised(int(exponent))}"
     return text.replace("-", "−")
 
 
 def _kept_together(text: str) -> str:
     """A number and its unit are never parted at the end of a line."""
     return re.sub(r"(?<=\d) (?=(?:µm|mm|m|N|deg)\b|%|±)|(?<=±) (?=\d)", "\u00a0", text)
-
-
-def _superscript(number: int) -> str:
-    return str(number).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
 def _prose(text: str) -> Markup:

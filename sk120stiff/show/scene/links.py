@@ -100,16 +100,10 @@ class LinkTree:
 
 def link_tree(robot: Robot) -> LinkTree:
     """All links of a robot, in the joint vector of its coupling."""
-    carried = {joint.child: joint for joint in robot.document.joints}
-    children: dict[str, list[str]] = {}
-    for joint in robot.document.joints:
-        children.setdefault(joint.parent, []).append(joint.child)
-    names: list[str] = []
-    waiting = [robot.document.root]
-    while waiting:
-        name = waiting.pop(0)
-        names.append(name)
-        waiting.extend(children.get(name, []))
+    document = robot.document
+    names = [document.root]
+    for name in names:
+        names.extend(joint.child for joint in document.below.get(name, ()))
     index = {name: k for k, name in enumerate(names)}
     coordinate = {name: k for k, name in enumerate(robot.tree.joint_names)}
     parents = np.full(len(names), -1, dtype=np.intp)
@@ -118,10 +112,8 @@ def link_tree(robot: Robot) -> LinkTree:
     kinds = np.zeros(len(names), dtype=np.intp)
     coordinates = np.full(len(names), -1, dtype=np.intp)
     joints = [""] * len(names)
-    for k, name in enumerate(names):
-        if name not in carried:
-            continue
-        spec = carried[name]
+    for k, name in enumerate(names[1:], 1):
+        spec = document.above[name]
         joints[k] = spec.name
         parents[k] = index[spec.parent]
         origins[k] = spec.origin

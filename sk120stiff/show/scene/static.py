@@ -51,13 +51,13 @@ def static_scene(path: str | os.PathLike[str], scene: Scene) -> Path:
     return write_atomically(path, scene_html(scene))
 
 
-def notebook_html(scene: Scene, *, height: int = 620) -> str:
+def notebook_html(scene: Scene) -> str:
     """The scene for a notebook cell: the whole page inside an iframe, also in a saved notebook."""
     page = escape(scene_html(scene), quote=True)
     title = escape(scene.title or scene.robot.name, quote=True)
     return (
         f'<iframe title="{title}" srcdoc="{page}" '
-        f'style="width:100%;height:{height}px;border:0;border-radius:12px"></iframe>'
+        'style="width:100%;height:620px;border:0;border-radius:12px"></iframe>'
     )
 
 

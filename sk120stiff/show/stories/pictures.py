@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LONGEST_ARROW = 0.22  # share of the picture's width
+COLUMNS = 3  # of panels
 MOST_POINTS = 500  # in one panel; more would only make the page heavy
 
 
@@ -45,10 +46,7 @@ def gap_vectors(views: Sequence[ArmView]) -> Figure:
     """
     names = list(dict.fromkeys(name for view in views for name in view.gaps))
     colours = dict(zip(names, palette.steps(len(names)), strict=True))
-    points = np.concatenate([view.outline for view in views])
-    span = float(np.ptp(points, axis=0).max()) or 1.0
-    largest = max(float(np.linalg.norm(gap)) for view in views for gap in view.gaps.values())
-    scale = LONGEST_ARROW * span / largest if largest else 1.0
+    scale = exaggeration(views)
     with styled():
         from matplotlib.lines import Line2D
 
@@ -113,19 +111,19 @@ def _side(point: Array, tip: Array) -> Array:
     return np.array([float(point[:2] @ out), float(point[2])])
 
 
-def suspect_panels(found: Localisation, *, columns: int = 3) -> Figure:
+def suspect_panels(found: Localisation) -> Figure:
     """The gap against the strongest suspects and the best of every family, where any is seen.
 
     Each panel shows the gap along the direction of its suspect, freed of what the joint springs had
     covered up. The strongest one is marked.
     """
     shown = [s for s in found.suspects if s.partial.size]
-    rows = -(-len(shown) // columns)
+    rows = -(-len(shown) // COLUMNS)
     with styled():
-        figure, axes = subplots(rows, min(columns, len(shown)), height=0.3 + 2.15 * rows)
+        figure, axes = subplots(rows, min(COLUMNS, len(shown)), height=0.3 + 2.15 * rows)
         for k, (panel, suspicion) in enumerate(zip(axes, shown, strict=False)):
             _draw_suspicion(panel, suspicion, marked=k == 0 and suspicion.seen)
-            if k % columns == 0:
+            if k % COLUMNS == 0:
                 panel.set_ylabel("gap [µm]")
         hide_spare(axes, len(shown))
     return figure

@@ -75,7 +75,7 @@ def _ellipses(fit: Fit, found: dict[str, LoadedStiffness]) -> Picture:
         f"pose {label} {1e6 / stiff.principal.values[0]:.2g} µm/N" for label, stiff in found.items()
     )
     return Picture(
-        lambda: plane_ellipses(drawn, plane="xy", names=("yields to a force of 1 N", "")),
+        lambda: plane_ellipses(drawn, plane="xy", name="yields to a force of 1 N"),
         alt=f"The arm from above at {len(drawn)} poses with its compliance ellipses; softest: "
         f"{yields}.",
         caption="From above: how far the flange yields to a force of one size in every horizontal "

@@ -233,11 +233,8 @@ def test_addresses_that_lead_nowhere(package: Path, address: str) -> None:
     assert why
 
 
-def test_ros_package_path_and_given_folders(
-    package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ros_package_path(package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     address = "package://checkout-main/meshes/fore.stl"
     assert resolve(address, None, package_folders(None))[0] is None
-    assert resolve(address, None, package_folders(None, [tmp_path]))[0] is not None
     monkeypatch.setenv("ROS_PACKAGE_PATH", f"/nowhere{os.pathsep}{tmp_path}")
     assert resolve(address, None, package_folders(None))[0] is not None

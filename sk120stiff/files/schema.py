@@ -1,14 +1,13 @@
-"""What pydantic finds in a YAML file, as one message of ours."""
+"""What a YAML file of ours may hold, and what pydantic finds in one, as one message of ours."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from difflib import get_close_matches
-from typing import get_args
+from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, meant
 
 WANTED = {
     "tuple_type": "several values in square brackets are wanted",
@@ -22,20 +21,45 @@ WANTED = {
 }
 LONGEST = 60  # letters of a value that are repeated
 
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Vector = tuple[Finite, Finite, Finite]
+Keys = TypeVar("Keys", bound=BaseModel)
 
-def schema_error(
-    error: ValidationError,
+
+class Strict(BaseModel):
+    """Keys that are all known, read once."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def validated(
+    model: type[Keys],
+    content: Any,
     where: str | Callable[[str], str],
-    model: type[BaseModel],
     like: Mapping[str, str] | None = None,
-) -> InputError:
-    """The first slip: which key, what stands there, and what to write.
+) -> Keys:
+    """The content of a file as the keys of a model; an empty file has none.
 
     Args:
         where: The file, or what tells the place of a key in it.
-        model: What was to be read.
         like: Examples of what can be written, by the key's own name or that of its section.
+
+    Raises:
+        InputError: An unknown or missing key, or a value that does not fit.
     """
+    try:
+        return model.model_validate(content or {})
+    except ValidationError as error:
+        raise _slip(error, where, model, like or {}) from error
+
+
+def _slip(
+    error: ValidationError,
+    where: str | Callable[[str], str],
+    model: type[BaseModel],
+    like: Mapping[str, str],
+) -> InputError:
+    """The first slip: which key, what stands there, and what to write."""
     # a misspelt key goes before what is missing because of it
     slip = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")
     place = list(slip["loc"])
@@ -45,11 +69,10 @@ def schema_error(
     known = _keys(model, path[:-1])
     section = f" of {'.'.join(path[:-1])}" if path[1:] else ""
     remedy = f"Keys{section} are: {', '.join(known)}."
-    example = (like or {}).get(path[-1]) or (like or {}).get(path[0])
+    example = like.get(path[-1]) or like.get(path[0])
     kind = slip["type"]
     if kind == "extra_forbidden":
-        close = get_close_matches(path[-1], known, n=1)
-        what = f"the key {key!r} is not known" + (f" (did you mean {close[0]!r}?)" if close else "")
+        what = f"the key {key!r} is not known{meant(path[-1], known)}"
         example = None
     elif kind == "missing" and inside:
         what = f"key {key!r}: only {len(slip['input'])} numbers stand there"
