@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted
+from sk120stiff.explain.localise.suspects import TO_AND_FRO
 from sk120stiff.explain.localise.words import microns
 
 if TYPE_CHECKING:
@@ -152,6 +153,11 @@ def _largest(answer: Explanation) -> list[str]:
 def _of_the_remainder(answer: Explanation) -> str:
     """What would tell more of what is left."""
     place = accounted(answer)
+    if any(TO_AND_FRO in said for said in (place or "", *answer.remainder.where)):
+        return (
+            "The rest comes and goes with the time: read the zero again before every load, and "
+            "keep sun, draughts and air conditioning from arm and instrument."
+        )
     if place is not None:
         return (
             f"The rest goes with {place}, and beside that only noise is left: look there, and read "

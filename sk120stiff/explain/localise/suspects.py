@@ -19,6 +19,10 @@ from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import ArmJoint, arm_joints, last_link
 
+CLOCKS = ("the order of the readings", "the time since the zero reading")
+TO_AND_FRO = ", coming and going in "
+WAVE = 4  # readings, at least, in half a wave of a drift
+MOST_HALF_WAVES = 40  # of a drift in one series
 SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
 
 
@@ -211,16 +215,47 @@ def _series(load_cases: LoadCases) -> Iterator[Suspect]:
     size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
     yield Suspect("series", "a constant that no load changes", axes, size, "load [N]")
     clocks = (
-        (load_cases.order, "the order of the readings", "readings since the zero"),
-        (load_cases.time, "the time since the zero reading", "time since the zero [s]"),
+        (load_cases.order, CLOCKS[0], "readings since the zero"),
+        (load_cases.time, CLOCKS[1], "time since the zero [s]"),
     )
     for clock, name, label in clocks:
         if clock is not None and np.ptp(clock) > 0.0:
             yield Suspect("series", name, axes * clock[:, None, None], clock, label)
+    yield from _comings_and_goings(load_cases)
     if len(np.unique(load_cases.branch)) > 1:
         columns = axes * load_cases.branch[:, None, None]
         name, label = "the branch, loading or unloading", "branch (+1 loading, −1 unloading)"
         yield Suspect("series", name, columns, load_cases.branch, label)
+
+
+def _comings_and_goings(load_cases: LoadCases) -> Iterator[Suspect]:
+    """Readings that wander to and fro as the hours go by: air conditioning, sun, people.
+
+    Waves that fit a whole or a half number of times into the series, slower than two readings.
+    """
+    timed = load_cases.time is not None
+    since, zero = (
+        (load_cases.time, load_cases.time_at_zero)
+        if timed
+        else (load_cases.order, load_cases.order_at_zero)
+    )
+    if since is None or zero is None:
+        return
+    clock = np.unique(np.concatenate([zero, zero + since]))
+    whole = float(np.ptp(clock))
+    most = min(len(clock) // WAVE, MOST_HALF_WAVES)
+    for count in range(1, most + 1 if whole > 0.0 else 0):
+        pace = np.pi * count / whole
+        to_and_fro = np.stack(
+            [f(pace * (zero + since)) - f(pace * zero) for f in (np.cos, np.sin)], axis=-1
+        )
+        columns = np.einsum("nij,nk->nijk", load_cases.reading_axes, to_and_fro)
+        period = 2.0 * whole / count
+        every = f"{period / 60.0:.2g} min" if timed else f"{period:.2g} readings"
+        name = f"the {'time' if timed else 'order'} of the readings{TO_AND_FRO}{every}"
+        label = "time [s]" if timed else "reading"
+        columns = columns.reshape(load_cases.count, 3, 6)
+        yield Suspect("series", name, columns, zero + since, label, alike=most)
 
 
 def _turning(family: str, name: str, at: LoadCases, origin: Array, about: Array) -> Suspect:
