@@ -291,6 +291,8 @@ def _rotation(table: Table, roles: Roles) -> Array | None:
         return None
     out = np.full((len(q), 3, 3), np.nan)
     known = np.isfinite(q).all(axis=1)
+    if not known.any():  # a plan; older scipy refuses an empty stack of rotations
+        return out
     turn = (
         Rotation.from_quat(np.roll(q[known], -1, axis=1))  # scalar last there
         if vector is None
