@@ -10,15 +10,15 @@ from sk120stiff.explain import explain
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
 from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
-from sk120stiff.measurements import Measurements
-from tests.explain.readings import SIGMA, base_fit, hidden
+from sk120stiff.measurements import Measurements, NoiseModel
+from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
 
 WAY = np.array([0.6, -0.5, 0.62])
 
 
-def set_aside(readings: Measurements) -> tuple[list[int], list[int]]:
+def set_aside(readings: Measurements, noise: NoiseModel = NOISE) -> tuple[list[int], list[int]]:
     """Rows that stand out where nothing is known of warming up, and where it is."""
-    base = base_fit(readings)
+    base = base_fit(readings, noise)
     candidates = candidates_for(base.model, readings, Options())
     regression = regression_at(base, candidates, ("joint_springs",), alpha=0.01)
     whitener, courses = base.problem.whitener, warm_ups(base.problem.load_cases)
@@ -79,6 +79,20 @@ def test_a_reading_far_beyond_all_others_is_set_aside_beside_a_cause_that_has_no
     slipped = off(replace(readings, displacement=bent), [31], 150 * SIGMA)
     assert set_aside(slipped)[0] == [31]
     assert set_aside(replace(readings, displacement=bent))[0] == []
+
+
+@pytest.mark.parametrize("freedom", [np.inf, 0])
+def test_slips_that_hide_each_other_are_set_aside_where_the_noise_is_not_what_was_stated(freedom):
+    """Two readings exchanged, one with a wrong sign: one far off hid the others, and all stayed."""
+    readings = hidden(poses=12, loads=4, seed=4)
+    moved = np.array(readings.displacement)
+    moved += 1.7 * SIGMA * np.random.default_rng(6).normal(size=moved.shape)
+    slips = [7, 19, 33]
+    moved[[7, 33]] = moved[[33, 7]]
+    moved[19] *= [1.0, -1.0, 1.0]
+    moved[19, 1] += 150 * SIGMA
+    slipped = replace(readings, displacement=moved)
+    assert set_aside(slipped, replace(NOISE, freedom=freedom))[0] == slips
 
 
 def test_a_slip_is_found_beside_a_tracker_that_warms_up():

@@ -1,8 +1,14 @@
-"""Readings that no smooth cause can have made, found before any cause is named."""
+"""Readings that no smooth cause can have made, found before any cause is named.
+
+Several hide each other by the spread that they bring: Rosner (1983), Percentage points for a
+generalized ESD many-outlier procedure, *Technometrics* 25.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +47,8 @@ def outlying_rows(
 
     Where so many readings are farther off than the stated noise that no catalogue explains them,
     some are outliers if without them, each far off, the noise is all that is left. Otherwise what
-    is left of the others is the noise that an outlier has to stand out of.
+    is left of the others is the noise that an outlier has to stand out of; a whole crowd of them
+    has to stand apart: slips leave nothing between themselves and the rest, a smooth cause does.
 
     Args:
         regression: The readings linearised at the base model.
@@ -52,11 +59,11 @@ def outlying_rows(
     y = regression.y
     axes = np.bincount(whitener.reading)  # (N,) how many were read
     shifts = _shift_columns(whitener, regression.group)
-    found = _searched(X, prior, y, shifts, regression.sigma_known)
-    if found.left == np.inf and regression.sigma_known:
-        found = _searched(X, prior, y, shifts, sigma_known=True, limits=(ALONE, ALONE), most=MANY)
-        if found.left > chi2.isf(CLEAN, len(y)):
-            found = _searched(X, prior, y, shifts, sigma_known=False, limits=(ALONE, ALONE))
+    known = regression.sigma_known
+    found = _one_by_one(_peeled(X, prior, y, shifts, known), shifts)
+    if found is None:
+        clean = chi2.isf(CLEAN, len(y)) if known else None
+        found = _far_off(partial(_peeled, X, prior, y, shifts), shifts, clean)
     if not len(found.rows):
         return found.rows
     each = np.log(len(y))  # the price of a parameter
@@ -65,12 +72,11 @@ def outlying_rows(
         beside = whitener.apply(course)
         size = np.sqrt((beside**2).sum(0))
         if (size > 0.0).all():
-            other = _searched(
-                np.hstack([X, beside / size]), np.concatenate([prior, np.zeros(3)]), y, shifts,
-                regression.sigma_known, noise=found.noise,
-            )  # fmt: skip
-            spent = float(axes[other.rows].sum()) + 4.0
-            ways.append((other.left + spent * each, other.rows))
+            free = np.hstack([X, beside / size]), np.concatenate([prior, np.zeros(3)])
+            other = _one_by_one(_peeled(*free, y, shifts, known, noise=found.noise), shifts)
+            if other is not None:
+                spent = float(axes[other.rows].sum()) + 4.0
+                ways.append((other.left + spent * each, other.rows))
     return min(ways, key=lambda way: way[0])[1]
 
 
@@ -99,12 +105,20 @@ def _half(columns: Array, weight: Array) -> Array:
     return np.asarray(np.linalg.solve(factor, (columns * scale).T))
 
 
-class _Searched(NamedTuple):
-    """Rows that stand out, what is left beside them (χ²), and the noise that this was held to."""
+class _Peeled(NamedTuple):
+    """Rows that were taken out, and what is beside them.
+
+    Attributes:
+        rows: Of the readings, in order.
+        left: χ² of the others.
+        noise: What this was held to.
+        next: Standard errors by which the farthest of the others is off.
+    """
 
     rows: Index
     left: float
     noise: float
+    next: float
 
 
 class _Shifts(NamedTuple):
@@ -125,22 +139,67 @@ class _Shifts(NamedTuple):
         return np.tensordot(rows[:, self.rows], self.columns, axes=1)
 
 
-def _searched(
+def _one_by_one(
+    peeled: Iterable[_Peeled],
+    shifts: Sequence[_Shifts],
+    limits: tuple[float, float] = (LIMIT, NEXT),
+    most: float = LARGEST_SHARE,
+) -> _Peeled | None:
+    """What stands out, until the next does not; None where that is more than a share of them.
+
+    They do by so many standard errors (`limits`): the first, and those after it.
+    """
+    for state in _as_many(peeled, shifts, most):
+        if state.next <= limits[len(state.rows) > 0]:
+            return state
+    return None
+
+
+def _far_off(
+    peel: Callable[[bool], Iterable[_Peeled]], shifts: Sequence[_Shifts], clean: float | None
+) -> _Peeled:
+    """What stands far out, though far more is left than noise.
+
+    Args:
+        peel: Takes out the worst one by one; whether the noise is known.
+        shifts: What a shift of each reading does.
+        clean: The most that the stated noise leaves (None: nobody stated it).
+    """
+    known = clean is not None
+    far = (ALONE, ALONE)
+    if clean is not None:
+        found = _one_by_one(peel(True), shifts, far, MANY)
+        if found is not None and found.left <= clean:
+            return found
+    # Several hide each other: the last that stood far out counts, however many are taken before.
+    states = list(_as_many(peel(False), shifts, MANY))
+    last = max((k + 1 for k, state in enumerate(states) if state.next > ALONE), default=0)
+    if last < len(states) and states[last].next <= LIMIT:
+        return states[last]
+    found = _one_by_one(states, shifts, far) if known else None
+    return states[0] if found is None else found
+
+
+def _as_many(
+    peeled: Iterable[_Peeled], shifts: Sequence[_Shifts], most: float
+) -> Iterator[_Peeled]:
+    """While no more than a share of the readings was taken out."""
+    count = sum(len(each.readings) for each in shifts)
+    return takewhile(lambda state: len(state.rows) <= most * count, peeled)
+
+
+def _peeled(
     X: Array,
     prior: Array,
     y: Array,
     shifts: Sequence[_Shifts],
     sigma_known: bool,
     noise: float | None = None,
-    limits: tuple[float, float] = (LIMIT, NEXT),
-    most: float = LARGEST_SHARE,
-) -> _Searched:
-    """Readings that stand out of the columns X (R, P), drawn towards zero by `prior` (P,).
+) -> Iterator[_Peeled]:
+    """Take out, one by one, the reading that stands out most of the columns X (R, P).
 
-    They do by so many standard errors (`limits`): the first, and those after it; `most` is the
-    largest share of them.
-
-    A shift that joins the fit adds rows to `half`, with which halfᵀ half is the fit again.
+    These are drawn towards zero by `prior` (P,). A shift that joins the fit adds rows to `half`,
+    with which halfᵀ half is the fit again.
     """
     out: list[int] = []
     count = 1 + max((int(each.readings.max()) for each in shifts), default=-1)
@@ -151,7 +210,7 @@ def _searched(
     for each in shifts:
         total[each.readings] = (each.columns**2).sum(0)
         left[each.readings] = total[each.readings] - (each.along(half) ** 2).sum(0)
-    while len(out) <= most * len(total):
+    while True:
         size = noise
         if size is None:
             size = 1.0 if sigma_known else robust_scale(residual, leverage)
@@ -161,9 +220,8 @@ def _searched(
         score[left <= LEAST_LEFT * total] = 0.0
         score[out] = 0.0
         worst = int(score.max(axis=1).argmax())
-        if score[worst].max() <= limits[bool(out)]:
-            left_over = float(y @ residual) / size**2
-            return _Searched(np.array(sorted(out), dtype=np.intp), left_over, size)
+        rows = np.array(sorted(out), dtype=np.intp)
+        yield _Peeled(rows, float(y @ residual) / size**2, size, float(score[worst].max()))
         out.append(worst)
         new = _beyond(half, next(each for each in shifts if worst in each.readings), worst)
         half = np.vstack([half, new])
@@ -171,7 +229,6 @@ def _searched(
         leverage += (new**2).sum(0)
         for each in shifts:
             left[each.readings] -= (each.along(new) ** 2).sum(0)
-    return _Searched(np.zeros(0, dtype=np.intp), np.inf, np.nan)
 
 
 def _beyond(half: Array, shifts: _Shifts, reading: int) -> Array:

@@ -113,8 +113,9 @@ def shrinks(answer: Explanation) -> str:
     """By how much the gap fell on poses that no fit has seen."""
     first, last = answer.steps[0], answer.steps[-1]
     added = "it" if len(answer.findings) == 1 else "them"
+    goes = "falls" if last.heldout_rms < first.heldout_rms else "does not fall: it goes"
     return (
-        f"With {added} in the model the gap on poses left out of the fit falls from "
+        f"With {added} in the model the gap on poses left out of the fit {goes} from "
         f"{um(first.heldout_rms)} to {um(last.heldout_rms)} µm; "
         f"{noise_makes(answer)}."
     )
