@@ -106,4 +106,4 @@ def command(
         document = write_answer(answer, asked, out, report=not no_report, progress=report)
     if isinstance(answer, Explained):
         return positions_answer(answer, document, out)
-    return Answer(document, parts(answer, readings, out, report=document.get("report")))
+    return Answer(document, parts(answer, out, report=document.get("report")))

@@ -19,6 +19,7 @@ from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
+from sk120stiff.explain.answer.set_aside import set_aside_sentences
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import held_out_words, noise_words, plain_words
 from sk120stiff.explain.findings import Contender, Finding, likely
@@ -113,9 +114,7 @@ def _heldout(file: Path) -> str:
     return f"on the readings of `{file.name}`, which are of other poses"
 
 
-def parts(
-    answer: Explanation, readings: Measurements, out: Path, *, report: object = None
-) -> list[object]:
+def parts(answer: Explanation, out: Path, *, report: object = None) -> list[object]:
     """The answer for people; `report` is where the report was written, if it was."""
     shown: list[object] = [said(answer), *answer.limits, *findings(answer)]
     shown += answer.known_together
@@ -141,11 +140,7 @@ def parts(
     if answer.adequacy.whole is not None:
         shown.append(answer.adequacy.whole.sentence())
     shown += noise_words(answer)
-    shown += [
-        f"Set aside as no smooth cause can have made it: pose {readings.pose[row]}, "
-        f"line {readings.line[row]}."
-        for row in answer.set_aside
-    ]
+    shown += set_aside_sentences(answer)
     shown.append(f"What to do now: {next_step(answer)}")
     if answer.next_poses is not None:
         shown.append(f"Measure next what stands in {out / 'next_poses.csv'}.")

@@ -7,6 +7,7 @@ import pytest
 
 from sk120stiff.effects.reading_drift import ReadingDrift, warm_ups
 from sk120stiff.explain import explain
+from sk120stiff.explain.answer.set_aside import likely_slips
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
 from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
@@ -81,18 +82,32 @@ def test_a_reading_far_beyond_all_others_is_set_aside_beside_a_cause_that_has_no
     assert set_aside(replace(readings, displacement=bent))[0] == []
 
 
-@pytest.mark.parametrize("freedom", [np.inf, 0])
-def test_slips_that_hide_each_other_are_set_aside_where_the_noise_is_not_what_was_stated(freedom):
-    """Two readings exchanged, one with a wrong sign: one far off hid the others, and all stayed."""
+def with_slips() -> Measurements:
+    """Two readings exchanged, one with a wrong sign; and more noise than was stated."""
     readings = hidden(poses=12, loads=4, seed=4)
     moved = np.array(readings.displacement)
     moved += 1.7 * SIGMA * np.random.default_rng(6).normal(size=moved.shape)
-    slips = [7, 19, 33]
     moved[[7, 33]] = moved[[33, 7]]
-    moved[19] *= [1.0, -1.0, 1.0]
-    moved[19, 1] += 150 * SIGMA
-    slipped = replace(readings, displacement=moved)
-    assert set_aside(slipped, replace(NOISE, freedom=freedom))[0] == slips
+    moved[25, 2] *= -1.0
+    return replace(readings, displacement=moved)
+
+
+@pytest.mark.parametrize("freedom", [np.inf, 0])
+def test_slips_that_hide_each_other_are_set_aside_where_the_noise_is_not_what_was_stated(freedom):
+    """One far off hid the others, and all stayed."""
+    slipped = with_slips()
+    assert set_aside(slipped, replace(NOISE, freedom=freedom))[0] == [7, 25, 33]
+
+
+def test_the_slip_that_would_explain_a_reading_is_told():
+    readings = with_slips()
+    model = base_fit(readings).model
+    answer = explain(model, readings, options=Options(only=("joint_tilt",)))
+    assert likely_slips(answer) == {
+        7: "exchanged with the reading of pose 9 both would fit",
+        25: "dz would fit with the other sign",
+        33: "exchanged with the reading of pose 2 both would fit",
+    }
 
 
 def test_a_slip_is_found_beside_a_tracker_that_warms_up():

@@ -12,6 +12,7 @@ import numpy as np
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
+from sk120stiff.explain.answer.set_aside import likely_slips
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import Finding, TaskBudget
@@ -38,6 +39,7 @@ def verdict_document(
     next_poses
         Name of the file that holds the poses to measure next.
     """
+    slips = likely_slips(answer)
     return {
         "verdict": answer.verdict,
         "remainder": remainder_document(answer),
@@ -85,7 +87,11 @@ def verdict_document(
             "degrees_of_freedom": answer.yardstick.freedom,
             "decided": list(noise_words(answer)),
             "set_aside": [
-                {"pose": readings.pose[row], "line": int(readings.line[row])}
+                {
+                    "pose": readings.pose[row],
+                    "line": int(readings.line[row]),
+                    "slip": slips.get(row),
+                }
                 for row in answer.set_aside
             ],
         },

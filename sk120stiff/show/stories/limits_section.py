@@ -9,6 +9,7 @@ import numpy as np
 
 from sk120stiff.effects import all_effects
 from sk120stiff.explain import Detectable, Explanation
+from sk120stiff.explain.answer.set_aside import likely_slips, place_of
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import ENOUGH
 from sk120stiff.identify.report import noise_sentence
@@ -47,10 +48,11 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
 
 
 def _set_aside(answer: Explanation, readings: Measurements) -> Note:
-    told = []
-    for row in answer.set_aside:
-        line = int(readings.line[row])
-        told.append(f"pose {readings.pose[row]}" + (f", line {line}" if line else ""))
+    slips = likely_slips(answer)
+    told = [
+        place_of(readings, row) + (f" ({slips[row]})" if row in slips else "")
+        for row in answer.set_aside
+    ]
     return Note(
         f"{counted(len(told), 'reading')} of {readings.use.sum()} no smooth cause can have made, "
         f"and no fit used: {'; '.join(told)}. Look for a disturbed reading or a slip of the pen. "
