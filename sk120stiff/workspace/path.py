@@ -246,11 +246,7 @@ def _branches(
     """
     rest = np.clip(np.zeros(arm.n) if start is None else start, arm.lower, arm.upper)
     starts = starting_poses(arm, STARTS, rest)
-    many = Task(
-        np.repeat(first.position, STARTS, axis=0),
-        rotation=None if first.rotation is None else np.repeat(first.rotation, STARTS, axis=0),
-    )
-    reached = solve_inverse(arm, many, starts)
+    reached = solve_inverse(arm, first.rows(np.zeros(STARTS, dtype=np.intp)), starts)
     found = different(reached.a[reached.found])
     distance = np.linalg.norm(found - rest, axis=1)
     faults = [~ask(found) for ask in asked if ask and start is None and len(found)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.arrays import Array
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, middle_of, near, solve_inverse, starting_poses
 
@@ -18,15 +17,7 @@ def why_unreached(arm: ElasticArm, target: Task) -> str:
         arm: The arm, its limits less their margins.
         target: One position, with an axis or a rotation or without.
     """
-
-    def each(x: Array | None, *shape: int) -> Array | None:
-        return None if x is None else np.broadcast_to(x, (STARTS, *shape))
-
-    many = Task(
-        np.broadcast_to(target.position, (STARTS, 3)),
-        each(target.axis, 3),
-        each(target.rotation, 3, 3),
-    )
+    many = target.rows(np.zeros(STARTS, dtype=np.intp))
     rest = np.clip(np.zeros(arm.n), arm.lower, arm.upper)
     free = solve_inverse(arm, many, starting_poses(arm, STARTS, rest), limits=False)
     if not free.found.any():

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sk120stiff.effects import LoadCases
 from sk120stiff.explain import Explanation
 from sk120stiff.identify import Fit
 from sk120stiff.measurements import Measurements
@@ -75,6 +76,13 @@ def plan_scene(model: Model, plan: Measurements, cell: Cell, driven: Route | Non
     return replace(scene, path=path, surroundings=around)
 
 
+def largest_loads(load_cases: LoadCases) -> dict[str, int]:
+    """Pose → its row with the largest force."""
+    size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
+    rows = {label: np.flatnonzero(load_cases.pose == k) for k, label in enumerate(load_cases.poses)}
+    return {label: int(own[np.argmax(size[own])]) for label, own in rows.items() if len(own)}
+
+
 def arm_views(fit: Fit, models: Mapping[str, Model]) -> list[ArmView]:
     """Every pose as a line through the arm, with the gaps of its largest load.
 
@@ -89,14 +97,9 @@ def arm_views(fit: Fit, models: Mapping[str, Model]) -> list[ArmView]:
         )
         for name, model in models.items()
     }
-    size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
     screws = load_cases.nominal
     views = []
-    for k, label in enumerate(load_cases.poses):
-        rows = np.flatnonzero(load_cases.pose == k)
-        if not len(rows):
-            continue
-        row = int(rows[np.argmax(size[rows])])
+    for label, row in largest_loads(load_cases).items():
         ends = [screws.frame_position[row], screws.position[row]]
         outline = np.vstack([np.zeros(3), screws.origins[row], *ends])
         views.append(ArmView(outline, {name: gap[row] for name, gap in gaps.items()}, label))

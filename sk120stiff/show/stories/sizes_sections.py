@@ -154,13 +154,7 @@ def budget_section(answer: Explanation) -> Section | None:
                 alt=f"Bars of {len(drawn)} shares: {told}.",
                 caption="What each effect moves the point by. Violet: what was named.",
             ),
-            Table(
-                ["what yields", "moves", "±"],
-                _rows(shares),
-                "Rms per axis at the measured loads, with its standard error.",
-                units=["", "µm", "µm"],
-                digits=3,
-            ),
+            _shares(_rows(shares), "Rms per axis at the measured loads, with its standard error."),
             *_joint_by_joint(answer.joints_budget, "at the measured loads"),
             *_task(answer.task),
         ],
@@ -178,13 +172,7 @@ def _task(task: TaskBudget | None) -> list[Block]:
     return [
         f"On the task {named} the loaded tool is moved by the arm's weight too; sizes of the "
         "uncorrected path.",
-        Table(
-            ["what yields", "moves", "±"],
-            rows,
-            "Rms per axis along the task, with its standard error.",
-            units=["", "µm", "µm"],
-            digits=3,
-        ),
+        _shares(rows, "Rms per axis along the task, with its standard error."),
         *_joint_by_joint(task.joints, "along the task"),
     ]
 
@@ -208,6 +196,10 @@ def _joint_by_joint(every: Sequence[Share], where: str) -> list[Block]:
             digits=3,
         ),
     ]
+
+
+def _shares(rows: list[tuple[object, ...]], caption: str) -> Table:
+    return Table(["what yields", "moves", "±"], rows, caption, ["", "µm", "µm"], digits=3)
 
 
 def _rows(shares: Sequence[Share]) -> list[tuple[object, ...]]:

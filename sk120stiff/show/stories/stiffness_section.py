@@ -9,18 +9,15 @@ from sk120stiff.identify import Fit
 from sk120stiff.model import LoadedStiffness, loaded_stiffness
 from sk120stiff.show.figures import PlaneEllipse, plane_ellipses
 from sk120stiff.show.report import Picture, Section, Table
-from sk120stiff.show.stories.scenes import arm_views
+from sk120stiff.show.stories.scenes import arm_views, largest_loads
 from sk120stiff.show.wording import number
 
 
 def stiffness_section(fit: Fit) -> Section:
     """Principal stiffness at every measured pose under its largest load, and the ellipses."""
     load_cases = fit.problem.load_cases
-    size = np.linalg.norm(load_cases.wrench[:, :3], axis=1)
     found: dict[str, tuple[LoadedStiffness, Array]] = {}
-    for k, label in enumerate(load_cases.poses):
-        rows = np.flatnonzero(load_cases.pose == k)
-        row = int(rows[np.argmax(size[rows])])
+    for label, row in largest_loads(load_cases).items():
         wrench = load_cases.wrench[row]
         found[label] = (loaded_stiffness(fit.model, load_cases.a[row], wrench), wrench)
     critical = min(stiff.critical_factor for stiff, _ in found.values())
