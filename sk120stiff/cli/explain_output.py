@@ -19,9 +19,13 @@ from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
-from sk120stiff.explain.answer.set_aside import set_aside_sentences
 from sk120stiff.explain.answer.sizes import whole_size
-from sk120stiff.explain.answer.words import held_out_words, noise_words, plain_words
+from sk120stiff.explain.answer.words import (
+    held_out_words,
+    noise_words,
+    plain_words,
+    set_aside_sentences,
+)
 from sk120stiff.explain.findings import Contender, Finding, likely
 from sk120stiff.identify import unseen_reasons
 from sk120stiff.identify.report import noise_sentence

@@ -3,11 +3,14 @@
 from sk120stiff.data_checks.copies import repeated_rows, without_copies
 from sk120stiff.data_checks.look import look, refuse_unbelievable
 from sk120stiff.data_checks.search import find_slip
+from sk120stiff.data_checks.single_rows import place_of, slips_of_rows
 
 __all__ = [
     "find_slip",
     "look",
+    "place_of",
     "refuse_unbelievable",
     "repeated_rows",
+    "slips_of_rows",
     "without_copies",
 ]

@@ -7,7 +7,7 @@ import pytest
 
 from sk120stiff.effects.reading_drift import ReadingDrift, warm_ups
 from sk120stiff.explain import explain
-from sk120stiff.explain.answer.set_aside import likely_slips
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
 from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
@@ -103,11 +103,12 @@ def test_the_slip_that_would_explain_a_reading_is_told():
     readings = with_slips()
     model = base_fit(readings).model
     answer = explain(model, readings, options=Options(only=("joint_tilt",)))
-    assert likely_slips(answer) == {
+    assert answer.slips == {
         7: "exchanged with the reading of pose 9 both would fit",
         25: "dz would fit with the other sign",
         33: "exchanged with the reading of pose 2 both would fit",
     }
+    assert "Compare pose 2, pose 7 and pose 9 with the sheet" in next_step(answer)
 
 
 def test_a_slip_is_found_beside_a_tracker_that_warms_up():

@@ -12,7 +12,6 @@ import numpy as np
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
-from sk120stiff.explain.answer.set_aside import likely_slips
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import Finding, TaskBudget
@@ -39,7 +38,7 @@ def verdict_document(
     next_poses
         Name of the file that holds the poses to measure next.
     """
-    slips = likely_slips(answer)
+    slips = answer.slips
     return {
         "verdict": answer.verdict,
         "remainder": remainder_document(answer),

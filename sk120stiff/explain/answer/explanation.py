@@ -9,19 +9,23 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options
+from sk120stiff.data_checks import slips_of_rows
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options, load_cases_of
+from sk120stiff.errors import ToolkitError
 from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, Step, TaskBudget
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.budget import error_budget, joint_budget
 from sk120stiff.explain.judge.remainder import Remainder
-from sk120stiff.identify import Fit, Yardstick, known_together, yardstick
+from sk120stiff.identify import Fit, Yardstick, known_model, known_together, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Share
+from sk120stiff.model.predicted import predict_what_holds
 
 if TYPE_CHECKING:
     from sk120stiff.show import Report
 
 Verdict = Literal["none", "named", "ambiguous", "outside"]
+SLIP_FITS = 3.0  # times the gap of the readings in use, rms, that a mended axis may be off
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +116,17 @@ class Explanation:
     def joints_budget(self) -> tuple[Share, ...]:
         """What spring, gear and bearing of each joint move the point by together."""
         return joint_budget(self.final)
+
+    @cached_property
+    def slips(self) -> Mapping[int, str]:
+        """The slip of the pen that would explain a row that was set aside, where one would."""
+        final = known_model(self.final)
+        limit = SLIP_FITS * max(self.steps[-1].fit_rms, self.noise_floor or 0.0)
+        try:
+            told = predict_what_holds(final, load_cases_of(final.robot, self.readings))
+        except ToolkitError:
+            return {}
+        return slips_of_rows(self.readings, self.set_aside, told.displacement, limit)
 
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered.

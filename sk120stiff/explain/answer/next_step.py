@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sk120stiff.data_checks import place_of
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted
@@ -23,7 +24,19 @@ VAGUE = 0.5  # of its size, by which it is known, from where on a share is no ad
 def next_step(answer: Explanation) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     said = {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}
-    return " ".join(said[answer.verdict](answer))
+    return " ".join([*said[answer.verdict](answer), *_of_the_slips(answer)])
+
+
+def _of_the_slips(answer: Explanation) -> list[str]:
+    slips = answer.slips
+    if not slips:
+        return []
+    places = listed([place_of(answer.readings, row) for row in slips])
+    reads = "it reads" if len(slips) == 1 else "they read"
+    return [
+        f"Compare {places} with the sheet: {reads} like a slip of the pen. What is mended there "
+        "counts when this is run again."
+    ]
 
 
 def _none(answer: Explanation) -> list[str]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sk120stiff.data_checks import place_of
 from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.explain.localise.words import microns
 
@@ -74,4 +75,13 @@ def held_out_words(answer: Explanation) -> tuple[str, ...]:
         f"{worse[-1].label.removeprefix('+ ')}: poses that are left out are foretold worse than "
         "others are fitted. Names, laws and values are learned anew without them, and where few "
         "poses show a cause, the rest may miss it: trust the held-out number.",
+    )
+
+
+def set_aside_sentences(answer: Explanation) -> tuple[str, ...]:
+    """One for every reading that was set aside, with the slip that would explain it."""
+    return tuple(
+        f"Set aside as no smooth cause can have made it: {place_of(answer.readings, row)}"
+        + (f"; {answer.slips[row]}." if row in answer.slips else ".")
+        for row in answer.set_aside
     )

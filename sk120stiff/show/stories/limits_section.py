@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sk120stiff.data_checks import place_of
 from sk120stiff.effects import all_effects
 from sk120stiff.explain import Detectable, Explanation
-from sk120stiff.explain.answer.set_aside import likely_slips, place_of
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import ENOUGH
 from sk120stiff.identify.report import noise_sentence
@@ -48,7 +48,7 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
 
 
 def _set_aside(answer: Explanation, readings: Measurements) -> Note:
-    slips = likely_slips(answer)
+    slips = answer.slips
     told = [
         place_of(readings, row) + (f" ({slips[row]})" if row in slips else "")
         for row in answer.set_aside

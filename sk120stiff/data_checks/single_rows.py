@@ -1,4 +1,4 @@
-"""What may have happened to single readings that were set aside: slips that a hand makes.
+"""Slips of the pen at single rows, which no correction of a whole column mends.
 
 A sign that was forgotten, axes that changed places, a decimal point, two rows whose readings were
 exchanged. A slip is told where with it the reading fits as the others do.
@@ -6,42 +6,33 @@ exchanged. A slip is told where with it the reading fits as the others do.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import load_cases_of
-from sk120stiff.errors import ToolkitError, listed
-from sk120stiff.identify import known_model
+from sk120stiff.errors import listed
 from sk120stiff.measurements import Measurements
-from sk120stiff.model.predicted import predict_what_holds
 
-if TYPE_CHECKING:
-    from sk120stiff.explain.answer.explanation import Explanation
-
-FITS = 3.0  # times the gap of the readings in use, rms, that a mended axis may be off
 AXES = ("dx", "dy", "dz")
 POINT = {0.1: "left", 10.0: "right"}  # which way a decimal point has to go
 
 
-def likely_slips(answer: Explanation) -> Mapping[int, str]:
-    """What each row that was set aside would fit with, as half a sentence; rows without are left.
+def slips_of_rows(
+    readings: Measurements, rows: Sequence[int], told: Array, limit: float
+) -> dict[int, str]:
+    """What each of some rows would fit with, as half a sentence; rows without are left out.
 
     Args:
-        answer: Readings, and the model that is held against them.
+        readings: All rows.
+        rows: Those that lie far off.
+        told: (N, 3) what a model says of every row, in the axes of the readings [m].
+        limit: What a mended axis may be off [m].
     """
-    rows, read = answer.set_aside, answer.readings.displacement
-    if not rows or read is None:
+    read = readings.displacement
+    if read is None:
         return {}
-    final = known_model(answer.final)
-    try:
-        told = predict_what_holds(final, load_cases_of(final.robot, answer.readings)).displacement
-    except ToolkitError:
-        return {}
-    limit = FITS * max(answer.steps[-1].fit_rms, answer.noise_floor or 0.0)
     out = {}
     for row in rows:
         for slip, mended in _single(read[row]):
@@ -52,19 +43,9 @@ def likely_slips(answer: Explanation) -> Mapping[int, str]:
     for pair in combinations(alone, 2):
         if all(_fits(read[a], told[b], limit) for a, b in permutations(pair)):
             for row, other in permutations(pair):
-                place = place_of(answer.readings, other)
+                place = place_of(readings, other)
                 out[row] = f"exchanged with the reading of {place} both would fit"
-    return out
-
-
-def set_aside_sentences(answer: Explanation) -> tuple[str, ...]:
-    """One for every reading that was set aside."""
-    slips = likely_slips(answer)
-    return tuple(
-        f"Set aside as no smooth cause can have made it: {place_of(answer.readings, row)}"
-        + (f"; {slips[row]}." if row in slips else ".")
-        for row in answer.set_aside
-    )
+    return dict(sorted(out.items()))
 
 
 def place_of(readings: Measurements, row: int) -> str:

@@ -1,0 +1,68 @@
+"""Slips of a hand at single rows: the one that would explain a reading is told, and no other."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff.data_checks import slips_of_rows
+from sk120stiff.measurements import Measurements
+from tests.explain.readings import hidden
+
+LIMIT = 3e-5
+ROW, OTHER = 25, 40
+
+
+def _slips(read: np.ndarray, readings: Measurements, *rows: int) -> dict[int, str]:
+    """What is told of some rows where the truth is what stood there before."""
+    told = np.asarray(readings.displacement)
+    return slips_of_rows(replace(readings, displacement=read), rows, told, LIMIT)
+
+
+@pytest.fixture(scope="module")
+def readings() -> Measurements:
+    return hidden(poses=12, loads=4, seed=4)
+
+
+@pytest.mark.parametrize(
+    ("factors", "said"),
+    [
+        ([-1.0, 1.0, 1.0], "dx would fit with the other sign"),
+        ([1.0, -1.0, -1.0], "dy and dz would fit with the other sign"),
+        ([1.0, 10.0, 1.0], "dy would fit with its decimal point one place to the left"),
+        ([1.0, 1.0, 0.1], "dz would fit with its decimal point one place to the right"),
+    ],
+)
+def test_signs_and_decimal_points(readings: Measurements, factors: list[float], said: str):
+    read = np.array(readings.displacement)
+    read[ROW] *= factors
+    assert _slips(read, readings, ROW) == {ROW: said}
+
+
+def test_axes_that_changed_places(readings: Measurements):
+    read = np.array(readings.displacement)
+    read[ROW] = read[ROW][[1, 0, 2]]
+    assert _slips(read, readings, ROW) == {ROW: "dx and dy would fit in one another's place"}
+
+
+def test_rows_that_were_exchanged(readings: Measurements):
+    read = np.array(readings.displacement)
+    read[[ROW, OTHER]] = read[[OTHER, ROW]]
+    said = _slips(read, readings, ROW, OTHER)
+    assert set(said) == {ROW, OTHER}
+    assert readings.pose[OTHER] in said[ROW]
+    assert readings.pose[ROW] in said[OTHER]
+    assert _slips(read, readings, ROW) == {}
+
+
+def test_a_bump_is_no_slip_of_the_pen(readings: Measurements):
+    read = np.array(readings.displacement)
+    read[ROW] += [3e-4, -2e-4, 5e-4]
+    assert _slips(read, readings, ROW) == {}
+
+
+def test_axes_that_were_not_read_are_not_asked(readings: Measurements):
+    read = np.array(readings.displacement)
+    read[ROW, 0] *= -1.0
+    read[ROW, 1:] = np.nan
+    assert _slips(read, readings, ROW) == {ROW: "dx would fit with the other sign"}
