@@ -67,7 +67,7 @@ def command(
     columns: str | None = None,
     register: Annotated[bool | None, typer.Option("--register/--no-register")] = None,
     format_name: Annotated[str | None, typer.Option("--format")] = None,
-    marker: int | None = None,
+    marker: str | None = None,
     sheet: str | None = None,
     topic: str | None = None,
     base: BaseOption = None,
@@ -110,7 +110,7 @@ def command(
             where displacements are made of positions in other axes]
         format_name (NAME): sa, leica, polyworks, robodk, delmia, figaroh, rosbag or points.
             [default: told by the content]
-        marker (N): Which marker, where there are several (x1, x2 ...).
+        marker (NAME): Which marker, where there are several (of a column marker, or 2 of x1, x2).
         sheet (NAME): Which sheet of a workbook.
         topic (NAME): Which topic of a recording has positions.
     """

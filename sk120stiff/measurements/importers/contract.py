@@ -35,7 +35,7 @@ class Source:
     columns: tuple[str, ...] | None = None
     sheet: str | None = None
     topic: str | None = None
-    marker: int | None = None
+    marker: str | None = None
     given: Grid | None = None
 
     @cached_property
@@ -209,3 +209,8 @@ class Formats:
                 + "; or name the columns with --columns.",
             )
         return best[1], best[0].why
+
+
+def chosen_note(name: object) -> str:
+    """What is said of a file of which one marker is read."""
+    return f"Marker {name} is read."

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
+from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source, chosen_note
 from sk120stiff.measurements.importers.layout import Layout, layout_of, sheet_of
 from sk120stiff.measurements.importers.words import meaning_of, unit_of_header
 
@@ -55,7 +55,7 @@ class Figaroh:
         layout: Layout | None = layout_of(source, meaning)
         if layout is None:
             raise InputError("no marker is in this file", where=str(source.path))
-        said = (f"Marker {number} is read.",) if source.marker else ()
+        said = (chosen_note(number),) if source.marker else ()
         return sheet_of(source, layout, self.title, "columns x1, y1, z1", notes=said)
 
 
@@ -73,10 +73,11 @@ def _chosen(source: Source, markers: list[int]) -> int:
             where=source.grid.place(0),
             remedy=f"Choose one: --marker {markers[0]}. Its point is where the load acts.",
         )
-    chosen = source.marker or (markers or [1])[0]
+    wanted = source.marker or str((markers or [1])[0])
+    chosen = int(wanted) if wanted.isdecimal() else 0
     if chosen not in markers:
         raise InputError(
-            f"this file has no marker {chosen}",
+            f"this file has no marker {wanted}",
             where=source.grid.place(0),
             remedy=f"There is {listed}." if listed else "Its columns are x1, y1, z1.",
         )

@@ -25,6 +25,7 @@ from sk120stiff.measurements.importers.frames import axes, placed
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
+from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
 from sk120stiff.measurements.reading import assembled
@@ -91,7 +92,7 @@ def import_readings(
     columns: Sequence[str] | None = None,
     sheet: str | None = None,
     topic: str | None = None,
-    marker: int | None = None,
+    marker: str | None = None,
     into_base: bool | None = None,
     formats: Formats = FORMATS,
 ) -> Imported:
@@ -129,6 +130,8 @@ def import_readings(
         mode = "displacements"
     elif paired_rows.any() and len(draft.markers[1]) < 2:
         mode = "load pairs"
+    if mode != "positions":
+        refuse_several_points(draft)
     laid = placed(draft, mode, robot, told)
     turned, registered, doubts = axes(laid.fitted, mode, into_base, told)
     settings, point = settings_for(draft, mode, robot, told, laid.fitted, registered=registered)
@@ -182,7 +185,7 @@ def _sheet(
             continue
         more = opened(Source(path, source.actuated, role))
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
-    return unfolded(sheet)
+    return unfolded(of_marker(sheet, source.marker))
 
 
 def opened(source: Source) -> Source:

@@ -57,7 +57,7 @@ def test_payload_and_counted_load(tmp_path: Path) -> None:
 def test_markers_joint_names_and_units_in_headers(tmp_path: Path) -> None:
     text = "x1,y1,z1,x2[m],y2[m],z2[m],a[rad],b[m]\n0,0,0,1,2,3,0.5,0.25\n"
     nothing = {"length": None, "angle": None, "load": None}
-    found = read(tmp_path, text, **nothing, marker=2, joints=("a", "b"))
+    found = read(tmp_path, text, **nothing, marker="2", joints=("a", "b"))
     np.testing.assert_allclose(found.measured, [[1, 2, 3]])
     np.testing.assert_allclose(found.joints.values, [[0.5, 0.25]])
     assert "a is shoulder, b is slide" in " ".join(found.said)
@@ -86,7 +86,7 @@ def test_a_row_without_a_position_is_left_out_and_said(tmp_path: Path) -> None:
         ("a,b\n1,2\n", {}, ["no format", "--columns"]),
         ("x1,z1,q1,q2\n1,2,3,4\n", {}, ["'y1' is missing"]),
         ("x1,y1,z1,x2,y2,z2,q1,q2\n1,2,3,4,5,6,7,8\n", {}, ["markers 1, 2", "--marker"]),
-        (ROWS, {"marker": 3}, ["no marker 3"]),
+        (ROWS, {"marker": "3"}, ["no marker 3"]),
         ("x1,y1,z1,sholder,slide\n1,2,3,4,5\n", {}, ["'shoulder'", "'sholder'", "--joints"]),
         ("x1,y1,z1,q1\n1,2,3,4\n", {}, ["'slide' has no column 'q2'"]),
         (ROWS, {"joints": ("shoulder",)}, ["1 columns for 2 joints"]),
@@ -117,7 +117,7 @@ def test_bad_files_are_refused(
 
 def test_markers_side_by_side_under_told_names(tmp_path: Path) -> None:
     names = ("x1", "y1", "z1", "x2", "y2", "z2", "q1", "q2")
-    found = sheet_of(tmp_path, "1,2,3,4,5,6,7,8\n", columns=names, marker=2)
+    found = sheet_of(tmp_path, "1,2,3,4,5,6,7,8\n", columns=names, marker="2")
     assert [c.cells for c in map(found.get, "xyz") if c] == [("4",), ("5",), ("6",)]
     with pytest.raises(InputError, match="markers 1, 2"):
         sheet_of(tmp_path, "1,2,3,4,5,6,7,8\n", columns=names)

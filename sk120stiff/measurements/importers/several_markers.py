@@ -1,0 +1,95 @@
+"""Several markers in one file: displacements under load are of one point of the tool."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.contract import Sheet, chosen_note
+from sk120stiff.measurements.importers.drafting import Draft
+
+APART = 0.01  # m; no arm comes back to a pose so far off, and two markers sit no nearer
+MOST = 0.5  # share of the readings repeated that lie apart, from which on that is no slip
+
+
+def of_marker(sheet: Sheet, name: str | None) -> Sheet:
+    """The rows of one marker; all of them where nobody chose, or the format has chosen already.
+
+    Raises:
+        InputError: There is no such marker.
+    """
+    if name is None or chosen_note(name) in sheet.notes:
+        return sheet
+    column = sheet.get("marker")
+    if column is None:
+        raise InputError(
+            f"no column names markers, and so none is {name}",
+            where=str(sheet.path),
+            remedy="Leave out --marker, or name the column: --columns '...,marker,...'.",
+        )
+    rows = [k for k, cell in enumerate(column.cells) if cell == name]
+    if not rows:
+        raise InputError(
+            f"this file has no marker {name}",
+            where=sheet.place(column),
+            remedy=f"There are {listed(_names(column.cells))}.",
+        )
+
+    def own(values: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(values[k] for k in rows)
+
+    return replace(
+        sheet,
+        columns=tuple(replace(c, cells=own(c.cells)) for c in sheet.columns if c is not column),
+        spare=tuple(replace(c, cells=own(c.cells)) for c in sheet.spare),
+        lines=tuple(sheet.lines[k] for k in rows),
+        rank=tuple(sheet.rank[k] for k in rows) if sheet.rank else (),
+        notes=(*sheet.notes, chosen_note(name)),
+    )
+
+
+def refuse_several_points(draft: Draft) -> None:
+    """Refuse displacements that are not all of one point.
+
+    Raises:
+        InputError: A column names several markers, or readings of one pose and load lie apart.
+    """
+    sheet = draft.sheet
+    column = sheet.get("marker")
+    names = _names(column.cells) if column is not None else []
+    remedy = (
+        "Import each marker into a file of its own, which names its place: "
+        f"--marker {names[0] if names else 'NAME'}."
+    )
+    if column is not None and len(names) > 1:
+        raise InputError(
+            f"displacements under load are of one point, and this file has the markers "
+            f"{listed(names)}",
+            where=sheet.place(column),
+            remedy=remedy,
+        )
+    if draft.displaced:
+        return
+    first: dict[tuple[str, bytes], int] = {}
+    pairs: list[tuple[float, int, int]] = []  # how far apart, and the two rows
+    for row in map(int, np.flatnonzero(draft.use)):
+        begin = first.setdefault((draft.pose[row], (draft.loads.wrench[row] + 0.0).tobytes()), row)
+        if begin != row:
+            apart = float(np.linalg.norm(draft.measured[row] - draft.measured[begin]))
+            pairs.append((apart, begin, row))
+    far = [pair for pair in pairs if pair[0] > APART]
+    if far and len(far) > MOST * len(pairs):
+        apart, begin, row = far[0]
+        raise InputError(
+            f"at pose {draft.pose[row]} two positions under the same load lie {1e3 * apart:.3g} mm "
+            f"apart, lines {sheet.lines[begin]} and {sheet.lines[row]}, and so at most poses: they "
+            "are of different points of the arm",
+            where=str(sheet.path),
+            remedy=f"Name the column that says which 'marker'. {remedy}",
+        )
+
+
+def _names(cells: tuple[str, ...]) -> list[str]:
+    return list(dict.fromkeys(cell for cell in cells if cell))

@@ -1,0 +1,59 @@
+"""Files with several markers: displacements are of one point, and a file of several asks which."""
+
+from pathlib import Path
+
+import pytest
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
+from tests.measurements.importers.reading import SIX, draft_of, sheet_of
+
+HEADER = "pose,{}q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg],fx[N],fy[N],fz[N],x[mm],y[mm],z[mm]\n"
+PLACES = {"M1": 100.0, "M2": 240.0, "M3": 310.0}
+
+
+def table(*names: str, named: bool = True, column: str = "marker") -> str:
+    """Three poses, each without load and with it, read at markers that sit apart."""
+    lines = [HEADER.format(f"{column}," if named else "")]
+    for pose in range(3):
+        joints = ",".join(str(10 * pose + k) for k in range(6))
+        for load in (0, -500):
+            lines += [
+                f"P{pose},{f'{name},' if named else ''}{joints},0,0,{load},{900 + 50 * pose},"
+                f"{PLACES[name]},{700 + load / 1000}\n"
+                for name in names
+            ]
+    return "".join(lines)
+
+
+def test_one_of_several_is_read(tmp_path: Path) -> None:
+    sheet = sheet_of(tmp_path, table("M1", "M2", "M3", column="Reflector"))
+    found = of_marker(sheet, "M2")
+    assert found.lines == (3, 6, 9, 12, 15, 18)
+    assert found.get("marker") is None and "Marker M2 is read." in found.notes
+    y = found.get("y")
+    assert y is not None and set(y.cells) == {"240.0"}
+    assert of_marker(sheet, None) is sheet
+
+
+def test_a_marker_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no marker M7.*M1 and M2"):
+        of_marker(sheet_of(tmp_path, table("M1", "M2")), "M7")
+    with pytest.raises(InputError, match="no column names markers"):
+        of_marker(sheet_of(tmp_path, table("M1", named=False)), "M1")
+
+
+def test_displacements_of_several_points_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"markers M1, M2 and M3.*--marker M1"):
+        refuse_several_points(draft_of(tmp_path, table("M1", "M2", "M3"), SIX))
+    refuse_several_points(draft_of(tmp_path, table("M1"), SIX))
+
+
+def test_points_that_nobody_named_are_told_by_where_they_are(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"140 mm apart, lines 2 and 3"):
+        refuse_several_points(draft_of(tmp_path, table("M1", "M2", named=False), SIX))
+
+
+def test_a_single_slip_among_repeats_is_no_other_marker(tmp_path: Path) -> None:
+    text = table("M1", "M1", named=False).replace("950,100.0,700.0\n", "950,180.0,700.0\n", 1)
+    refuse_several_points(draft_of(tmp_path, text, SIX))
