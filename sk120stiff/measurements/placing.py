@@ -11,7 +11,13 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.cloud import Cloud
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.placing_distances import place_distances
-from sk120stiff.measurements.placing_slips import conventions, markers, slips
+from sk120stiff.measurements.placing_slips import (
+    OtherConvention,
+    markers,
+    signs_and_turns,
+    slips,
+    with_sums,
+)
 from sk120stiff.measurements.registration import Registration
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
@@ -174,15 +180,19 @@ def _refuse_slips(cloud: Cloud, found: Registration, readings: Measurements) -> 
         raise InputError(
             f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
         )
-    for sums, what in ((False, "zeros or signs"), (True, "zeros, signs or sums")):
-        rest, mapping = conventions(cloud.some(FEWER) if sums else few, readings.joint_names, sums)
-        if mapping and rest < BETTER * base:
-            raise InputError(
-                f"{told}. With other {what} of joints {1e3 * rest:.3g} mm are left",
+    ways = (signs_and_turns, "zeros or signs"), (with_sums, "zeros, signs or sums")
+    for found_by, what in ways:
+        way = found_by(cloud.some(FEWER))
+        mapping = way.changed(readings.joint_names)
+        if mapping and way.rms < BETTER * base:
+            said = ", ".join(f"{name}: {expression}" for name, expression in mapping.items())
+            raise OtherConvention(
+                f"{told}. With other {what} of joints {1e3 * way.rms:.3g} mm are left",
                 where=where,
                 remedy="Check the controller's convention. If it is so, write into the YAML file: "
-                f"joints: {{{mapping}}}; where a joint has an expression there already, put that "
+                f"joints: {{{said}}}; where a joint has an expression there already, put that "
                 "in its place on the right.",
+                convention=way,
             )
 
 

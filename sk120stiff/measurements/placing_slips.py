@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations, permutations
 
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import InputError
 from sk120stiff.measurements.cloud import Cloud
 
 MARKERS = 4  # up to which every exchange of markers is tried
 BETTERED = 0.9  # of what is left, that one change of a convention must fall below
+WHOLE = 2  # joints of whose ways all are kept, since the wrist tells little of them
+KEPT = 32  # of the ways of the joints so far that are followed
+SLACK = 0.02  # rad or m; a joint may go so far beyond what its URDF states
 TIMES = (1.0, -1.0, 2.0, -2.0)  # another joint's share in a sum, and in one of the wrong sign
 
 
@@ -91,27 +95,101 @@ def _pairs(count: int) -> Iterator[tuple[int, ...]]:
         yield tuple(way)
 
 
-def conventions(cloud: Cloud, names: tuple[str, ...], sums: bool) -> tuple[float, str]:
-    """What is left with the best zeros (quarter turns) and signs, and how to write them.
+class OtherConvention(InputError):
+    """Joints that are another controller's; `convention` says how they are read."""
 
-    With `sums` a joint may be measured against others' too, as joint 3 is against the floor.
+    def __init__(self, what: str, *, where: str, remedy: str, convention: Convention) -> None:
+        super().__init__(what, where=where, remedy=remedy)
+        self.convention = convention
+
+
+@dataclass(frozen=True, eq=False)
+class Convention:
+    """How joints follow from columns: a = share q + zero.
+
+    Attributes:
+        rms: What is left with it [m].
+        share: (n, n) of the columns in each joint.
+        zero: (n,) [rad].
     """
+
+    rms: float
+    share: Array
+    zero: Array
+
+    def expressions(self, columns: Sequence[str]) -> list[str]:
+        """``-A2 + 90 deg``: every joint by names of the columns."""
+        out = []
+        for own, zero in zip(self.share, self.zero, strict=True):
+            degrees = (np.degrees(zero) + 180.0) % 360.0 - 180.0
+            constant = f" {'-' if degrees < 0 else '+'} {abs(degrees):.0f} deg" if degrees else ""
+            out.append(_expression(own, columns) + constant)
+        return out
+
+    def changed(self, names: Sequence[str]) -> dict[str, str]:
+        """Joints that are not the columns of their names → what they are."""
+        told = zip(names, self.expressions(names), strict=True)
+        return {name: expression for name, expression in told if name != expression}
+
+
+def signs_and_turns(cloud: Cloud) -> Convention:
+    """The best signs and zeros (quarter turns), of all joints together, from the base outwards.
+
+    One joint mended alone need not bring anything where others are wrong too, as between a
+    controller's joints and those of a URDF. The nearest few ways of the joints so far are kept
+    (beam search), the wrist as it stands until its turn comes. Where the first joint and the last
+    have their zeros, tracker and marker take on.
+    """
+    n = cloud.a.shape[1]
+    turning = ~np.array(cloud.robot.prismatic)
+    ways: list[tuple[Array, Array]] = [(np.ones(n), np.zeros(n))]
+    for k in range(n):
+        turns = (0, 1, -1, 2) if turning[k] and 0 < k < n - 1 else (0,)
+        wider = []
+        for signs, zero in ways:
+            for sign in (1.0, -1.0):
+                for turn in turns:
+                    own = signs.copy(), zero.copy()
+                    own[0][k], own[1][k] = sign, turn * np.pi / 2
+                    rms = _left(cloud, np.diag(own[0]), own[1])
+                    wider.append((float(f"{rms:.3g}"), _oddness(cloud, *own), own))
+        wider.sort(key=lambda item: item[:2])
+        ways = [own for *_, own in (wider if k < WHOLE else wider[:KEPT])]
+    share, zero = np.diag(ways[0][0]), ways[0][1]
+    return Convention(_left(cloud, share, zero), share, zero)
+
+
+def _left(cloud: Cloud, share: Array, zero: Array) -> float:
+    """What is left with joints that are shares of the columns, and zeros of their own [m]."""
+    moved = replace(cloud, a=cloud.a @ share.T + zero)
+    return moved.placed(fit_marker=True)[0].rms
+
+
+def _oddness(cloud: Cloud, signs: Array, zero: Array) -> tuple[int, int]:
+    """Joints beyond their limits, and changes: half a turn counts as two quarters.
+
+    A joint turned over, and the next with the other sign, place a marker as well as neither.
+    """
+    a = cloud.a * signs + zero
+    low, high = cloud.robot.lower - SLACK, cloud.robot.upper + SLACK
+    beyond = int(((a < low) | (a > high)).any(axis=0).sum())
+    quarters = np.abs(zero) / (np.pi / 2)
+    return beyond, int((signs < 0.0).sum() + round(float(quarters.sum())))
+
+
+def with_sums(cloud: Cloud) -> Convention:
+    """The same joint by joint, each measured against another's too, as joint 3 to the floor."""
     n = cloud.a.shape[1]
     share, zero = np.eye(n), np.zeros(n)
     turning = ~np.array(cloud.robot.prismatic)
-
-    def left(share: Array, zero: Array) -> float:
-        moved = replace(cloud, a=cloud.a @ share.T + zero)
-        return moved.placed(fit_marker=True)[0].rms
-
-    best = left(share, zero)
+    best = _left(cloud, share, zero)
     for _ in range(n):
         tried: list[tuple[float, int, Array, float]] = []
         for k in range(n):
             ways = [(sign * share[k], turn) for sign in (1.0, -1.0) for turn in range(4)]
             if not turning[k]:
                 ways = [way for way in ways if way[1] == 0]
-            elif sums:
+            else:
                 others = (j for j in range(n) if j != k and turning[j])
                 ways += [
                     (sign * (share[k] + times * np.eye(n)[j]), 0)
@@ -120,21 +198,15 @@ def conventions(cloud: Cloud, names: tuple[str, ...], sums: bool) -> tuple[float
             for own, turn in ways:
                 both = share.copy(), zero.copy()
                 both[0][k], both[1][k] = own, turn * np.pi / 2
-                tried.append((left(*both), k, own, turn * np.pi / 2))
+                tried.append((_left(cloud, *both), k, own, turn * np.pi / 2))
         nearest = min(tried, key=lambda item: item[0])
         if nearest[0] > BETTERED * best:
             break
         best, k, share[nearest[1]], zero[nearest[1]] = nearest
-    changed = []
-    for k, name in enumerate(names):
-        degrees = (np.degrees(zero[k]) + 180.0) % 360.0 - 180.0
-        if degrees or (share[k] != np.eye(n)[k]).any():
-            constant = f" {'-' if degrees < 0 else '+'} {abs(degrees):.0f} deg" if degrees else ""
-            changed.append(f"{name}: {_expression(share[k], names)}{constant}")
-    return best, ", ".join(changed)
+    return Convention(best, share, zero)
 
 
-def _expression(share: Array, names: tuple[str, ...]) -> str:
+def _expression(share: Array, names: Sequence[str]) -> str:
     """``-j2 - j3``: joints times their shares."""
     out = ""
     for times, name in zip(share, names, strict=True):

@@ -14,7 +14,9 @@ from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Mode, Told
+from sk120stiff.measurements.importers.words import unit_of_header
 from sk120stiff.measurements.placing import place
+from sk120stiff.measurements.placing_slips import OtherConvention
 from sk120stiff.measurements.registration import Registration, register
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
@@ -67,6 +69,8 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
     try:
         placing = place(robot, rough)
     except InputError as error:
+        if isinstance(error, OtherConvention) and not draft.joints.mapping:
+            raise _by_other_columns(error, draft) from error
         raise Refusal(
             f"{error.what}. These are not this robot's positions as they stand",
             where=error.where,
@@ -96,6 +100,18 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             f"would be left, not {1e3 * fitted.rms:.3g} mm: ask where the file comes from."
         )
     return Placed(fitted, kept, wild, other.rms if other else None, tuple(doubts))
+
+
+def _by_other_columns(error: OtherConvention, draft: Draft) -> Refusal:
+    """The same refusal by the names of the file's own columns."""
+    columns = [unit_of_header(column.header)[0] for column in draft.joints.taken]
+    joints = ",".join(error.convention.expressions(columns))
+    return Refusal(
+        f"{error.what}. The joint columns are another controller's",
+        where=error.where,
+        remedy=f"Check its convention. If it is so, give --joints '{joints}'. "
+        f"Understood: {_understood(draft)}.",
+    )
 
 
 def _understood(draft: Draft) -> str:

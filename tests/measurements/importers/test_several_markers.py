@@ -8,7 +8,9 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
 from tests.measurements.importers.reading import SIX, draft_of, sheet_of
 
-HEADER = "pose,{}q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg],fx[N],fy[N],fz[N],x[mm],y[mm],z[mm]\n"
+HEADER = (
+    "pose,{}q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg],fx[N],fy[N],fz[N],x[mm],y[mm],z[mm]\n"
+)
 PLACES = {"M1": 100.0, "M2": 240.0, "M3": 310.0}
 
 
