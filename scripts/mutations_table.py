@@ -311,6 +311,29 @@ FAULTS: tuple[Fault, ...] = (
         interval_with_one_end=("upper = 0.5 * (1.0 + level)", "upper = level"),
     ),
     *_of(
+        "explain/select/outliers.py", *_tests("explain", "outliers"),
+        slips_hide_each_other=("last = max((k + 1 for k, state in enumerate(states) if state.next > ALONE), default=0)",
+                               "last = next((k for k, s in enumerate(states) if s.next <= ALONE), 0)"),
+        crowd_that_does_not_stand_apart=("if last < len(states) and states[last].next <= LIMIT:",
+                                         "if last < len(states):"),
+    ),
+    *_of(
+        "data_checks/single_rows.py", *_tests("data_checks", "single_rows"),
+        slip_that_mends_one_axis_alone=("(np.abs(read - told)[seen] < limit).all()",
+                                        "(np.abs(read - told)[seen] < limit).any()"),
+        exchange_that_fits_one_way=("if all(_fits(read[a], told[b], limit)", "if any(_fits(read[a], told[b], limit)"),
+    ),
+    *_of(
+        "measurements/placing_slips.py", *_tests("measurements", "conventions"),
+        joints_mended_one_by_one=("wider[:KEPT]", "wider[:1]"),
+        joints_beyond_their_limits=("return beyond, int(", "return 0, int("),
+    ),
+    *_of(
+        "measurements/importers/several_markers.py", *_tests("measurements/importers", "several_markers"),
+        markers_read_as_one=("if column is not None and len(names) > 1:", "if False:"),
+        points_apart_unseen=("if far and len(far) > MOST * len(pairs):", "if False:"),
+    ),
+    *_of(
         "plan/design.py", *_tests("plan", "design"),
         displacement_as_sure_as_one_reading=("noise = sigma * DISPLACEMENT", "noise = sigma"),
         other_parameters_held_for_known=("0.5 * (whole - rest)", "0.5 * whole"),

@@ -152,7 +152,7 @@ def signs_and_turns(cloud: Cloud) -> Convention:
                     own = signs.copy(), zero.copy()
                     own[0][k], own[1][k] = sign, turn * np.pi / 2
                     rms = _left(cloud, np.diag(own[0]), own[1])
-                    wider.append((float(f"{rms:.3g}"), _oddness(cloud, *own), own))
+                    wider.append((float(f"{rms:.3g}"), oddness(cloud, *own), own))
         wider.sort(key=lambda item: item[:2])
         ways = [own for *_, own in (wider if k < WHOLE else wider[:KEPT])]
     share, zero = np.diag(ways[0][0]), ways[0][1]
@@ -165,7 +165,7 @@ def _left(cloud: Cloud, share: Array, zero: Array) -> float:
     return moved.placed(fit_marker=True)[0].rms
 
 
-def _oddness(cloud: Cloud, signs: Array, zero: Array) -> tuple[int, int]:
+def oddness(cloud: Cloud, signs: Array, zero: Array) -> tuple[int, int]:
     """Joints beyond their limits, and changes: half a turn counts as two quarters.
 
     A joint turned over, and the next with the other sign, place a marker as well as neither.

@@ -55,6 +55,13 @@ def test_rows_that_were_exchanged(readings: Measurements):
     assert _slips(read, readings, ROW) == {}
 
 
+def test_a_reading_copied_into_another_row_is_no_exchange(readings: Measurements):
+    read = np.array(readings.displacement)
+    read[ROW] = read[OTHER]
+    read[OTHER] += [3e-4, -2e-4, 5e-4]
+    assert _slips(read, readings, ROW, OTHER) == {}
+
+
 def test_a_bump_is_no_slip_of_the_pen(readings: Measurements):
     read = np.array(readings.displacement)
     read[ROW] += [3e-4, -2e-4, 5e-4]

@@ -99,6 +99,16 @@ def test_slips_that_hide_each_other_are_set_aside_where_the_noise_is_not_what_wa
     assert set_aside(slipped, replace(NOISE, freedom=freedom))[0] == [7, 25, 33]
 
 
+def test_a_crowd_that_does_not_stand_apart_is_a_cause_that_is_missing():
+    """Far off and less far off without a gap between: no slips, and nobody stated the noise."""
+    readings = hidden(poses=24, seed=5)
+    rows = np.random.default_rng(2).choice(readings.n_readings, 24, replace=False)
+    moved = readings
+    for row, times in zip(rows.tolist(), np.geomspace(5.0, 60.0, len(rows)), strict=True):
+        moved = off(moved, [row], times * SIGMA)
+    assert set_aside(moved, replace(NOISE, freedom=0))[0] == []
+
+
 def test_the_slip_that_would_explain_a_reading_is_told():
     readings = with_slips()
     model = base_fit(readings).model

@@ -1,11 +1,13 @@
 """Joints of another controller: signs and quarter turns of several joints are found together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import sk120stiff as sk
 from sk120stiff.measurements.cloud import Cloud
-from sk120stiff.measurements.placing_slips import Convention, signs_and_turns
+from sk120stiff.measurements.placing_slips import Convention, oddness, signs_and_turns
 from sk120stiff.robot import Robot
 
 NOISE = 1e-3  # m
@@ -50,3 +52,14 @@ def test_joints_are_told_by_the_names_of_columns():
     found = Convention(0.0, share, zero)
     assert found.expressions(["A1", "A2", "A3"]) == ["-A1", "A2 + 90 deg", "A3 - 90 deg"]
     assert Convention(0.0, np.eye(3), 0.0 * zero).changed(["a", "b", "c"]) == {}
+
+
+def test_joints_beyond_their_limits_and_half_turns_are_odd():
+    robot = replace(sk.load_robot("ur5e"), lower=np.full(6, -2.0), upper=np.full(6, 2.0))
+    plain, nothing = np.ones(6), np.zeros(6)
+    cloud = cloud_of(robot, plain, nothing, seed=1)
+    turned = nothing.copy()
+    turned[4] = np.pi
+    assert oddness(cloud, plain, nothing) == (0, 0)
+    assert oddness(cloud, plain, turned) == (1, 2)
+    assert oddness(cloud, -plain, nothing) == (0, 6)
