@@ -109,7 +109,7 @@ def test_no_sentence_is_said_twice_on_the_terminal(answer, tmp_path) -> None:
     """Where nothing is named, what is left lives where the gap of the base model does."""
     left = replace(answer.remainder, where=answer.where[1:2])
     assert left.where
-    told = parts(replace(answer, verdict="outside", remainder=left), answer.readings, tmp_path)
+    told = parts(replace(answer, verdict="outside", remainder=left), tmp_path)
     sentences = [part for part in told if isinstance(part, str)]
     assert sentences.count(left.where[0]) == 1
 

@@ -47,6 +47,7 @@ class Answered:
     next_pairs: tuple[Any, ...] = ()
     guess: Any = None
     yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))
+    slips: dict[int, str] = field(default_factory=dict)
 
     @property
     def adequacy(self) -> Adequacy:

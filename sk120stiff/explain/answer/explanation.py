@@ -16,7 +16,7 @@ from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, S
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.budget import error_budget, joint_budget
 from sk120stiff.explain.judge.remainder import Remainder
-from sk120stiff.identify import Fit, Yardstick, known_model, known_together, yardstick
+from sk120stiff.identify import Fit, Yardstick, known_together, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Share
 from sk120stiff.model.predicted import predict_what_holds
@@ -120,7 +120,9 @@ class Explanation:
     @cached_property
     def slips(self) -> Mapping[int, str]:
         """The slip of the pen that would explain a row that was set aside, where one would."""
-        final = known_model(self.final)
+        if not self.set_aside:
+            return {}
+        final = self.final.model
         limit = SLIP_FITS * max(self.steps[-1].fit_rms, self.noise_floor or 0.0)
         try:
             told = predict_what_holds(final, load_cases_of(final.robot, self.readings))

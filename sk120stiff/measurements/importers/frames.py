@@ -107,7 +107,8 @@ def _by_other_columns(error: OtherConvention, draft: Draft) -> Refusal:
     columns = [unit_of_header(column.header)[0] for column in draft.joints.taken]
     joints = ",".join(error.convention.expressions(columns))
     return Refusal(
-        f"{error.what}. The joint columns are another controller's",
+        f"{error.what}. These are not this robot's positions as they stand: the joint columns "
+        "look like another controller's",
         where=error.where,
         remedy=f"Check its convention. If it is so, give --joints '{joints}'. "
         f"Understood: {_understood(draft)}.",
