@@ -165,7 +165,6 @@ def _far_off(
         shifts: What a shift of each reading does.
         clean: The most that the stated noise leaves (None: nobody stated it).
     """
-    known = clean is not None
     far = (ALONE, ALONE)
     if clean is not None:
         found = _one_by_one(peel(True), shifts, far, MANY)
@@ -176,7 +175,7 @@ def _far_off(
     last = max((k + 1 for k, state in enumerate(states) if state.next > ALONE), default=0)
     if last < len(states) and states[last].next <= LIMIT:
         return states[last]
-    found = _one_by_one(states, shifts, far) if known else None
+    found = None if clean is None else _one_by_one(states, shifts, far)
     return states[0] if found is None else found
 
 
