@@ -24,6 +24,7 @@ from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
 from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
 from sk120stiff.explain.judge.beside_suspect import Account, complete_account
 from sk120stiff.explain.judge.implausible import implausible
+from sk120stiff.explain.judge.one_gear import WORTH_A_SENTENCE, Imitated, imitated_together
 from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
@@ -128,10 +129,16 @@ def explain_displacements(
     tell("the gap step by step", 0.7)
     goes_with = None if account is None else account.suspect
     remainder = remainder_of(_as_written(found.final, noise), left, goes_with)
+    together = _together(found, named, account)
     findings = tuple(
-        in_full(each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else))
+        in_full(
+            each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else).doubted(
+                sum(part.probability for part in together if each.effect.id in part.ids)
+            )
+        )
         for k, each in enumerate(named.findings)
     )
+    remainder = remainder.unless([part.probability for part in together])
     effects = [finding.effect for finding in findings]
     beside = None if account is None else account.fit
     final = with_selection_uncertainty(found, findings, beside)
@@ -158,6 +165,7 @@ def explain_displacements(
         remainder=remainder,
         unnamed=(
             *named.reasons,
+            *(part.sentence() for part in together if part.probability > WORTH_A_SENTENCE),
             *([] if beyond is None else [beyond.sentence]),
             *held_rigid(final),
             *_where_it_binds(found, options),
@@ -208,6 +216,13 @@ def _judged(
     if account is None or (_drawn(account.named) and _adequacy(account.selection, noise).lacking):
         return found, named, None
     return account.selection, account.named, account
+
+
+def _together(found: Selection, named: Named, account: Account | None) -> tuple[Imitated, ...]:
+    """Names of one gear that may be one cause; beside model-form error that was asked before."""
+    if account is not None or found.final.problem.noise.form:
+        return ()
+    return imitated_together(found.final, [finding.effect for finding in named.findings])
 
 
 def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:

@@ -16,9 +16,8 @@ from sk120stiff.explain.judge.attribution import CURVE, findings_of
 from sk120stiff.explain.judge.attribution import _length as length
 from sk120stiff.explain.judge.attribution import _objection as objection
 from sk120stiff.explain.judge.beside_form import beside_model_form
-from sk120stiff.explain.judge.imitation import _Lineup as Lineup
+from sk120stiff.explain.judge.imitation import Lineup, imitated, instead_of, spread_over_poses
 from sk120stiff.explain.judge.imitation import _precision as precision
-from sk120stiff.explain.judge.imitation import imitated, instead_of, spread_over_poses
 from sk120stiff.explain.judge.outweighed import outweighed
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.explain.select.stepwise import refit, select
@@ -261,7 +260,7 @@ def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(sp
     )
     assert line.score([0], 0) < line.score([], 1) < line.score([0])
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "_line_up", lambda *_: line)
+        patched.setattr(imitation, "line_up_with", lambda *_: line)
         assert instead_of(found, [named(found)]) is None
 
 
@@ -280,7 +279,7 @@ def test_only_where_something_has_no_name_a_suspect_stands_for_several(springs, 
         drawn={},
     )
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "_line_up", lambda *_: line)
+        patched.setattr(imitation, "line_up_with", lambda *_: line)
         other = instead_of(found, names)
     assert (other is not None and len(other.effects) == 2) == fall
 
@@ -305,7 +304,7 @@ def test_what_a_name_does_not_do_anyway_no_suspect_takes_from_it(springs, own):
         drawn={},
     )
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "_line_up", lambda *_: line)
+        patched.setattr(imitation, "line_up_with", lambda *_: line)
         other = instead_of(found, names)
     assert (other is not None and other.effects == (names[1].id,)) == (own > 24.0)
 
@@ -379,5 +378,5 @@ def test_the_free_form_of_what_cannot_be_told_from_a_name_is_no_reason_against_i
         drawn={},
     )
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "_line_up", lambda *_: line)
+        patched.setattr(imitation, "line_up_with", lambda *_: line)
         assert (imitated(found, names, [alike]) is not None) == falls

@@ -133,7 +133,7 @@ def instead_of(
         names: Effects that were added to it, the strongest first.
         alternatives: Ids of the effects that the readings do not tell from each of them.
     """
-    line = _line_up(fit, names)
+    line = line_up_with(fit, names)
     own = [{name.id, name.name} for name in names]
     for said, others in zip(own, alternatives, strict=False):
         said.update(others, (other.partition(":")[0] for other in others if ":" in other))
@@ -173,7 +173,7 @@ def instead_of(
 
 
 @dataclass(frozen=True, eq=False)
-class _Lineup:
+class Lineup:
     """Names and suspects beyond the other parameters of a model, each column of length one.
 
     Sizes that are drawn (random effects) have the precision of their distribution beside that of
@@ -220,7 +220,8 @@ class _Lineup:
         return price - self.takes(chosen, suspect)
 
 
-def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
+def line_up_with(fit: Fit, names: Sequence[Effect]) -> Lineup:
+    """Names of a fit and all suspects, side by side."""
     look = look_at(fit, yardstick(fit))
     # Without the names nothing of theirs is read, or misread.
     ids = (effect.id for effect in names)
@@ -246,7 +247,7 @@ def _line_up(fit: Fit, names: Sequence[Effect]) -> _Lineup:
         for k, (effect, mask, span) in enumerate(zip(names, own, spans, strict=False))
         if effect.random_effects
     }
-    return _Lineup(
+    return Lineup(
         suspects=lineup.suspects,
         gram=beyond.T @ beyond,
         moment=beyond.T @ gap / np.sqrt(look.noise.scale),

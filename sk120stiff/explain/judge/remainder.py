@@ -6,6 +6,7 @@ for a cause that no effect in the model is.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -77,6 +78,11 @@ class Remainder:
             left=replace(self.left, probability=chance),
             something_else=max(self.something_else, float(expit(logit))),
         )
+
+    def unless(self, instead: Sequence[float]) -> Remainder:
+        """The same where causes without a name may stand in the place of names too."""
+        named = (1.0 - self.something_else) * float(np.prod(1.0 - np.array(instead)))
+        return replace(self, something_else=1.0 - named) if len(instead) else self
 
     def sentence(self) -> str:
         """How large it is, in plain words."""

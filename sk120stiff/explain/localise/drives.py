@@ -109,7 +109,7 @@ def waves(load_cases: LoadCases) -> Iterator[Suspect]:
             name = f"the position of {joint}, on which its own stiffness depends in {turns}"
             label = f"position of {joint} [deg]"
             columns = yielding * wave[:, None, :]
-            yield Suspect("angle", name, columns, np.degrees(q), label, alike=most)
+            yield Suspect("angle", name, columns, np.degrees(q), label, drive=joint, alike=most)
 
 
 def _effort(load_cases: LoadCases, joint: int) -> tuple[str, str]:

@@ -23,6 +23,7 @@ class Suspect:
             decides it.
         carried: (N, k) load behind each column, where a place yields [N or N·m].
         frees: Effects (``name`` or ``name:where``) of whose law it is the free form.
+        drive: The joint whose position alone its law goes with; empty where it is no such law.
         alike: How many suspects, itself among them, differ by a whole number alone.
     """
 
@@ -34,6 +35,7 @@ class Suspect:
     direction: Array | None = None
     carried: Array = field(default_factory=lambda: np.zeros((0, 0)))
     frees: tuple[str, ...] = ()
+    drive: str = ""
     alike: int = 1
 
     @property
