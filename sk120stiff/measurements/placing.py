@@ -87,7 +87,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         cloud = replace(cloud, group=own)
         found, kept = cloud.placed(fit_marker=True)
     if found.rms > SUSPECT * spread:
-        _refuse_slips(cloud, found, readings)
+        _refuse_slips(cloud, found, readings, spread)
     if found.rms > FITS * spread:
         if free and not found.marker_fitted:
             raise InputError(
@@ -168,8 +168,12 @@ def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:
     )
 
 
-def _refuse_slips(cloud: Cloud, found: Registration, readings: Measurements) -> None:
-    """Refuse positions that one slip of the pen explains far better."""
+def _refuse_slips(cloud: Cloud, found: Registration, readings: Measurements, spread: float) -> None:
+    """Refuse positions that one slip of the pen explains far better.
+
+    So many conventions are tried that one of them always does better on few poses: it has to leave
+    what a calibrated arm leaves, too.
+    """
     where = str(readings.path or "measurements")
     told = _left(found)
     few = cloud.some()
@@ -184,7 +188,7 @@ def _refuse_slips(cloud: Cloud, found: Registration, readings: Measurements) -> 
     for found_by, what in ways:
         way = found_by(cloud.some(FEWER))
         mapping = way.changed(readings.joint_names)
-        if mapping and way.rms < BETTER * base:
+        if mapping and way.rms < min(BETTER * base, FITS * spread):
             said = ", ".join(f"{name}: {expression}" for name, expression in mapping.items())
             raise OtherConvention(
                 f"{told}. With other {what} of joints {1e3 * way.rms:.3g} mm are left",

@@ -8,6 +8,7 @@ position may do as well: then the readings do not tell which of the two it is.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -55,16 +56,16 @@ def imitated_together(fit: Fit, names: Sequence[Effect]) -> tuple[Imitated, ...]
         fit: The fitted model, whose laws leave no more than noise.
         names: Effects that were added to it.
     """
-    gears = dict.fromkeys(name.where for name in names if name.of_gear)
+    laws = Counter(name.where for name in names if name.of_gear)
+    gears = [joint for joint, count in laws.items() if count > 1]
+    if not gears:
+        return ()
+    line, everything = line_up_with(fit, names), range(len(names))
+    whole = line.score(everything)
     out = []
     for joint in gears:
         own = [k for k, name in enumerate(names) if name.of_gear and name.where == joint]
-        if len(own) < 2:
-            continue
-        line = line_up_with(fit, names)
-        everything = range(len(names))
         others = [k for k in everything if k not in own]
-        whole = line.score(everything)
         evidence = {
             suspect.name: whole - line.score(others, k)
             for k, suspect in enumerate(line.suspects)

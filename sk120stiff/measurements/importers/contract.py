@@ -108,6 +108,7 @@ class Sheet:
         spare: Columns whose meaning is not known.
         frame: The axes that the file says positions are in.
         notes: What was decided or taken for granted, in sentences.
+        marker: The one of several markers that these are readings of, where one was chosen.
     """
 
     path: Path
@@ -122,6 +123,7 @@ class Sheet:
     spare: tuple[Column, ...] = ()
     frame: str | None = None
     notes: tuple[str, ...] = ()
+    marker: str | None = None
 
     def get(self, meaning: str) -> Column | None:
         """The column of that meaning."""
@@ -209,8 +211,3 @@ class Formats:
                 + "; or name the columns with --columns.",
             )
         return best[1], best[0].why
-
-
-def chosen_note(name: object) -> str:
-    """What is said of a file of which one marker is read."""
-    return f"Marker {name} is read."

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source, chosen_note
+from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
 from sk120stiff.measurements.importers.layout import Layout, layout_of, sheet_of
 from sk120stiff.measurements.importers.words import meaning_of, unit_of_header
 
@@ -55,8 +55,9 @@ class Figaroh:
         layout: Layout | None = layout_of(source, meaning)
         if layout is None:
             raise InputError("no marker is in this file", where=str(source.path))
-        said = (chosen_note(number),) if source.marker else ()
-        return sheet_of(source, layout, self.title, "columns x1, y1, z1", notes=said)
+        said = (f"Marker {number} is read.",) if source.marker else ()
+        sheet = sheet_of(source, layout, self.title, "columns x1, y1, z1", notes=said)
+        return replace(sheet, marker=source.marker)
 
 
 def _headers(source: Source) -> list[str]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.errors import InputError, listed
-from sk120stiff.measurements.importers.contract import Sheet, chosen_note
+from sk120stiff.measurements.importers.contract import Sheet
 from sk120stiff.measurements.importers.drafting import Draft
 
 APART = 0.01  # m; no arm comes back to a pose so far off, and two markers sit no nearer
@@ -20,7 +20,7 @@ def of_marker(sheet: Sheet, name: str | None) -> Sheet:
     Raises:
         InputError: There is no such marker.
     """
-    if name is None or chosen_note(name) in sheet.notes:
+    if name is None or sheet.marker == name:
         return sheet
     column = sheet.get("marker")
     if column is None:
@@ -46,7 +46,8 @@ def of_marker(sheet: Sheet, name: str | None) -> Sheet:
         spare=tuple(replace(c, cells=own(c.cells)) for c in sheet.spare),
         lines=tuple(sheet.lines[k] for k in rows),
         rank=tuple(sheet.rank[k] for k in rows) if sheet.rank else (),
-        notes=(*sheet.notes, chosen_note(name)),
+        notes=(*sheet.notes, f"Marker {name} is read."),
+        marker=name,
     )
 
 
