@@ -91,6 +91,8 @@ class Effect(ABC):
         twins: Names of effects that some experiments make one with this one, at the same place and
             with either sign (class attribute). It is tried whether the experiment at hand does.
         needs: What readings must hold for its law, in words (class attribute).
+        calibrated: Its parameters are errors of an instrument that was calibrated: they are no
+            larger than usual, whether readings tell them or not (class attribute).
         only_absolute: Positions show it, displacements hardly ever (class attribute).
         where: URDF joint or link at which it acts; ``sensor`` or ``tracker`` for instruments.
         scale: Length of the arm over `REFERENCE_LENGTH`: what is usual and what is plausible goes
@@ -122,6 +124,7 @@ class Effect(ABC):
     of_gear: ClassVar[bool] = False
     twins: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[str] = ""
+    calibrated: ClassVar[bool] = False
     only_absolute: ClassVar[bool] = False
 
     @classmethod

@@ -29,6 +29,7 @@ OF_RIG = "base_"
 
 class _SensorError(LoadError):
     place: ClassVar[str] = "sensor"
+    calibrated: ClassVar[bool] = True
     axes: ClassVar[str] = "axes of the tool frame at each pose, in which the sensor is mounted"
 
 

@@ -40,6 +40,11 @@ class ParameterSpec:
     meaning: str = ""
     quantity: str = ""
 
+    @property
+    def usual(self) -> float:
+        """Standard size before anything is read: halfway from typical to plausible, in decades."""
+        return float(np.sqrt(self.typical * self.plausible))
+
     def public(self, internal: float) -> float:
         """The value as people write it; infinite stiffness where nothing yields."""
         if not self.reciprocal:

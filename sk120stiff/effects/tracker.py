@@ -23,6 +23,7 @@ class ReadingRotation(ReadingError):
 
     name: ClassVar[str] = "reading_rotation"
     place: ClassVar[str] = "tracker"
+    calibrated: ClassVar[bool] = True
     equation: ClassVar[str] = "d_read = d + a x d"
     says: ClassVar[str] = "The tracker's frame is turned against the robot's base frame."
     axes: ClassVar[str] = "axes of the base frame"
@@ -48,6 +49,7 @@ class ReadingScale(ReadingError):
 
     name: ClassVar[str] = "reading_scale"
     place: ClassVar[str] = "tracker"
+    calibrated: ClassVar[bool] = True
     equation: ClassVar[str] = "d_read = (1 + s) d"
     says: ClassVar[str] = "The tracker's scale is wrong."
     axes: ClassVar[str] = "all axes alike"

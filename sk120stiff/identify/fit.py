@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import stats
@@ -23,7 +23,8 @@ from sk120stiff.identify.solve.covariance import (
 from sk120stiff.identify.solve.overlaid import Overlay, overlays
 from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
 from sk120stiff.identify.solve.problem import Problem
-from sk120stiff.model import ON_BOUND, TOGETHER, UNSEEN, Model, Parameter, parameter_frame
+from sk120stiff.identify.solve.type_b import Calibrations
+from sk120stiff.model import Model, Parameter, parameter_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -265,10 +266,21 @@ class Fit:
         Where a bound decides which of several like parameters carries the load, all of them count
         as free: what one has, another may.
         """
-        covariance = covariance_of(self.small[0], self.held, self.problem.span)
+        covariance = covariance_of(self.informed, self.held, self.problem.span)
         if np.isfinite(self.unit):
             return np.asarray(covariance * self.unit**2 + self.moves.covariance)
         return np.where(covariance != 0.0, np.inf, 0.0)
+
+    @cached_property
+    def informed(self) -> Array:
+        """The derivative, small, and calibrations of instruments where the readings say nothing."""
+        return np.vstack([self.small[0], self.calibrations.rows(self.unit)])
+
+    @cached_property
+    def calibrations(self) -> Calibrations:
+        """What calibrations of instruments tell that the readings do not."""
+        problem = self.problem
+        return Calibrations.of(self.small[0], self.held, problem.span, problem.usual)
 
     @property
     def moves(self) -> Moves:
@@ -309,7 +321,7 @@ class Fit:
     def identifiable(self) -> Mask:
         """(P_free,) parameters that the readings determine at all, those on a bound included."""
         return np.asarray(
-            np.isfinite(np.diag(covariance_of(self.small[0], self.held, self.problem.span)))
+            np.isfinite(np.diag(covariance_of(self.informed, self.held, self.problem.span)))
         )
 
     def reach(self, level: float = 0.95) -> float:
@@ -346,7 +358,8 @@ class Fit:
         """
         ends = internal_intervals(
             self.x,
-            *self.small,
+            self.informed,
+            np.concatenate([self.small[1], np.zeros(len(self.informed) - len(self.small[1]))]),
             self.at_bound,
             self.problem.bounds,
             self.problem.span,
@@ -372,29 +385,3 @@ class Fit:
         """Indices of the readings that a robust fit trusted less than the others."""
         weights = self.problem.weights
         return np.flatnonzero(weights < 1.0) if weights is not None else np.zeros(0, dtype=np.intp)
-
-
-AnyFit = TypeVar("AnyFit", bound=Fit)
-
-
-def with_values(found: AnyFit) -> AnyFit:
-    """The fit with the estimates and standard errors written into its model."""
-    problem = found.problem
-    std: list[float | None] = [p.internal_std for p in problem.model.parameters]
-    errors = np.sqrt(np.diag(found.covariance)) * problem.scale
-    for index, error, held in zip(problem.free, errors, found.at_bound, strict=True):
-        std[index] = None if held else float(error)
-    x = np.where(found.at_bound & (np.abs(found.x) < 1e-6), 0.0, found.x)
-    model = problem.model.with_values(problem.values(x), std, origin="identified")
-    parameters = list(model.parameters)
-    together = {k for group in found.overlays for k in group.members}
-    for k, index in enumerate(problem.free):
-        origin = parameters[index].origin
-        if not found.identifiable[k]:
-            origin = UNSEEN
-        elif k in together:
-            origin = TOGETHER
-        elif found.at_bound[k]:
-            origin = ON_BOUND
-        parameters[index] = replace(parameters[index], origin=origin)
-    return replace(found, model=replace(model, parameters=tuple(parameters)))

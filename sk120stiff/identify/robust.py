@@ -15,10 +15,11 @@ from scipy import stats
 
 from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import Refusal
-from sk120stiff.identify.fit import Fit, with_values
+from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve, solve_near
+from sk120stiff.identify.written import with_values
 
 # By the number of axes that a reading has, from 0 on:
 LIMIT = np.sqrt([0.0, *stats.chi2.ppf(0.99, (1, 2, 3))])  # one clean one in a hundred lies beyond

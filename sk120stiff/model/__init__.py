@@ -24,12 +24,20 @@ from sk120stiff.model.loaded import (
     loaded_uncertainty,
 )
 from sk120stiff.model.model import Model, joint_spring_model
-from sk120stiff.model.parameter import ON_BOUND, TOGETHER, UNSEEN, Parameter, parameter_frame
+from sk120stiff.model.parameter import (
+    CALIBRATED,
+    ON_BOUND,
+    TOGETHER,
+    UNSEEN,
+    Parameter,
+    parameter_frame,
+)
 from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty
 from sk120stiff.model.typical import typical_model, typical_parameters
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
 __all__ = [
+    "CALIBRATED",
     "ON_BOUND",
     "TOGETHER",
     "UNSEEN",

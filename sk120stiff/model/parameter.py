@@ -18,6 +18,7 @@ UNTRUSTED = "not to be trusted"  # in the origin of a value that no readings sta
 UNSEEN = f"not identifiable, {UNTRUSTED}"
 TOGETHER = f"identified: known only together with others, {UNTRUSTED} alone"
 ON_BOUND = "identified: on its bound"
+CALIBRATED = "identified: up to the calibration of an instrument"
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,6 +84,8 @@ class Parameter:
             return "not seen in these readings"
         if not self.trusted:
             return "known only together with others"
+        if self.origin == CALIBRATED:
+            return "its ± holds the usual error of a calibrated instrument"
         if self.origin == ON_BOUND:
             return "on its bound: rigid fits best" if self.spec.reciprocal else "on its bound"
         return ""

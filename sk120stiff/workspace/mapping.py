@@ -127,7 +127,8 @@ def _connect(address: str) -> Any:
 
     try:
         connect: Any = Client
-        return connect(address, timeout=CONNECT_SECONDS)
+        # the default client of a process would compute whatever else Dask does there
+        return connect(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise InputError(
             f"no Dask scheduler answers at {address!r}",
@@ -153,7 +154,8 @@ def _on_cluster(client: Any, store: MapStore, missing: list[int]) -> Iterator[in
             future = client.submit(_write, store, chunk, pure=False)
             running[future] = chunk
         try:
-            found = wait(list(running), timeout=STARVED_SECONDS, return_when="FIRST_COMPLETED")
+            with client.as_current():
+                found = wait(list(running), timeout=STARVED_SECONDS, return_when="FIRST_COMPLETED")
         except TimeoutError:
             if _workers(client):
                 continue

@@ -298,9 +298,30 @@ def coverage(truth: dict[str, Any], answer: Answer, share: float) -> tuple[list[
         if joint in bent:
             continue
         key = f"joint_springs:{joint}.stiffness"
-        if key in answer.parameters:
-            springs.append(_inside(answer, key, stiffness))
+        meant = _meant_by_its_law(truth, answer, joint, stiffness)
+        if key in answer.parameters and meant is not None:
+            springs.append(_inside(answer, key, meant))
     return effects, springs
+
+
+def _meant_by_its_law(
+    truth: dict[str, Any], answer: Answer, joint: str, stiffness: float
+) -> float | None:
+    """What the answer's law of a hardening gear calls its spring, where the truth has one.
+
+    Of a series (k2, k3) it is the stiffness about no torque; of steps it is that beyond the last
+    one, as the generator has it, whose cubic law has no such thing.
+    """
+    gears = [e for e in truth["effects"] if (e["name"], e["where"]) == ("gear_hardening", joint)]
+    if not gears:
+        return stiffness
+    sizes = gears[0]["sizes"]
+    stepped = any(
+        name.startswith(f"gear_hardening:{joint}.extra_below") for name in answer.parameters
+    )
+    if stepped:
+        return None if "cubic" in sizes else stiffness
+    return stiffness / (1.0 + sizes.get("first", 0.0) + sizes.get("second", 0.0))
 
 
 def _inside(answer: Answer, key: str, value: float) -> bool:

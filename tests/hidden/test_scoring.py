@@ -210,6 +210,37 @@ def test_coverage_reads_intervals(tmp_path: Path) -> None:
     assert coverage(truth("L1", TILT), answer, 0.5) == ([], [])
 
 
+@pytest.mark.parametrize(
+    ("sizes", "law", "found", "holds"),
+    [
+        ({"first": 0.2, "second": 0.05}, "quadratic", 320000.0, [True]),  # 400000 / 1.25
+        ({"first": 0.2, "second": 0.05}, "quadratic", 400000.0, [False]),
+        ({"first": 0.2, "second": 0.05}, "extra_below_150", 400000.0, [True]),
+        ({"cubic": 0.3}, "quadratic", 400000.0, [True]),
+        ({"cubic": 0.3}, "extra_below_150", 400000.0, []),
+    ],
+)
+def test_a_spring_is_what_the_law_of_its_gear_calls_so(
+    tmp_path: Path, sizes: dict[str, float], law: str, found: float, holds: list[bool]
+) -> None:
+    gear = {
+        "name": "gear_hardening", "where": "joint_2_l", "sizes": sizes, "quantities": {}, "left": 9,
+    }  # fmt: skip
+    (tmp_path / "verdict.json").write_text(json.dumps({
+        "verdict": "named",
+        "effects": [{
+            "name": "gear_hardening", "where": "joint_2_l", "alternatives": [],
+            "parameters": [{"name": law, "value": 1.0, "std": 0.1, "unit": "1"}],
+        }],
+    }))  # fmt: skip
+    (tmp_path / "model.yaml").write_text(
+        "effects:\n- name: joint_springs\n  where: joint_2_l\n  parameters:\n"
+        f"    stiffness: {{value: {found}, unit: N*m/rad, std: 1000.0}}\n"
+    )
+    case = truth("L1", gear) | {"springs": {"joint_2_l": 400000.0}}
+    assert coverage(case, read_answer(tmp_path), 1.0) == ([], holds)
+
+
 def test_heldout_ratio(tmp_path: Path) -> None:
     oracle = np.zeros((4, 3))
     path = tmp_path / "predicted.csv"

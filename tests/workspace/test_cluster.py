@@ -14,7 +14,7 @@ from sk120stiff.workspace import open_map, verify_map, write_map
 from sk120stiff.workspace import store as store_module
 from tests.workspace.arms import joint_job
 
-distributed = pytest.importorskip("distributed")
+dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
 
 
 @pytest.fixture
@@ -76,3 +76,6 @@ def test_a_scheduler_that_is_not_there_is_told_in_seconds(tmp_path: Path) -> Non
         write_map(joint_job(4, 4), tmp_path / "m.zarr", scheduler="not an address")
     assert time.monotonic() - begin < 20
     assert not (tmp_path / "m.zarr").exists()
+    write_map(joint_job(4, 4), tmp_path / "m.zarr")
+    assert dask.config.get("scheduler", None) is None  # what is read here is computed here
+    assert np.isfinite(open_map(tmp_path / "m.zarr")["minimum_stiffness"].values).any()

@@ -170,7 +170,7 @@ def usual_sizes(effect: Effect, frames: Mapping[str, float]) -> Array:
     Frames of one arm are off by much the same: where some were told, by unit in `frames`, the
     others are expected to be as those.
     """
-    usual = [np.sqrt(s.typical * s.plausible) for s in effect.parameters]
+    usual = [s.usual for s in effect.parameters]
     if isinstance(effect, JointFrame):
         least = [s.typical for s in effect.parameters]
         usual = [

@@ -28,7 +28,7 @@ from sk120stiff.explain.select.score import SWEEPS
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import COUNTED, frames_off
 from sk120stiff.identify.absolute.start import options_of
-from sk120stiff.identify.fit import with_values
+from sk120stiff.identify.written import with_values
 from sk120stiff.model import Parameter
 
 Block = tuple[Effect, Array, Array]  # a law, usual sizes (p,) and columns (M, p) of its parameters

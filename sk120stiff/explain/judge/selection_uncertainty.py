@@ -25,7 +25,7 @@ from sk120stiff.explain.select.own_sizes import price_of_factors, with_settled_s
 from sk120stiff.explain.select.score import score_set
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
-from sk120stiff.identify.fit import with_values
+from sk120stiff.identify.written import with_values
 
 REFUTED = 10.0  # twice the log-likelihood by which another law may be worse at most
 LOOKED_AT = 8  # alternatives of one name
@@ -56,10 +56,13 @@ def with_selection_uncertainty(
         if _deviance(other) - _deviance(final) <= REFUTED:
             others.append(other)
     for other in others:
-        for parameter, value in zip(other.parameters, _at_no_load(other), strict=True):
-            if parameter.quantity in place:
-                k = place[parameter.quantity]
-                moves[k] = max(moves[k], abs(value - here[k]))
+        there = dict(zip((p.quantity for p in other.parameters), _at_no_load(other), strict=True))
+        moved = np.array([
+            there.get(p.quantity, 0.0 if p.effect.calibrated else here[k]) - here[k]
+            for k, p in enumerate(final.parameters)
+        ])  # fmt: skip
+        moved = np.abs(final.calibrations.beside(moved))
+        moves = np.maximum(moves, np.where([name in there for name in place], moved, 0.0))
     foreign = None
     if found.base.problem.noise.form:
         foreign = moved_by_a_foreign_cause(final, remainder_of(final).rms)

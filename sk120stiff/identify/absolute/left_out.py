@@ -20,7 +20,8 @@ from sk120stiff.effects import Catalogue, Effect, Viewpoint
 from sk120stiff.effects.geometry import JointOffset, LinkLength, ToolOffset
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.fit import Fit, with_values
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.written import with_values
 from sk120stiff.model import Model, Parameter
 
 COUNTED = (JointFrame, JointOffset, LinkLength, ToolOffset, Viewpoint)

@@ -21,7 +21,8 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.base import Options
 from sk120stiff.effects.geometry import JointOffset
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.fit import AnyFit, Fit, with_values
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.written import AnyFit, with_values
 from sk120stiff.model import Parameter
 
 MOST = 480  # numbers that sizes are estimated from: time goes with the cube

@@ -149,7 +149,7 @@ class PoseProblem(Problem):
         for j, k in enumerate(self.free):
             parameter = self.model.parameters[k]
             if isinstance(parameter.effect, TransmissionError):
-                usual[j] = np.sqrt(parameter.spec.typical * parameter.spec.plausible)
+                usual[j] = parameter.spec.usual
                 usual[j] /= self.scale[j]
         return usual
 

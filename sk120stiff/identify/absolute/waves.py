@@ -18,7 +18,8 @@ from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.effects.base import Options
 from sk120stiff.identify.absolute.left_out import COUNTED, posterior
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.fit import Fit, with_values
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.written import with_values
 
 CLEAR = 6.0  # by which the BIC must fall
 NOISES = np.geomspace(0.1, 2.0, 30)  # times the gap that was left: what the noise may be

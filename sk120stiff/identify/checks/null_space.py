@@ -187,7 +187,23 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
     some = "one combination" if known == 1 else f"{known} of {len(group)} combinations"
     return (
         f"{listed([words_for(p) for p in parameters])} move together: only {some} of their values "
-        f"{'is' if known == 1 else 'are'} known."
+        f"{'is' if known == 1 else 'are'} known." + _of_calibrations(fit, group)
+    )
+
+
+def _of_calibrations(fit: Fit, group: Sequence[int]) -> str:
+    """What stands for the open direction of a group that instruments belong to."""
+    known = {}
+    for k in group:
+        effect, spec = fit.parameters[k].effect, fit.parameters[k].spec
+        if effect.calibrated and fit.identifiable[k]:
+            share = spec.unit == "1"
+            size = f"{100 * spec.usual:.2g} %" if share else f"{spec.usual:.2g} {spec.unit}"
+            known[effect.name] = f"{effect.name.replace('_', ' ')} {size}"
+    if not known:
+        return ""
+    return (
+        f" The ± of each holds the usual error of a calibration ({listed(list(known.values()))})."
     )
 
 

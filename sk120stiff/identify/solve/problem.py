@@ -98,6 +98,13 @@ class Problem:
         return np.array([self.model.parameters[k].spec.plausible for k in self.free]) / self.scale
 
     @cached_property
+    def usual(self) -> Array:
+        """(P_free,) usual errors of calibrated instruments in scaled units, elsewhere infinite."""
+        free = [self.model.parameters[k] for k in self.free]
+        usual = [p.spec.usual if p.effect.calibrated else np.inf for p in free]
+        return np.array(usual) / self.scale
+
+    @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """(P_free,) physical bounds in scaled units."""
         specs = [self.model.parameters[k].spec for k in self.free]

@@ -12,6 +12,7 @@ from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.polish import seen_directions
+from sk120stiff.identify.solve.type_b import Calibrations
 from sk120stiff.identify.uncertainty.left_over import LeftOver, left_over
 from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
@@ -51,8 +52,10 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     problem = fit.problem
     scale, span = problem.scale, problem.span
     free = np.zeros(len(fit.x), dtype=bool)
-    _, singular, V, null = seen_directions(fit.jacobian, span)
-    lost = np.isinf(np.diag(covariance_of(fit.jacobian, free, span)))
+    before = Calibrations.of(fit.small[0], free, span, problem.usual)
+    informed = np.vstack([fit.small[0], before.rows(fit.unit)])
+    _, singular, V, null = seen_directions(informed, span)
+    lost = np.isinf(np.diag(covariance_of(informed, free, span)))
     size = span * scale
     per_noise = (V / singular) * size[:, None]
     covariance = fit.unit**2 * per_noise @ per_noise.T

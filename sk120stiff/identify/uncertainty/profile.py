@@ -38,10 +38,13 @@ def profile_intervals(
         std=np.sqrt(variance),
         slopes=np.linalg.norm(fit.jacobian, axis=0),
     )
-    found = []
+    found, linear = [], fit.intervals(level)
     for k, parameter in enumerate(fit.parameters):
         ends = (float(lower[k]), float(upper[k]))
-        if fit.identifiable[k] and np.isfinite(goal):
+        if not np.isfinite(variance[k]):  # the readings do not: a calibration may
+            found.append(linear[k])
+            continue
+        if np.isfinite(goal):
             ends = (valley.end(k, -1.0, goal), valley.end(k, 1.0, goal))
         scale = float(problem.scale[k])
         found.append(public_interval(parameter.spec, ends[0] * scale, ends[1] * scale))

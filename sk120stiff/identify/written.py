@@ -1,0 +1,40 @@
+"""A fit whose model holds the estimates, their standard errors, and what stands behind each."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.covariance import covariance_of
+from sk120stiff.model import CALIBRATED, ON_BOUND, TOGETHER, UNSEEN
+
+AnyFit = TypeVar("AnyFit", bound=Fit)
+
+
+def with_values(found: AnyFit) -> AnyFit:
+    """The fit with the estimates and standard errors written into its model."""
+    problem = found.problem
+    std: list[float | None] = [p.internal_std for p in problem.model.parameters]
+    errors = np.sqrt(np.diag(found.covariance)) * problem.scale
+    for index, error, held in zip(problem.free, errors, found.at_bound, strict=True):
+        std[index] = None if held else float(error)
+    x = np.where(found.at_bound & (np.abs(found.x) < 1e-6), 0.0, found.x)
+    model = problem.model.with_values(problem.values(x), std, origin="identified")
+    parameters = list(model.parameters)
+    together = {k for group in found.overlays for k in group.members}
+    alone = np.diag(covariance_of(found.small[0], found.held, problem.span))
+    for k, index in enumerate(problem.free):
+        origin = parameters[index].origin
+        if not found.identifiable[k]:
+            origin = UNSEEN
+        elif k in together:
+            origin = TOGETHER
+        elif found.at_bound[k]:
+            origin = ON_BOUND
+        elif not np.isfinite(alone[k]):
+            origin = CALIBRATED
+        parameters[index] = replace(parameters[index], origin=origin)
+    return replace(found, model=replace(model, parameters=tuple(parameters)))

@@ -1,0 +1,104 @@
+"""What readings leave open, calibrations of instruments close, and nothing else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff.effects import effect, load_cases_of
+from sk120stiff.identify import Fit, fit, known_model, weak_directions
+from sk120stiff.identify.solve.type_b import Calibrations
+from sk120stiff.measurements import NoiseStatement
+from sk120stiff.model import (
+    CALIBRATED,
+    Model,
+    model_from_text,
+    model_text,
+    predict_with_uncertainty,
+)
+from sk120stiff.robot import Robot
+from tests.identify.conftest import readings_of
+
+SIGMA = 5e-6
+USUAL = np.sqrt(0.12 * 0.01)  # of a gain, between typical and plausible
+GAINS = {
+    f"force_scale:sensor.scale_{axis}": s
+    for axis, s in zip("xyz", (0.03, -0.01, -0.02), strict=True)
+}
+
+
+@pytest.fixture(scope="module")
+def truth(springs: Model, robot: Robot) -> Model:
+    return (springs + effect(robot, "force_scale", "sensor")).with_public(**GAINS)
+
+
+@pytest.fixture(scope="module")
+def found(truth: Model, springs: Model, robot: Robot) -> Fit:
+    readings = readings_of(truth, poses=15, sigma=SIGMA)
+    stated = replace(readings, noise=NoiseStatement(sigma=SIGMA))
+    return fit(springs + effect(robot, "force_scale", "sensor"), stated)
+
+
+def test_springs_are_known_up_to_the_gain(found: Fit, truth: Model) -> None:
+    """Against a dense Bayesian covariance in which every gain has its usual error."""
+    assert found.identifiable.all()
+    scale = found.problem.scale
+    prior = np.array([0.0, 0.0, 0.0, *(scale[3:] / USUAL) ** 2])
+    dense = np.linalg.inv(found.jacobian.T @ found.jacobian + np.diag(prior))
+    np.testing.assert_allclose(
+        np.sqrt(np.diag(found.covariance)), np.sqrt(np.diag(dense)), rtol=0.02
+    )
+    for own, true in zip(found.parameters, truth.parameters, strict=True):
+        assert own.std is not None and abs(own.value - true.value) < 2.5 * own.std
+        assert own.origin == CALIBRATED
+    for spring in found.parameters[:3]:
+        assert spring.std / spring.value == pytest.approx(USUAL / np.sqrt(3.0), rel=0.1)
+
+
+def test_of_all_that_fit_alike_the_likeliest_sensor_is_taken(found: Fit) -> None:
+    gains = np.array([p.internal for p in found.parameters[3:]])
+    assert abs(gains.mean()) < 0.1 * USUAL
+    true = np.array(list(GAINS.values()))
+    np.testing.assert_allclose(gains - gains.mean(), true - true.mean(), atol=3e-3)
+
+
+def test_it_is_said(found: Fit) -> None:
+    (said,) = [each for each in weak_directions(found) if "move together" in each]
+    assert "only 5 of 6 combinations" in said
+    assert "usual error of a calibration (force scale 3.5 %)" in said
+
+
+def test_predictions_for_reported_loads_are_none_the_worse(found: Fit, truth: Model) -> None:
+    """An error that all springs and the gain share cancels there, after a file too."""
+    known = model_from_text(model_text(known_model(found)))
+    cases = load_cases_of(known.robot, readings_of(truth, poses=6, seed=9))
+    std = predict_with_uncertainty(known, cases).std_parameters
+    assert np.nanmax(std) < 2.0 * SIGMA  # of springs alone it would be 2 % of some 600 um
+    assert np.abs(known.predict(cases) - truth.predict(cases)).max() < 4.0 * np.nanmax(std)
+
+
+def test_nothing_is_added_where_the_readings_tell_all(springs: Model, robot: Robot) -> None:
+    """A sensor that is mounted turned shows in the directions; its calibration has no say."""
+    model = springs + effect(robot, "force_rotation", "sensor")
+    turned = model.with_public(**{"force_rotation:sensor.angle_x": 0.03})
+    fitted = fit(model, readings_of(turned, poses=15, sigma=SIGMA))
+    assert len(fitted.calibrations.sizes) == 0
+    np.testing.assert_array_equal(fitted.informed, fitted.small[0])
+    assert CALIBRATED not in {p.origin for p in fitted.parameters}
+
+
+def test_compliances_that_lie_on_one_another_stay_open() -> None:
+    """No calibration holds a spring: of two that the readings add up nothing more is known."""
+    jacobian, span = np.array([[1.0, 1.0, 0.0], [0.0, 0.0, 5.0]]), np.full(3, 10.0)
+    held = np.zeros(3, dtype=bool)
+    none = Calibrations.of(jacobian, held, span, np.full(3, np.inf))
+    assert none.rows(1.0).shape == (0, 3)
+    np.testing.assert_array_equal(none.step(np.array([1.0, 2.0, 3.0])), 0.0)
+    one = Calibrations.of(jacobian, held, span, np.array([np.inf, 2.0, np.inf]))
+    (row,) = one.rows(1.0)
+    # along (1, -1) the second may be off by 2: so may the first
+    np.testing.assert_allclose(abs(row @ [2.0, -2.0, 0.0]), 1.0)
+    np.testing.assert_allclose(row @ [1.0, 1.0, 0.0], 0.0, atol=1e-15)
+    step = one.step(np.array([1.0, 2.0, 3.0]))
+    np.testing.assert_allclose(step, [2.0, -2.0, 0.0], atol=1e-12)  # the second to zero
+    np.testing.assert_allclose(one.beside(np.array([3.0, 1.0, 4.0])), [2.0, 2.0, 4.0])
