@@ -97,7 +97,7 @@ def test_criteria_count_from_the_least(springs, robot, table2) -> None:
 def test_notes_tell_what_is_unknown(springs, robot, table2) -> None:
     models = {"plain": springs, "scaled": springs + effect(robot, "force_scale")}
     lines = {line.name: line for line in compare(models, table2)}
-    assert "6 not identifiable" in lines["scaled"].note
+    assert "6 known up to a calibration" in lines["scaled"].note
 
 
 def test_a_comparison_takes_two(springs, table2) -> None:

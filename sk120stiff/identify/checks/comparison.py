@@ -12,7 +12,7 @@ from sk120stiff.identify.checks.held_out import HeldOut, held_out, refitted
 from sk120stiff.identify.estimate import as_seen, fit_displacements, likelier
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
-from sk120stiff.model import Model
+from sk120stiff.model import CALIBRATED, Model
 
 CLEAR = 2.0  # standard errors from which on a difference is called one
 
@@ -126,8 +126,14 @@ def _note(found: Fit, loss: float | None, std: float | None, *, first: bool, bic
         said = "not told from the best"
     said += ", least BIC" if bic == 0.0 else ""
     lost = int((~found.identifiable).sum())
+    shared = sum(p.origin == CALIBRATED for p in found.parameters)
     bound = int(found.at_bound.sum())
     far = int((np.abs(found.x) > found.problem.span).sum())
-    for count, what in ((lost, "not identifiable"), (bound, "on a bound"), (far, "implausible")):
+    for count, what in (
+        (lost, "not identifiable"),
+        (shared, "known up to a calibration"),
+        (bound, "on a bound"),
+        (far, "implausible"),
+    ):
         said += f"; {count} {what}" if count else ""
     return said
