@@ -12,6 +12,7 @@ from sk120stiff.effects.base import (
     ReadingError,
     Switching,
     Viewpoint,
+    Weighing,
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
@@ -34,6 +35,7 @@ __all__ = [
     "ReadingError",
     "Switching",
     "Viewpoint",
+    "Weighing",
     "all_effects",
     "catalogue_words",
     "comment_lines",

@@ -1,6 +1,6 @@
 """The contract of an effect: one physical cause with a name, a place, parameters and a law.
 
-An effect enters in one of six ways, and each way is one base class:
+An effect enters in one of seven ways, and each way is one base class:
 
 =============  ==========================================================  ======================
 class          what it changes                                             example
@@ -9,6 +9,7 @@ class          what it changes                                             examp
 `Geometric`    where the unloaded arm really is, z₀                        joint offset
 `Imposed`      where coordinates go between zero and reading by            creep, warming up
                themselves, z₀ + S·p, whatever the load is
+`Weighing`     the arm's own weight, (1 + Σ p) of what is stated           masses of links
 `LoadError`    the load, W_true = W + (S·p) W + o·p in sensor axes         force bias
 `ReadingError` the displacement read, d_read = d + (S·p) d + o·p           tracker misalignment
 `Viewpoint`    the axes in which positions are stated, x = R(p) X + t(p)   tracker's frame
@@ -329,6 +330,13 @@ class Imposed(Effect):
 
         Zero where the readings do not hold what it goes with (a time, an order).
         """
+
+
+class Weighing(Effect):
+    """The arm's own weight is 1 + Σ_p values[p] times what its URDF states, all links alike.
+
+    What hangs on the tool is no part of the arm.
+    """
 
 
 class Misreading(Effect):

@@ -38,6 +38,7 @@ from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.joint_springs import JointSprings
 from sk120stiff.effects.joint_tilt import JointTilt
 from sk120stiff.effects.link_beam import LinkBending, LinkTorsion
+from sk120stiff.effects.link_masses import LinkMasses
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.effects.payload import Payload
 from sk120stiff.effects.places import USUAL_PLACES
@@ -85,6 +86,7 @@ OWN: tuple[type[Effect], ...] = (
     TransmissionError,
     JointCoupling,
     Payload,
+    LinkMasses,
     ApproachSide,
     MarkerShift,
     ThermalGrowth,
@@ -271,8 +273,8 @@ def _checked(kinds: Sequence[type[Effect]]) -> None:
         if not (isinstance(kind, type) and issubclass(kind, Effect)):
             raise InputError(
                 f"{kind!r} is no effect",
-                remedy="Give a class derived from Elastic, Geometric, Imposed, LoadError, "
-                "ReadingError or Viewpoint of sk120stiff.effects.",
+                remedy="Give a class derived from Elastic, Geometric, Imposed, Weighing, "
+                "LoadError, ReadingError or Viewpoint of sk120stiff.effects.",
             )
         missing = _missing(kind)
         if missing:

@@ -32,6 +32,7 @@ from sk120stiff.effects import (
     LoadCases,
     LoadError,
     ReadingError,
+    Weighing,
 )
 from sk120stiff.effects.base import Misreading, Switching
 from sk120stiff.model.misread import misread, rotate, to_sensor
@@ -165,7 +166,7 @@ class Assembly:
             point=self._marker(load_cases, values),
             force_point=load_cases.force_point,
             soft=self.soft(values),
-            weight=self._weight(springs),
+            weight=self.weight(springs, values),
             near=near,
         )
         return Standing(load_cases, wrench, loads, onset, rest)
@@ -212,9 +213,20 @@ class Assembly:
                 point = point + effect.shifts(load_cases) @ values[part]
         return point
 
-    def _weight(self, springs: Array) -> Weight | None:
-        weighs = self.mechanism.chain.weighs
-        return Weight(self.robot.gravity_in_base, springs) if weighs else None
+    def weight(self, springs: Array, values: Array) -> Weight | None:
+        """The arm's own weight on the linear springs; None where no masses are stated."""
+        if not self.mechanism.chain.weighs:
+            return None
+        return Weight(self._heavier(values) * self.robot.gravity_in_base, springs)
+
+    @cached_property
+    def _weighing(self) -> Index:
+        own = [isinstance(e, Weighing) for e in self.effects for _ in e.parameters]
+        return np.flatnonzero(own)
+
+    def _heavier(self, values: Array) -> float:
+        """True over stated weight of the arm's links."""
+        return 1.0 + float(values[self._weighing].sum())
 
     def _sagging(
         self,
@@ -315,6 +327,8 @@ class Assembly:
             out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(load_cases)
         for moving, part, index in self._imposed:
             out[:, :, part] += adjoint[:, :, index] @ moving.shifts(load_cases)
+        sag = rest.compliance @ rest.weights[..., None] / self._heavier(values)
+        out[:, :, self._weighing] += adjoint @ sag
         return out
 
     def pose_sensitivities(self, stood: Standing, values: Array) -> Array:
@@ -339,6 +353,9 @@ class Assembly:
                 out[:, :, part] -= adjoint_0[:, :, index] @ found.by_parameter
         for shifted, part, index in self._geometric:
             out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
+        if before.weight is not None:
+            sag = before.weight.compliance @ before.weights[..., None] / self._heavier(values)
+            out[:, :, self._weighing] -= adjoint_0 @ sag
         self._add_loads(out, solution, adjoint)
         out = solution.readings.matrix @ out
         for part, columns in solution.readings.columns:

@@ -110,9 +110,7 @@ class ModelCompliance:
 
     def weight_at(self, a: Array) -> Weight | None:
         """See `Compliant`."""
-        if not self.mechanism.chain.weighs:
-            return None
-        return Weight(self.model.robot.gravity_in_base, self._laws(a, np.zeros(6))[1])
+        return self.model.assembly.weight(self._laws(a, np.zeros(6))[1], self.model.values)
 
     def law(self, a: Array, wrench: Array) -> ElasticLaw:
         """See `Compliant`."""

@@ -19,6 +19,7 @@ from sk120stiff.effects import (
     LoadCases,
     LoadError,
     ReadingError,
+    Weighing,
     load_cases_of,
 )
 from sk120stiff.effects.gear import GearHardening, LostMotion
@@ -207,4 +208,4 @@ def family(effect: Effect) -> str:
         return "instrument"
     if isinstance(effect, Imposed):
         return "warmth"
-    return "load" if isinstance(effect, LoadError) else "geometry"
+    return "load" if isinstance(effect, LoadError | Weighing) else "geometry"

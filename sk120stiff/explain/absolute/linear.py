@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import Effect, Elastic, LoadError
+from sk120stiff.effects import Effect, Elastic, LoadError, Weighing
 
 FAINT = 1e-9  # share of a column left beside the base below which it is rounding
 
@@ -89,11 +89,16 @@ class Linear:
     def needs(self) -> dict[int, frozenset[int]]:
         """Candidate → those without which it is not what its columns say.
 
-        What bends a spring needs that spring. A load moves what yields: its columns are those of
-        all that yields in the model about which it is linearised.
+        What bends a spring needs that spring. A load, or a weight, moves what yields: its columns
+        are those of all that yields in the model about which it is linearised.
         """
-        yields = frozenset(e for e in self.seen if isinstance(self.candidates[e], Elastic))
-        loads = {e: yields for e, x in enumerate(self.candidates) if isinstance(x, LoadError)}
+        yields = frozenset(e for e in self.seen if self.candidates[e].joint_spring)
+        yields = yields or frozenset(
+            e for e in self.seen if isinstance(self.candidates[e], Elastic)
+        )
+        loads = {
+            e: yields for e, x in enumerate(self.candidates) if isinstance(x, LoadError | Weighing)
+        }
         return {**loads, **{e: frozenset({spring}) for e, spring in self.bent.items()}}
 
     def may_join(self, chosen: tuple[int, ...]) -> list[int]:

@@ -26,7 +26,7 @@ def pounds(found: Calibration) -> list[str]:
     said = problem.said
     if not said.payload.any() or not any(p.effect.joint_spring for p in found.parameters):
         return []
-    if any(p.effect.name == "payload" for p in found.parameters):
+    if any(p.effect.name in ("payload", "link_masses") for p in found.parameters):
         return []
     lighter = replace(said, payload=POUND * said.payload)
     other = PoseProblem(
