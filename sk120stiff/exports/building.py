@@ -12,7 +12,7 @@ from sk120stiff.effects import Elastic, LinearElastic, load_case
 from sk120stiff.effects.base import Switching
 from sk120stiff.errors import InputError
 from sk120stiff.exports.contract import Request, Told
-from sk120stiff.exports.geometry import MEASURED, Geometry, geometry_of
+from sk120stiff.exports.geometry import IN_MASSES, MEASURED, Geometry, geometry_of, weighing
 from sk120stiff.exports.moving import RIGID, SERVO, Body, Joint, MovingArm, Tied
 from sk120stiff.model import Model, ModelCompliance, model_compliance, probing_poses
 from sk120stiff.robot import LinearCoupling
@@ -51,6 +51,7 @@ def told_of(model: Model) -> tuple[tuple[Told, ...], tuple[Told, ...]]:
     """What a `MovingArm` carries of a model's effects, and what it leaves out."""
     geometry = geometry_of(model)
     carried, left_out = list(geometry.carried), list(geometry.left_out)
+    carried += weighing(model, IN_MASSES)
     load_cases = load_case(model.robot, probing_poses(model.robot), np.zeros(6))
     for effect, part in zip(model.effects, model.assembly.slices, strict=True):
         if not isinstance(effect, Elastic) or not model.values[part].any():
@@ -85,6 +86,7 @@ class _Builder:
     ) -> None:
         self.robot, self.mechanism, self.point = arm.model.robot, arm.mechanism, arm.point
         self.coupling, self.geometry, self.pose, self.frame = coupling, geometry, pose, frame
+        self.heavier = arm.model.assembly.heavier(arm.model.values)
         virtual = [joint.name for joint in self.mechanism.virtual]
         self.names = [*self.robot.actuated, *virtual]
         n = self.mechanism.n
@@ -174,7 +176,8 @@ class _Builder:
                 at, pending = self._real(name, at, pending, axis, turns)
                 self.places[link] = (at, pending)
             if chain.masses[e] > 0.0:
-                self._weigh(at, pending, float(chain.masses[e]), chain.centres[e], inertia)
+                mass = self.heavier * float(chain.masses[e])
+                self._weigh(at, pending, mass, chain.centres[e], self.heavier * inertia)
         tip = pending @ chain.placements[-1]
         last = robot.tree.body(robot.tool_frame)
         if robot.tool_frame not in self.places and last[0] >= 0:

@@ -19,7 +19,7 @@ from sk120stiff.exports.dh import (
     rows_of,
     standard_to_modified,
 )
-from sk120stiff.exports.geometry import MEASURED, Geometry, folded, geometry_of, measured
+from sk120stiff.exports.geometry import MEASURED, Geometry, folded, geometry_of, measured, weighing
 from sk120stiff.exports.kinematics_params import yielding
 from sk120stiff.files import csv_text
 from sk120stiff.model import Model
@@ -148,7 +148,11 @@ def make(model: Model, request: Request) -> Exported:  # noqa: ARG001
     return Exported(
         csv_text(zip(_header(table.std is not None), zip(*rows, strict=True), strict=True)),
         geometry.carried,
-        (*geometry.left_out, *yielding(model, "a table holds no springs")),
+        (
+            *geometry.left_out,
+            *weighing(model, "a table holds no masses"),
+            *yielding(model, "a table holds no springs"),
+        ),
         notes=_notes(model, pairs),
         details={
             **details,

@@ -16,12 +16,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import Effect, Elastic, Geometric, Imposed, load_case
+from sk120stiff.effects import Effect, Elastic, Geometric, Imposed, Weighing, load_case
 from sk120stiff.exports.contract import Told
 from sk120stiff.model import Model, probing_poses
 from sk120stiff.robot import LinearCoupling, Robot
 from sk120stiff.robot.rotations import joint_motion
 
+IN_MASSES = "in the masses of the links"
 MEASURED = "_measured"  # of the frame in which the measured point stands where it is stated
 _SAME = 1e-13  # rad or m: what a shift may differ by between poses and still be one number
 
@@ -92,7 +93,7 @@ def geometry_of(model: Model) -> Geometry:
     carried: list[Told] = []
     left_out: list[Told] = []
     for effect, part in zip(model.effects, assembly.slices, strict=True):
-        if isinstance(effect, Elastic):
+        if isinstance(effect, Elastic | Weighing):
             continue
         acts = bool(model.values[part].any())
         if not isinstance(effect, Geometric):
@@ -125,6 +126,16 @@ def geometry_of(model: Model) -> Geometry:
         tuple(carried),
         tuple(left_out),
     )
+
+
+def weighing(model: Model, how: str) -> list[Told]:
+    """Effects by which the arm weighs otherwise than its URDF states, and what became of them."""
+    own = zip(model.effects, model.assembly.slices, strict=True)
+    return [
+        Told(effect.id, how)
+        for effect, part in own
+        if isinstance(effect, Weighing) and model.values[part].any()
+    ]
 
 
 def _not_constant(shifts: Array, values: Array) -> str:

@@ -21,7 +21,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.exports.contract import Exported, Format, Request, Told
-from sk120stiff.exports.geometry import Geometry, geometry_of
+from sk120stiff.exports.geometry import Geometry, geometry_of, weighing
 from sk120stiff.model import Model
 from sk120stiff.robot import Chain, Robot
 from sk120stiff.robot.rotations import rotation_from_rpy, rpy_from_rotation
@@ -89,6 +89,7 @@ def _left_out(model: Model, geometry: Geometry) -> list[Told]:
     ]
     if np.abs(geometry.tool - np.eye(4)).max() > _IN_TOOL:
         told.append(Told("tool frame", "its error lies behind wrist_3, where the file ends"))
+    told += weighing(model, "the file holds no masses")
     return told + yielding(model, "the file holds no springs")
 
 

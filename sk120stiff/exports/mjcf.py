@@ -51,7 +51,7 @@ def notes_of(arm: MovingArm) -> tuple[str, ...]:
     notes = [
         "Servos and springs are in series; how they share a joint's compliance is a choice, their "
         "sum is the model's. Armature and damping only bring the arm to rest.",
-        "Masses are the robot's; a branch beside the arm weighs where it is at zero."
+        "Masses are the model's; a branch beside the arm weighs where it is at zero."
         if arm.heavy
         else "The robot states no masses: those here are placeholders, and gravity is off.",
     ]

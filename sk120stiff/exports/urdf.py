@@ -1,8 +1,8 @@
 """A calibrated URDF: the user's own file with the joints where they truly stand.
 
-Only the origins of joints change that the model's geometry moves; meshes, masses, limits, comments
-and foreign elements stay. What a URDF has no word for stands in an element ``<sk120stiff>`` that
-other readers pass over (docs/FILES.md).
+Only the origins of joints change that the model's geometry moves, and masses where the model's are
+others; meshes, limits, comments and foreign elements stay. What a URDF has no word for stands in an
+element ``<sk120stiff>`` that other readers pass over (docs/FILES.md).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from lxml.etree import _Element as Element
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Elastic
 from sk120stiff.exports.contract import Exported, Format, Request, Told
-from sk120stiff.exports.geometry import MEASURED, Geometry, geometry_of
+from sk120stiff.exports.geometry import IN_MASSES, MEASURED, Geometry, geometry_of, weighing
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot, find_robot
 from sk120stiff.robot.rotations import rotation_vector, rpy_from_rotation
@@ -46,9 +46,13 @@ def make(model: Model, request: Request) -> Exported:
     coupled = _add_couplings(robot, joints)
     if geometry.measured.any():
         _add_measured(root, robot, geometry)
+    heavier = weighing(model, IN_MASSES)
+    if heavier:
+        _weigh(root, model.assembly.heavier(model.values))
+    carried = (*geometry.carried, *heavier)
     elastic = [e for e in model.physical().effects if isinstance(e, Elastic) and _acts(model, e)]
     left_out += [Told(e.id, f"in <{EXTENSION}>, which other readers pass over") for e in elastic]
-    _add_extension(root, model, geometry)
+    _add_extension(root, model, {told.effect: told.how for told in carried})
     meshes = _moved_meshes(root, robot, request.out)
     tree = root.getroottree()
     text = etree.tostring(tree, encoding="utf-8", xml_declaration=True).decode("utf-8") + "\n"
@@ -56,7 +60,7 @@ def make(model: Model, request: Request) -> Exported:
     text = head.replace("-->", "-->\n") + robot_tag + body
     return Exported(
         text,
-        geometry.carried,
+        carried,
         tuple(left_out),
         notes=_notes(robot, coupled, meshes),
         details={
@@ -121,17 +125,23 @@ def _add_measured(root: Element, robot: Robot, geometry: Geometry) -> None:
     joint.tail = link.tail = "\n"
 
 
-def _add_extension(root: Element, model: Model, geometry: Geometry) -> None:
-    """Every effect with its values and where they come from, beside what the origins hold."""
+def _weigh(root: Element, heavier: float) -> None:
+    """Make every link heavier by one factor; inertias go with the mass."""
+    for element in root.xpath("link/inertial/mass | link/inertial/inertia"):
+        for name, value in element.attrib.items():
+            element.set(name, repr(heavier * float(value)))
+
+
+def _add_extension(root: Element, model: Model, carried: dict[str, str]) -> None:
+    """Every effect with its values and where they come from, beside what the file itself holds."""
     for old in root.findall(EXTENSION):
         root.remove(old)
     extension = etree.SubElement(root, EXTENSION, version=VERSION)
     if model.provenance:
         etree.SubElement(extension, "source", dict(model.provenance))
-    in_origins = {told.effect for told in geometry.carried}
     for effect in model.effects:
-        carried = "origins" if effect.id in in_origins else "here"
-        told = {"name": effect.name, "where": effect.where, "carried": carried}
+        place = {None: "here", IN_MASSES: "masses"}.get(carried.get(effect.id), "origins")
+        told = {"name": effect.name, "where": effect.where, "carried": place}
         element = etree.SubElement(extension, "effect", told)
         for parameter in (p for p in model.parameters if p.effect is effect):
             said = {"name": parameter.spec.name, "value": repr(parameter.value)}

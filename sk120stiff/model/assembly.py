@@ -217,14 +217,14 @@ class Assembly:
         """The arm's own weight on the linear springs; None where no masses are stated."""
         if not self.mechanism.chain.weighs:
             return None
-        return Weight(self._heavier(values) * self.robot.gravity_in_base, springs)
+        return Weight(self.heavier(values) * self.robot.gravity_in_base, springs)
 
     @cached_property
     def _weighing(self) -> Index:
         own = [isinstance(e, Weighing) for e in self.effects for _ in e.parameters]
         return np.flatnonzero(own)
 
-    def _heavier(self, values: Array) -> float:
+    def heavier(self, values: Array) -> float:
         """True over stated weight of the arm's links."""
         return 1.0 + float(values[self._weighing].sum())
 
@@ -327,7 +327,7 @@ class Assembly:
             out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(load_cases)
         for moving, part, index in self._imposed:
             out[:, :, part] += adjoint[:, :, index] @ moving.shifts(load_cases)
-        sag = rest.compliance @ rest.weights[..., None] / self._heavier(values)
+        sag = rest.compliance @ rest.weights[..., None] / self.heavier(values)
         out[:, :, self._weighing] += adjoint @ sag
         return out
 
@@ -354,7 +354,7 @@ class Assembly:
         for shifted, part, index in self._geometric:
             out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
         if before.weight is not None:
-            sag = before.weight.compliance @ before.weights[..., None] / self._heavier(values)
+            sag = before.weight.compliance @ before.weights[..., None] / self.heavier(values)
             out[:, :, self._weighing] -= adjoint_0 @ sag
         self._add_loads(out, solution, adjoint)
         out = solution.readings.matrix @ out

@@ -7,7 +7,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from sk120stiff.effects import CATALOGUE, load_case
+from sk120stiff.effects import CATALOGUE, effect, load_case
 from sk120stiff.effects.base import Options
 from sk120stiff.errors import InputError
 from sk120stiff.exports import export
@@ -63,9 +63,9 @@ def heavy(name: str) -> Model:
     model = base_model(public(name))
     robot = model.robot
     base = robot.base_frame
-    for effect in (f"joint_tilt:{robot.actuated[1]}", f"base_rocking:{base}",
-                   f"base_sliding:{base}", f"tool_compliance:{robot.tool_frame}"):  # fmt: skip
-        model = with_effect(model, effect)
+    for each in (f"joint_tilt:{robot.actuated[1]}", f"base_rocking:{base}",
+                 f"base_sliding:{base}", f"tool_compliance:{robot.tool_frame}"):  # fmt: skip
+        model = with_effect(model, each)
     return with_random(model, "joint_frame", "joint_offset")
 
 
@@ -105,14 +105,18 @@ def test_at_rest_at_ten_commands(name: str, tmp_path: Path) -> None:
     assert bent > 3e-4
 
 
-def test_the_weight_alone_bends_an_arm(tmp_path: Path) -> None:
+@pytest.mark.parametrize("heavier", [0.0, 0.4])
+def test_the_weight_alone_bends_an_arm(tmp_path: Path, heavier: float) -> None:
+    """That of the URDF, or another that was found."""
     model = joint_spring_model(load_robot(six_axis_arm(seed=2)), [2e5, 2e5, 1e5, 5e4, np.inf, 3e4])
+    model = model + effect(model.robot, "link_masses", model.robot.base_frame)
+    model = model.with_values(np.array([*model.values[:-1], heavier]))
     arm = loaded(model, tmp_path, pose=POSE)
     found = settled(arm, "tool", POSE, np.zeros(6), steps=20_000)
     np.testing.assert_allclose(found, resting(model, POSE, np.zeros(6)), atol=1e-7)
     assert np.linalg.norm(found - model.robot.placement(POSE)[:3, 3]) > 1e-3
     assert arm.body_mass[arm.body_gravcomp == 0.0].sum() == pytest.approx(
-        model.robot.mechanism().chain.masses.sum()
+        (1.0 + heavier) * model.robot.mechanism().chain.masses.sum()
     )
 
 

@@ -133,6 +133,28 @@ def test_springs_and_their_source_stand_in_the_extension() -> None:
     assert exported(again, "urdf").text.count("<sk120stiff") == 1
 
 
+def test_masses_that_were_found_are_written() -> None:
+    """Read back it weighs as much; a table, which has none, says so."""
+    model = with_random(base_model(public("ur5_robot.urdf")), "link_masses")
+    heavier = 1.0 + model.values[-1]
+    made = exported(model, "urdf")
+    assert [told.how for told in made.carried] == ["in the masses of the links"]
+    again = load_robot(made.text)
+    assert again.total_mass == pytest.approx(heavier * model.robot.total_mass)
+    a = np.array([0.3, -0.8, 0.5, 0.2, 0.4, 0.1])
+    np.testing.assert_allclose(
+        again.gravity_torque(a[None]),
+        heavier * model.robot.gravity_torque(a[None]),
+        rtol=1e-12,
+        atol=1e-12,
+    )
+    element = etree.fromstring(made.text.encode()).find("sk120stiff/effect[@name='link_masses']")
+    assert element.get("carried") == "masses"
+    for kind in ("dh", "kinematics_params"):
+        told = {each.effect: each.how for each in exported(model, kind).left_out}
+        assert "holds no masses" in told[model.effects[-1].id]
+
+
 def test_what_no_origin_can_be_is_told_by_name() -> None:
     model = with_random(
         base_model(public("ur5_robot.urdf")),
