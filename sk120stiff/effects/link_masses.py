@@ -16,7 +16,8 @@ class LinkMasses(Weighing):
     """All links are heavier or lighter by one share; where their masses lie is as stated.
 
     Own weight bends every spring: without a payload of another size beside it, or a spring that is
-    known, one share of all compliances does the same. Laws of gears go by the weight that is stated.
+    known, one share of all compliances does the same. Laws of gears go by the weight that was
+    stated.
     """
 
     name: ClassVar[str] = "link_masses"
