@@ -324,6 +324,27 @@ FAULTS: tuple[Fault, ...] = (
         exchange_that_fits_one_way=("if all(_fits(read[a], told[b], limit)", "if any(_fits(read[a], told[b], limit)"),
     ),
     *_of(
+        "identify/solve/type_b.py", *_tests("identify", "type_b"),
+        calibration_in_noise_assumed=("known = unit if np.isfinite(unit) else 0.0", "known = 1.0"),
+        calibration_of_one_axis=("told = sizes > NARROWER", "told = sizes > 1e9"),
+        instruments_away_from_their_calibration=("-self.span * (off @ self.directions)", "0.0 * self.span"),
+        moves_along_what_is_open=("over - (self.directions @ over) @ self.directions", "over"),
+    ),
+    *_of(
+        "identify/solve/problem.py", *_tests("identify", "null_space"),
+        calibration_of_what_has_none=("p.spec.usual if p.effect.calibrated else np.inf", "p.spec.usual"),
+    ),
+    *_of(
+        "model/assembly.py", *_tests("absolute", "link_masses"), *_tests("absolute", "sensitivities"),
+        masses_that_weigh_as_stated=("return 1.0 + float(values[self._weighing].sum())", "return 1.0"),
+        masses_that_show_twice=("rest.compliance @ rest.weights[..., None] / self.heavier(values)",
+                                "2.0 * rest.compliance @ rest.weights[..., None] / self.heavier(values)"),
+    ),
+    *_of(
+        "exports/urdf.py", *_tests("exports", "urdf"),
+        exported_masses_as_before=("_weigh(root, model.assembly.heavier(model.values))", "_weigh(root, 1.0)"),
+    ),
+    *_of(
         "measurements/placing_slips.py", *_tests("measurements", "conventions"),
         joints_mended_one_by_one=("wider[:KEPT]", "wider[:1]"),
         joints_beyond_their_limits=("return beyond, int(", "return 0, int("),

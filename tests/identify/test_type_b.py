@@ -17,7 +17,7 @@ from sk120stiff.model import (
     predict_with_uncertainty,
 )
 from sk120stiff.robot import Robot
-from tests.identify.conftest import readings_of
+from tests.identify.conftest import readings_of, without_statement
 
 SIGMA = 5e-6
 USUAL = np.sqrt(0.12 * 0.01)  # of a gain, between typical and plausible
@@ -51,6 +51,15 @@ def test_springs_are_known_up_to_the_gain(found: Fit, truth: Model) -> None:
     for own, true in zip(found.parameters, truth.parameters, strict=True):
         assert own.std is not None and abs(own.value - true.value) < 2.5 * own.std
         assert own.origin == CALIBRATED
+    for spring in found.parameters[:3]:
+        assert spring.std / spring.value == pytest.approx(USUAL / np.sqrt(3.0), rel=0.1)
+
+
+def test_a_calibration_is_no_noise_of_readings(truth: Model, springs: Model, robot: Robot) -> None:
+    """Where the scatter tells their noise, and it is not what was assumed, a gain stays a gain."""
+    readings = without_statement(readings_of(truth, poses=15, sigma=2e-6))
+    found = fit(springs + effect(robot, "force_scale", "sensor"), readings)
+    assert abs(np.log(found.unit)) > 0.5
     for spring in found.parameters[:3]:
         assert spring.std / spring.value == pytest.approx(USUAL / np.sqrt(3.0), rel=0.1)
 
