@@ -38,9 +38,15 @@ def catalogue_words(
     Raises:
         InputError: There is no such effect.
     """
-    if name is None:
-        return [words_of(kind.sample()) for kind in catalogue]
-    return [words_of(catalogue[name].sample())]
+    kinds = catalogue if name is None else [catalogue[name]]
+    found = [words_of(kind.sample()) for kind in kinds]
+    return [{**each, "sentence": _at_no_place(each["sentence"])} for each in found]
+
+
+def _at_no_place(sentence: str) -> str:
+    """A sentence on an effect at no place in particular, as English has it."""
+    sentence = sentence.replace("The link a link", "A link")
+    return sentence[0].upper() + sentence[1:]
 
 
 def comment_lines(effect: Effect, *, most: int = 6) -> Iterator[str]:

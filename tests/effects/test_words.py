@@ -44,7 +44,10 @@ def test_the_names_of_every_other_law_are_told(kind) -> None:
 
 
 def test_the_words_list_the_catalogue() -> None:
-    assert [words["name"] for words in catalogue_words()] == [kind.name for kind in CATALOGUE]
+    told = catalogue_words()
+    assert [words["name"] for words in told] == [kind.name for kind in CATALOGUE]
+    for words in told:
+        assert words["sentence"][0].isupper() and "a link a" not in words["sentence"].lower()
 
 
 @pytest.mark.parametrize(
