@@ -15,15 +15,19 @@ from sk120stiff.robot import Robot
 class LinkMasses(Weighing):
     """All links are heavier or lighter by one share; where their masses lie is as stated.
 
-    Own weight bends every spring: without a payload of another size beside it, or a spring that is
-    known, one share of all compliances does the same. Laws of gears go by the weight that was
-    stated.
+    Own weight bends every spring: without a payload of another size beside it one share of all
+    compliances does the same. With it, one share of the payload and of all springs does: what is
+    told is the ratio of both weights, and the springs are by the payload as it was stated. Laws of
+    gears go by the weight that was stated.
     """
 
     name: ClassVar[str] = "link_masses"
     place: ClassVar[str] = "the base frame"
     equation: ClassVar[str] = "weight = (1 + s) * weight by the masses of the URDF"
-    says: ClassVar[str] = "The arm's links weigh more or less than the URDF states."
+    says: ClassVar[str] = (
+        "The arm's links weigh more or less beside the payload than is stated: the masses of the "
+        "URDF are off, or the payload's is, and with it all springs. Weigh the payload."
+    )
     axes: ClassVar[str] = "all links alike"
     needs: ClassVar[str] = "positions of an arm that yields under weight, with several payloads"
     only_absolute: ClassVar[bool] = True

@@ -18,10 +18,13 @@ SAID = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}
 )
 
 
-def explained(tmp_path: Path, mass: np.ndarray, stated: float) -> Explained:
-    """Of two readings at each pose; every mass in the file is `stated` times what it is."""
+def explained(tmp_path: Path, mass: np.ndarray, stated: float, hung: float = 1.0) -> Explained:
+    """Of two readings at each pose; every mass in the file is `stated` times what it is.
+
+    The payload is `hung` times what the file says.
+    """
     a = np.repeat(poses(60, 4), 2, axis=0)
-    arm = _with(payload=(mass, np.zeros(3)))
+    arm = _with(payload=(hung * mass, np.zeros(3)))
     arm.compliance = np.array([0.0, 1 / 8e5, 1 / 5e5, 0.0, 0.0, 0.0])
     x = tracked(arm.stands(a)[0]) + SIGMA * np.random.default_rng(1).normal(size=(120, 3))
     path = write(tmp_path, a, x, SAID, more=",payload[kg]", cells=[f"{m:g}" for m in mass])
@@ -50,6 +53,18 @@ def test_masses_are_named_where_they_are_wrong(tmp_path: Path, stated: float) ->
         heavier = model.parameter("link_masses:base.scale")
         assert heavier.value == pytest.approx(1.0 / stated - 1.0, abs=3.5 * heavier.std)
         assert heavier.std < 0.01
+
+
+def test_a_payload_that_is_off_looks_the_same_and_is_said_to(tmp_path: Path) -> None:
+    """The ratio of both weights is told, and the springs are by the payload as it was stated."""
+    found = explained(tmp_path, np.tile([0.0, 40.0], 60), 1.0, hung=1.25)
+    (named,) = [each for each in found.findings if each.effect.name == "link_masses"]
+    assert "or the payload's is" in named.effect.sentence()
+    model = found.final.model
+    heavier = model.parameter("link_masses:base.scale")
+    assert heavier.value == pytest.approx(1.0 / 1.25 - 1.0, abs=3.5 * heavier.std)
+    spring = model.parameter("joint_springs:j2.stiffness")
+    assert spring.value == pytest.approx(8e5 / 1.25, abs=3.5 * spring.std)
 
 
 def test_one_payload_tells_nothing_of_them(tmp_path: Path) -> None:
