@@ -147,6 +147,24 @@ def test_what_brings_the_most_has_its_error_and_all_its_names(others: tuple[str,
     assert "461 µm (± 135 µm) rms per axis" in told
 
 
+@pytest.mark.parametrize(
+    ("own", "others", "advice"),
+    [
+        ("force_scale:sensor", ("force_bias:sensor",), "how the force sensor was calibrated"),
+        ("reading_rotation:tracker", (), "how the tracker stood"),
+        ("force_scale:sensor", ("joint_tilt:j1",), "look there first if the arm is to be mended"),
+        ("joint_tilt:j1", (), "look there first if the arm is to be mended"),
+    ],
+)
+def test_an_instrument_is_no_part_of_an_arm_to_be_mended(
+    own: str, others: tuple[str, ...], advice: str
+) -> None:
+    named = (SimpleNamespace(effect=SimpleNamespace(id=own), alternatives=others),)
+    told = next_step(Answered(findings=named, budget=(Share(own, 1e-5, 1e-6),)))
+    assert advice in told
+    assert ("no fault of the arm" in told) == ("mended" not in advice)
+
+
 def test_the_first_line_says_that_part_has_no_name() -> None:
     assert "20.0 µm rms per axis have none" in said(Answered())
     assert said(Answered(significant=False)) == "Something was missing, and it has a name."

@@ -16,6 +16,10 @@ from sk120stiff.explain.localise.words import microns
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
 
+CHECKED = {
+    "sensor": "no fault of the arm; check how the force sensor was calibrated and mounted",
+    "tracker": "no fault of the arm; check how the tracker stood and was aligned",
+}
 REPEATS = "repeat a few readings (same pose and load), so that the noise is known from them"
 LARGE = 2.0  # times what noise alone makes
 VAGUE = 0.5  # of its size, by which it is known, from where on a share is no advice
@@ -155,11 +159,14 @@ def _largest(answer: Explanation) -> list[str]:
         ]
     first = known[0]
     error = "" if first.std is None else f" (± {microns(first.std)})"
-    names = " or ".join((first.name, *named[first.name].alternatives))
+    names = (first.name, *named[first.name].alternatives)
     most = "what was named" if first is mine[0] else "what is well known"
+    places = {name.partition(":")[2] for name in names}
+    advice = CHECKED.get(places.pop()) if len(places) == 1 else None
     return [
-        f"At the measured loads {names} brings the most of {most}, "
-        f"{microns(first.rms)}{error} rms per axis: look there first if the arm is to be mended."
+        f"At the measured loads {' or '.join(names)} brings the most of {most}, "
+        f"{microns(first.rms)}{error} rms per axis: "
+        f"{advice or 'look there first if the arm is to be mended'}."
     ]
 
 
