@@ -50,6 +50,11 @@ def test_verdict_has_the_keys_of_the_contract(explained) -> None:
         assert {"name", "value", "std", "unit"} <= set(parameter)
         assert abs(parameter["value"] - 2e6) < 3.0 * parameter["std"]
         assert parameter["unit"] == "N*m/rad"
+        low, high = parameter["interval_95"]
+        assert low < parameter["value"] < high
+        assert 1.0 / low - 1.0 / parameter["value"] == pytest.approx(  # even in compliances
+            1.0 / parameter["value"] - 1.0 / high, rel=0.05
+        )
     gap = written["gap"]
     assert gap["unit"] == "um"
     assert gap["steps"][-1]["heldout_rms"] < 0.5 * gap["steps"][0]["heldout_rms"]

@@ -13,7 +13,12 @@ import numpy as np
 from sk120stiff.effects import load_cases_of
 from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.absolute.next_step import next_step_of_positions
-from sk120stiff.explain.answer.document import BEST_GUESS, micrometres, parameter_entry
+from sk120stiff.explain.answer.document import (
+    BEST_GUESS,
+    intervals_of,
+    micrometres,
+    parameter_entry,
+)
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
@@ -21,7 +26,7 @@ from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.absolute.remainder import remainder_entry
 from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
 from sk120stiff.measurements import write_measurements
-from sk120stiff.model import Parameter, write_model
+from sk120stiff.model import write_model
 from sk120stiff.model.predicted import predict_positions, prediction_table
 
 SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes certain
@@ -32,15 +37,14 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
     final, readings = answer.final, answer.readings
     stated = final.problem.stated_sigma
     reasons = unseen(final)
+    entries = _entries(final, reasons)
     lengths = bool(len(final.problem.lengths))
     um = micrometres if lengths else _none
     return {
         "schema": SCHEMA,
         "verdict": answer.verdict,
-        "effects": [_effect(answer, item, reasons) for item in answer.findings],
-        "parameters": [
-            _parameter(p, reasons, final.problem.reach(p)) for p in final.model.parameters if p.free
-        ],
+        "effects": [_effect(answer, item, entries) for item in answer.findings],
+        "parameters": [entries[p.name] for p in final.model.parameters if p.free],
         "gap": {
             "unit": "um" if lengths else "urad",
             "noise_floor": None if stated is None else stated * 1e6,
@@ -124,7 +128,9 @@ def _none(_radians: float | None) -> None:
     """What is no length has no size in µm."""
 
 
-def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[str, Any]:
+def _effect(
+    answer: Explained, item: Named, entries: Mapping[str, dict[str, Any]]
+) -> dict[str, Any]:
     problem = answer.final.problem
     own = [p for p in answer.final.model.parameters if p.effect == item.effect]
     share = None
@@ -138,7 +144,7 @@ def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[
         "exact_aliases": [],
         "probability": min(item.probability, SURE),
         "share_um": micrometres(share) if len(problem.lengths) else None,
-        "parameters": [_parameter(p, reasons, problem.reach(p)) for p in own],
+        "parameters": [entries[p.name] for p in own],
         "sentence": item.effect.sentence(),
         "equation": item.effect.equation,
         "axes": item.effect.axes,
@@ -151,6 +157,11 @@ def _effect(answer: Explained, item: Named, reasons: Mapping[str, str]) -> dict[
     }
 
 
-def _parameter(p: Parameter, reasons: Mapping[str, str], reach: float) -> dict[str, Any]:
-    reason = reasons.get(p.name) or (None if p.free else "counted in others, see weak_directions")
-    return {**parameter_entry(p, reason), "plausible": abs(p.internal) <= reach}
+def _entries(final: Calibration, reasons: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+    """Every parameter by its full name."""
+    ends, out = intervals_of(final), {}
+    for p in final.model.parameters:
+        why = reasons.get(p.name) or (None if p.free else "counted in others, see weak_directions")
+        entry = parameter_entry(p, why, ends.get(p.name))
+        out[p.name] = {**entry, "plausible": abs(p.internal) <= final.problem.reach(p)}
+    return out

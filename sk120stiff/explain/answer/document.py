@@ -15,7 +15,7 @@ from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import Finding, TaskBudget
-from sk120stiff.identify import unseen_reasons
+from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Parameter, Share
@@ -171,9 +171,10 @@ def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
     before = {p.name: p for p in answer.base.model.parameters}
     unseen = unseen_reasons(answer.final)
     hidden = unseen_reasons(answer.base)
+    ends = intervals_of(answer.final)
     return [
         {
-            **parameter_entry(p, unseen.get(p.name)),
+            **parameter_entry(p, unseen.get(p.name), ends.get(p.name)),
             "before": before[p.name].value if p.name in before and p.name not in hidden else None,
         }
         for p in answer.final.model.parameters
@@ -183,7 +184,7 @@ def parameters_before_and_after(answer: Explanation) -> list[dict[str, Any]]:
 def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
     found = [p for p in answer.final.model.parameters if p.effect == finding.effect]
     evidence, whole = finding.evidence, whole_size(answer, finding)
-    unseen = unseen_reasons(answer.final)
+    unseen, ends = unseen_reasons(answer.final), intervals_of(answer.final)
     return {
         "name": finding.effect.name,
         "where": finding.effect.where,
@@ -191,7 +192,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "exact_aliases": list(finding.exact),
         "probability": finding.probability,
         "share_um": micrometres(share_of(answer, finding)),
-        "parameters": [parameter_entry(p, unseen.get(p.name)) for p in found],
+        "parameters": [parameter_entry(p, unseen.get(p.name), ends.get(p.name)) for p in found],
         "size": None if whole is None else asdict(whole),
         "sentence": finding.effect.sentence(),
         "equation": finding.effect.equation,
@@ -212,13 +213,25 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
     }
 
 
-def parameter_entry(p: Parameter, unseen: str | None = None) -> dict[str, Any]:
-    """Value and error; null, with the reason, for what the readings do not show."""
+def intervals_of(fit: Fit) -> dict[str, tuple[float, float]]:
+    """95 % intervals by the parameters' full names, as wide on each side as the readings say."""
+    return dict(zip((p.name for p in fit.parameters), fit.intervals(), strict=True))
+
+
+def parameter_entry(
+    p: Parameter, unseen: str | None = None, ends: tuple[float, float] | None = None
+) -> dict[str, Any]:
+    """Value, error and interval; null, with the reason, for what the readings do not show.
+
+    The interval is made in compliances, where the readings are linear: of a stiffness that is
+    hardly known it is lopsided, and open where rigid is not excluded.
+    """
     shown = unseen is None
     return {
         "name": p.name,
         "value": p.value if shown else None,
         "std": p.std if shown else None,
+        "interval_95": ends if shown else None,
         "unit": p.spec.unit,
         "meaning": p.spec.meaning,
         "internal_value": p.internal if shown else None,
