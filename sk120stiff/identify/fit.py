@@ -356,6 +356,15 @@ class Fit:
             >>> print(f"{low:.3g} to {high:.3g} {found.parameters[0].spec.unit}")
             1.33e+06 to 1.39e+06 N*m/rad
         """
+        if level not in self._intervals:
+            self._intervals[level] = self._ends(level)
+        return self._intervals[level]
+
+    @cached_property
+    def _intervals(self) -> dict[float, tuple[tuple[float, float], ...]]:
+        return {}
+
+    def _ends(self, level: float) -> tuple[tuple[float, float], ...]:
         ends = internal_intervals(
             self.x,
             self.informed,
