@@ -16,7 +16,6 @@ from sk120stiff.identify.solve.type_b import Calibrations
 from sk120stiff.identify.written import with_values
 from sk120stiff.measurements import EXACT
 
-ROUNDS = 3  # of going to where instruments are as calibrated, and to the least misfit there
 NEAR = 0.05  # of a usual error, within which an instrument is as calibrated
 HALVINGS = 12  # of estimates under which the arm has no equilibrium
 
@@ -49,17 +48,30 @@ def solve_near(problem: Problem, x: Array) -> Fit:
 
 
 def _as_calibrated(problem: Problem, found: Minimum) -> Minimum:
-    """Where the readings leave the errors of instruments open, those that are likeliest before."""
-    for _ in range(ROUNDS):
-        step = Calibrations.of(found.jacobian, found.at_bound, problem.span, problem.usual).step(
-            found.x
-        )
-        if np.abs(step / problem.usual).max(initial=0.0) < NEAR:
-            break
-        x = np.clip(found.x + step, *problem.bounds)
-        other = polish(problem.evaluate, x, problem.bounds, problem.span)
-        found = replace(other, iterations=found.iterations + other.iterations)
-    return found
+    """Where the readings leave the errors of instruments open, those that are likeliest before.
+
+    A direction that is hardly seen at one place is not at another: on the way there the errors
+    count as readings of their calibrations.
+    """
+    open_ = Calibrations.of(found.jacobian, found.at_bound, problem.span, problem.usual)
+    step = open_.step(found.x)
+    if np.abs(step / problem.usual).max(initial=0.0) < NEAR:
+        return found
+
+    def evaluate(x: Array) -> tuple[Array, Array]:
+        residual, jacobian = problem.evaluate(x)
+        off, slope = open_.off(x)
+        return np.concatenate([residual, off]), np.vstack([jacobian, slope])
+
+    x = np.clip(found.x + step, *problem.bounds)
+    best = polish(evaluate, x, problem.bounds, problem.span)
+    R = len(found.residual)
+    return replace(
+        best,
+        residual=best.residual[:R],
+        jacobian=best.jacobian[:R],
+        iterations=found.iterations + best.iterations,
+    )
 
 
 def against_noise_alone(fit: Fit) -> Fit:

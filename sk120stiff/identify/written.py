@@ -11,6 +11,8 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.model import CALIBRATED, ON_BOUND, TOGETHER, UNSEEN
 
+MOSTLY = 4.0  # times the variance that is left by calibrations, from where on they tell most
+
 AnyFit = TypeVar("AnyFit", bound=Fit)
 
 
@@ -25,7 +27,10 @@ def with_values(found: AnyFit) -> AnyFit:
     model = problem.model.with_values(problem.values(x), std, origin="identified")
     parameters = list(model.parameters)
     together = {k for group in found.overlays for k in group.members}
-    alone = np.diag(covariance_of(found.small[0], found.held, problem.span))
+    alone, known = (
+        np.diag(covariance_of(each, found.held, problem.span))
+        for each in (found.small[0], found.informed)
+    )
     for k, index in enumerate(problem.free):
         origin = parameters[index].origin
         if not found.identifiable[k]:
@@ -34,7 +39,7 @@ def with_values(found: AnyFit) -> AnyFit:
             origin = TOGETHER
         elif found.at_bound[k]:
             origin = ON_BOUND
-        elif not np.isfinite(alone[k]):
+        elif alone[k] > MOSTLY * known[k]:
             origin = CALIBRATED
         parameters[index] = replace(parameters[index], origin=origin)
     return replace(found, model=replace(model, parameters=tuple(parameters)))

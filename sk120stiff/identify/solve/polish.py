@@ -120,8 +120,12 @@ def polish(
     return Minimum(x, residual, jacobian, held, count)
 
 
-def seen_directions(jacobian: Array, span: Array) -> tuple[Array, Array, Array, Array]:
+def seen_directions(
+    jacobian: Array, span: Array, faintest: float = FAINTEST
+) -> tuple[Array, Array, Array, Array]:
     """Directions of the parameters, each over its span, split by what the readings see of them.
+
+    A change by all that is plausible that shows by less than `faintest` of the noise is not seen.
 
     Returns:
         U, singular, V, null: (R, r), (r,), (P, r): J diag(span) = U diag(singular) Vᵀ over
@@ -131,7 +135,7 @@ def seen_directions(jacobian: Array, span: Array) -> tuple[Array, Array, Array, 
     missing = max(scaled.shape[1] - len(scaled), 0)
     scaled = np.vstack([scaled, np.zeros((missing, scaled.shape[1]))])
     U, singular, Vt = np.linalg.svd(scaled, full_matrices=False)
-    least = max(FAINTEST, 1e-13 * float(singular.max(initial=0.0)))
+    least = max(faintest, 1e-13 * float(singular.max(initial=0.0)))
     rank = int((singular > least).sum())
     return U[: len(jacobian), :rank], singular[:rank], Vt[:rank].T, Vt[rank:].T
 

@@ -15,7 +15,9 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.identify.solve.polish import seen_directions
 
-NARROWER = 1.0  # times as narrow as what is plausible, from where on a calibration tells something
+# times as narrow as what is plausible, from where on a calibration tells something; and up to where
+# what the readings tell is less than that
+NARROWER = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +45,7 @@ class Calibrations:
         directions, errors = np.zeros((0, len(span))), np.zeros((len(span), 0))
         if not np.isfinite(usual[moving]).any():
             return cls(directions, errors, np.zeros(0), span, usual)
-        null = seen_directions(jacobian[:, moving], span[moving])[3]
+        null = seen_directions(jacobian[:, moving], span[moving], NARROWER)[3]
         U, sizes, along = np.linalg.svd((span / usual)[moving, None] * null, full_matrices=False)
         told = sizes > NARROWER
         directions = np.zeros((int(told.sum()), len(span)))
@@ -62,8 +64,11 @@ class Calibrations:
 
         To first order no prediction changes.
         """
-        off = self.errors.T @ (x / self.usual) / self.sizes
-        return np.asarray(-self.span * (off @ self.directions))
+        return np.asarray(-self.span * ((self.off(x)[0] / self.sizes) @ self.directions))
+
+    def off(self, x: Array) -> tuple[Array, Array]:
+        """(b,) how far parameters are off their calibrations there, and (b, P) its derivative."""
+        return self.errors.T @ (x / self.usual), self.errors.T / self.usual
 
     def beside(self, change: Array) -> Array:
         """(P,) a change of the parameters without what calibrations alone tell of it."""
