@@ -327,7 +327,7 @@ FAULTS: tuple[Fault, ...] = (
         "identify/solve/type_b.py", *_tests("identify", "type_b"),
         calibration_in_noise_assumed=("known = unit if np.isfinite(unit) else 0.0", "known = 1.0"),
         calibration_of_one_axis=("told = sizes > NARROWER", "told = sizes > 1e9"),
-        instruments_away_from_their_calibration=("-self.span * (off @ self.directions)", "0.0 * self.span"),
+        instruments_away_from_their_calibration=("-self.span * ((self.off(x)[0] / self.sizes) @ self.directions)", "0.0 * self.span"),
         moves_along_what_is_open=("over - (self.directions @ over) @ self.directions", "over"),
     ),
     *_of(
