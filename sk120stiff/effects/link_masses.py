@@ -15,10 +15,10 @@ from sk120stiff.robot import Robot
 class LinkMasses(Weighing):
     """All links are heavier or lighter by one share; where their masses lie is as stated.
 
-    Own weight bends every spring: without a payload of another size beside it one share of all
+    Own weight bends every spring: without a payload or a load beside it one share of all
     compliances does the same. With it, one share of the payload and of all springs does: what is
     told is the ratio of both weights, and the springs are by the payload as it was stated. Laws of
-    gears go by the weight that was stated.
+    gears go by the weight of the URDF.
     """
 
     name: ClassVar[str] = "link_masses"
@@ -29,7 +29,7 @@ class LinkMasses(Weighing):
         "URDF are off, or the payload's is, and with it all springs. Weigh the payload."
     )
     axes: ClassVar[str] = "all links alike"
-    needs: ClassVar[str] = "positions of an arm that yields under weight, with several payloads"
+    needs: ClassVar[str] = "positions of an arm that yields under weight, with a payload or load"
     only_absolute: ClassVar[bool] = True
 
     @property
@@ -49,6 +49,5 @@ class LinkMasses(Weighing):
         return (robot.base_frame,) if weighs else ()
 
     def applies_to(self, load_cases: LoadCases) -> bool:
-        """The arm's own weight has to be told from another: payloads or loads that differ."""
-        differ = len(load_cases.wrench) > 0 and (load_cases.wrench != load_cases.wrench[0]).any()
-        return super().applies_to(load_cases) and bool(differ)
+        """The arm's own weight has to be told from another, of a payload or a load."""
+        return super().applies_to(load_cases) and bool(load_cases.wrench.any())

@@ -307,7 +307,7 @@ class Assembly:
         By the parameters of the arm itself: those of load and reading errors have no part in it.
         """
         rest = solution.rest
-        adjoint = _adjoint(rest, self.soft(values), rest.screws.linear_jacobian)
+        adjoint = rest.adjoint(rest.screws.linear_jacobian, self.soft(values))
         return self._standing(solution, values, adjoint)
 
     def _standing(self, solution: Standing, values: Array, adjoint: Array) -> Array:
@@ -327,13 +327,13 @@ class Assembly:
             out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(load_cases)
         for moving, part, index in self._imposed:
             out[:, :, part] += adjoint[:, :, index] @ moving.shifts(load_cases)
-        sag = rest.compliance @ rest.weights[..., None] / self.heavier(values)
-        out[:, :, self._weighing] += adjoint @ sag
+        if len(self._weighing):
+            out[:, :, self._weighing] += self._by_weight(rest, adjoint)
         return out
 
     def pose_sensitivities(self, stood: Standing, values: Array) -> Array:
         """(N, 6, P) exact derivative of where the point stands and how it is turned, base axes."""
-        adjoint = _adjoint(stood.rest, self.soft(values), stood.rest.screws.jacobian)
+        adjoint = stood.rest.adjoint(stood.rest.screws.jacobian, self.soft(values))
         out = self._standing(stood, values, adjoint)
         self._add_loads(out, stood, adjoint)
         return out
@@ -342,10 +342,10 @@ class Assembly:
         """(N, 3, P) exact derivative of the readings by the internal parameter values."""
         load_cases, rest, before = solution.load_cases, solution.rest, solution.unloaded
         soft = self.soft(values)
-        adjoint = _adjoint(rest, soft, rest.screws.linear_jacobian)  # (N, 3, n_z) = J N⁻¹
+        adjoint = rest.adjoint(rest.screws.linear_jacobian, soft)  # (N, 3, n_z)
         weighs = self.mechanism.chain.weighs
         J_0 = before.screws.linear_jacobian
-        adjoint_0 = _adjoint(before, soft, J_0) if weighs else J_0
+        adjoint_0 = before.adjoint(J_0, soft) if weighs else J_0
         out = self._standing(solution, values, adjoint)
         for effect, part, index in self._elastic:
             if isinstance(effect, LinearElastic) and weighs:
@@ -353,14 +353,20 @@ class Assembly:
                 out[:, :, part] -= adjoint_0[:, :, index] @ found.by_parameter
         for shifted, part, index in self._geometric:
             out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
-        if before.weight is not None:
-            sag = before.weight.compliance @ before.weights[..., None] / self.heavier(values)
-            out[:, :, self._weighing] -= adjoint_0 @ sag
+        if len(self._weighing):
+            out[:, :, self._weighing] -= self._by_weight(before, adjoint_0)
         self._add_loads(out, solution, adjoint)
         out = solution.readings.matrix @ out
         for part, columns in solution.readings.columns:
             out[:, :, part] += columns
         return np.swapaxes(load_cases.reading_axes, -1, -2) @ out
+
+    def _by_weight(self, rest: Equilibrium, adjoint: Array) -> Array:
+        """(N, k, 1) derivative by the arm's true weight over the stated one."""
+        if rest.weight is None:
+            return np.zeros((*adjoint.shape[:-1], 1))
+        stated = rest.screws.gravity_torques(self.robot.gravity_in_base)
+        return np.asarray(adjoint @ (rest.weight.compliance @ stated[..., None]))
 
     def _add_loads(self, out: Array, solution: Standing, adjoint: Array) -> None:
         """Add the derivatives (N, k, P) by the parameters of the load errors."""
@@ -383,18 +389,3 @@ class Assembly:
 def _marks(effect: Geometric, load_cases: LoadCases) -> bool:
     """Does it move the marker, and nothing of the arm?"""
     return effect.of_marker and load_cases.absolute
-
-
-def _adjoint(rest: Equilibrium, soft: Index, J: Array) -> Array:
-    """(N, k, n_z) J (I − ∂e/∂z)⁻¹ at an equilibrium, solved in the soft coordinates only.
-
-    With Y = J N⁻¹: Y = J + Y ∂e/∂z, and ∂e/∂z has rows of soft coordinates only.
-    """
-    if not len(soft):
-        return J
-    rows = rest.feedback(soft)
-    newton = np.eye(len(soft)) - rows[..., soft]
-    Y_soft = np.swapaxes(
-        np.linalg.solve(np.swapaxes(newton, -1, -2), np.swapaxes(J[..., soft], -1, -2)), -1, -2
-    )
-    return J + Y_soft @ rows

@@ -73,6 +73,19 @@ class Equilibrium:
             out = out + self.weight.compliance[own] @ hanging
         return out
 
+    def adjoint(self, J: Array, soft: Index) -> Array:
+        """(N, k, n) J (I − ∂e/∂z)⁻¹ for J (N, k, n), solved in the soft coordinates only.
+
+        With Y = J (I − ∂e/∂z)⁻¹: Y = J + Y ∂e/∂z, and ∂e/∂z has rows of soft coordinates only.
+        """
+        if not len(soft):
+            return J
+        rows = self.feedback(soft)
+        newton = np.eye(len(soft)) - rows[..., soft]
+        right = np.swapaxes(J[..., soft], -1, -2)
+        Y_soft = np.swapaxes(np.linalg.solve(np.swapaxes(newton, -1, -2), right), -1, -2)
+        return np.asarray(J + Y_soft @ rows)
+
 
 @dataclass(frozen=True, eq=False)
 class Weight:

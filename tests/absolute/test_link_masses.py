@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.effects import load_case
+from sk120stiff.effects import load_case, load_cases_of
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.model import joint_spring_model, loaded_stiffness
 from tests.absolute.arm import MASSES, errors, poses, tracked, write
@@ -37,9 +37,14 @@ def explained(tmp_path: Path, mass: np.ndarray, stated: float, hung: float = 1.0
     return sk.explain(sk.Model(robot), sk.read(path))
 
 
-@pytest.mark.parametrize("stated", [1.0, 1.3])
-def test_masses_are_named_where_they_are_wrong(tmp_path: Path, stated: float) -> None:
-    found = explained(tmp_path, np.tile([0.0, 40.0], 60), stated)
+@pytest.mark.parametrize(
+    ("stated", "payloads"), [(1.0, [0.0, 40.0]), (1.3, [0.0, 40.0]), (1.3, [40.0, 40.0])]
+)
+def test_masses_are_named_where_they_are_wrong(
+    tmp_path: Path, stated: float, payloads: list[float]
+) -> None:
+    """One payload tells them too: it pulls at the joints in other proportions than the links."""
+    found = explained(tmp_path, np.tile(payloads, 60), stated)
     names = {each.effect.id for each in found.findings if each.effect.name != "joint_frame"}
     springs = {"joint_springs:j2", "joint_springs:j3"}
     assert names == springs | ({"link_masses:base"} if stated != 1.0 else set())
@@ -52,7 +57,7 @@ def test_masses_are_named_where_they_are_wrong(tmp_path: Path, stated: float) ->
     if stated != 1.0:
         heavier = model.parameter("link_masses:base.scale")
         assert heavier.value == pytest.approx(1.0 / stated - 1.0, abs=3.5 * heavier.std)
-        assert heavier.std < 0.01
+        assert heavier.std < (0.01 if len(set(payloads)) > 1 else 0.03)
 
 
 def test_a_payload_that_is_off_looks_the_same_and_is_said_to(tmp_path: Path) -> None:
@@ -67,7 +72,7 @@ def test_a_payload_that_is_off_looks_the_same_and_is_said_to(tmp_path: Path) -> 
     assert spring.value == pytest.approx(8e5 / 1.25, abs=3.5 * spring.std)
 
 
-def test_one_payload_tells_nothing_of_them(tmp_path: Path) -> None:
+def test_without_a_payload_nothing_is_told_of_them(tmp_path: Path) -> None:
     """Then all springs may be softer instead, and nobody is told that masses are wrong."""
     found = explained(tmp_path, np.zeros(120), 1.3)
     assert all(each.effect.name != "link_masses" for each in found.findings)
@@ -98,6 +103,36 @@ def test_stiffness_under_its_weight_goes_with_it(tmp_path: Path) -> None:
     np.testing.assert_allclose(*moved, rtol=1e-9)
     ratio = np.linalg.norm(one.K_gravity) / np.linalg.norm(plain.K_gravity)
     assert ratio == pytest.approx(1.5, rel=1e-3)  # not quite: it has sagged a little farther
+
+
+@pytest.mark.parametrize("scale", [0.3, -1.0])
+def test_its_derivative_is_exact_beside_a_gear_that_hardens(tmp_path: Path, scale: float) -> None:
+    """And where nothing weighs any more; positions and displacements, by central differences."""
+    a = poses(6, 3)
+    path = write(tmp_path, a, np.zeros((6, 3)), SAID, more=",payload[kg]", cells=["40"] * 6)
+    robot = sk.load_robot(tmp_path / "six.urdf", base="base", tool="tool")
+    model = joint_spring_model(robot, [9e5, 8e5, 5e5, 1e5, 8e4, 5e4])
+    model = (
+        model + sk.effect(robot, "gear_hardening", "j2") + sk.effect(robot, "link_masses", "base")
+    )
+    values = np.array([*model.values[:6], 3e-10, 1e-13, scale])
+    cases = load_cases_of(robot, sk.read(path))
+
+    def stands(values: np.ndarray) -> np.ndarray:
+        return model.assembly.stand(cases, values).rest.screws.position
+
+    def moves(values: np.ndarray) -> np.ndarray:
+        return model.assembly.solve(cases, values).displacement
+
+    stood = model.assembly.stand(cases, values)
+    step = np.array([*np.zeros(8), 0.02])  # both are nearly straight; positions round at 1e-16 m
+    for predicted, exact in (
+        (stands, model.assembly.pose_sensitivities(stood, values)[:, :3, -1]),
+        (moves, model.assembly.sensitivities(model.assembly.solve(cases, values), values)[..., -1]),
+    ):
+        near, far = (predicted(values + s * step) - predicted(values - s * step) for s in (1, 2))
+        slope = (8.0 * near - far) / (12.0 * 0.02)
+        np.testing.assert_allclose(exact, slope, rtol=0.0, atol=1e-7 * np.abs(slope).max())
 
 
 def test_an_arm_without_masses_has_none_to_be_wrong() -> None:
