@@ -209,6 +209,7 @@ class ForcePoint(_SensorError):
     """The load acts at another point of the tool than stated: M_true = M + o × F."""
 
     name: ClassVar[str] = "force_point"
+    calibrated: ClassVar[bool] = False  # a place that was measured, no reading of the sensor
     equation: ClassVar[str] = "M_true = M_reported + o x F"
     says: ClassVar[str] = "The load acts at another point of the tool than stated."
     axes: ClassVar[str] = "axes of the tool frame"

@@ -86,6 +86,21 @@ def test_predictions_for_reported_loads_are_none_the_worse(found: Fit, truth: Mo
     assert np.abs(known.predict(cases) - truth.predict(cases)).max() < 4.0 * np.nanmax(std)
 
 
+def test_an_axis_along_which_nothing_pulled_stays_untold(springs: Model, robot: Robot) -> None:
+    """Its usual error is no finding: nothing was read of it."""
+    readings = readings_of(springs, poses=15, sigma=SIGMA)
+    cases = load_cases_of(robot, readings)
+    force = np.einsum("nji,nj->ni", cases.rotation, readings.wrench[:, :3])
+    force[:, 1] = 0.0  # of the tool
+    wrench = np.zeros((readings.n_readings, 6))
+    wrench[:, :3] = np.einsum("nij,nj->ni", cases.rotation, force)
+    flat = replace(readings, wrench=wrench)
+    moved = springs.predict(load_cases_of(robot, flat))
+    found = fit(springs + effect(robot, "force_scale", "sensor"), replace(flat, displacement=moved))
+    told = {p.spec.name: seen for p, seen in zip(found.parameters, found.identifiable, strict=True)}
+    assert told == {"stiffness": True, "scale_x": True, "scale_y": False, "scale_z": True}
+
+
 def test_nothing_is_added_where_the_readings_tell_all(springs: Model, robot: Robot) -> None:
     """A sensor that is mounted turned shows in the directions; its calibration has no say."""
     model = springs + effect(robot, "force_rotation", "sensor")

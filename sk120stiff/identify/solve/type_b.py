@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.identify.solve.polish import seen_directions
+from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
 
 # times as narrow as what is plausible, from where on a calibration tells something; and up to where
 # what the readings tell is less than that
@@ -40,8 +40,12 @@ class Calibrations:
 
     @classmethod
     def of(cls, jacobian: Array, held: Mask, span: Array, usual: Array) -> Calibrations:
-        """What a derivative (R, P) in units of the noise leaves open, `held` parameters at rest."""
-        moving = np.flatnonzero(~held)
+        """What a derivative (R, P) in units of the noise leaves open, `held` parameters at rest.
+
+        A parameter that does not show at all is no matter of calibrations: nothing was read of it.
+        """
+        shows = np.linalg.norm(jacobian, axis=0) * span > FAINTEST
+        moving = np.flatnonzero(~held & shows)
         directions, errors = np.zeros((0, len(span))), np.zeros((len(span), 0))
         if not np.isfinite(usual[moving]).any():
             return cls(directions, errors, np.zeros(0), span, usual)

@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of, public_interval
 from sk120stiff.identify.solve.profile_likelihood import Valley
+from sk120stiff.model import CALIBRATED
 
 
 def profile_intervals(
@@ -23,7 +24,8 @@ def profile_intervals(
 
     Notes:
         An end that no misfit sets lies at the physical bound, which may be infinite. A parameter
-        that the readings do not show has both ends there.
+        that the readings do not show has both ends there. One that a calibration tells has the ends
+        of `Fit.intervals`: along what the readings leave open they have no misfit to follow.
     """
     problem = fit.problem
     lower, upper = problem.bounds
@@ -41,7 +43,7 @@ def profile_intervals(
     found, linear = [], fit.intervals(level)
     for k, parameter in enumerate(fit.parameters):
         ends = (float(lower[k]), float(upper[k]))
-        if not np.isfinite(variance[k]):  # the readings do not: a calibration may
+        if parameter.origin == CALIBRATED or not np.isfinite(variance[k]):
             found.append(linear[k])
             continue
         if np.isfinite(goal):
