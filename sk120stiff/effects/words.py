@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -44,8 +45,11 @@ def catalogue_words(
 
 
 def _at_no_place(sentence: str) -> str:
-    """A sentence on an effect at no place in particular, as English has it."""
-    sentence = sentence.replace("The link a link", "A link")
+    """A sentence on an effect at no place in particular, as English has it.
+
+    "The link a link bends" is a link that bends.
+    """
+    sentence = re.sub(r"^The (\w+) (an? \1)\b", r"\2", sentence)
     return sentence[0].upper() + sentence[1:]
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.effects import LoadError, Weighing
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.absolute.calibrate import Calibration, fitted
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
@@ -26,7 +27,7 @@ def pounds(found: Calibration) -> list[str]:
     said = problem.said
     if not said.payload.any() or not any(p.effect.joint_spring for p in found.parameters):
         return []
-    if any(p.effect.name in ("payload", "link_masses") for p in found.parameters):
+    if any(isinstance(p.effect, LoadError | Weighing) for p in found.parameters):
         return []
     lighter = replace(said, payload=POUND * said.payload)
     other = PoseProblem(
