@@ -141,8 +141,11 @@ FAULTS: tuple[Fault, ...] = (
         whitening_with_the_wrong_sign=("block = block - gain", "block = block + gain"),
     ),
     *_of(
+        "stiffness/equilibrium.py", *_tests("model", "model"), *_tests("effects", "contract"),
+        adjoint_not_transposed=("np.linalg.solve(np.swapaxes(newton, -1, -2), right)", "np.linalg.solve(newton, right)"),
+    ),
+    *_of(
         "model/assembly.py", *_tests("model", "model"), *_tests("effects", "contract"),
-        adjoint_not_transposed=("np.swapaxes(newton, -1, -2), np.swapaxes(J", "newton, np.swapaxes(J"),
         sensitivity_of_geometry_without_the_unloaded_arm=(
             "out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)",
             "out[:, :, part] -= 0.0 * adjoint_0[:, :, index] @ shifted.shifts(load_cases)"),
@@ -326,6 +329,7 @@ FAULTS: tuple[Fault, ...] = (
     *_of(
         "identify/solve/type_b.py", *_tests("identify", "type_b"),
         calibration_in_noise_assumed=("known = unit if np.isfinite(unit) else 0.0", "known = 1.0"),
+        calibration_of_what_was_not_read=("np.flatnonzero(~held & shows)", "np.flatnonzero(~held)"),
         calibration_of_one_axis=("told = sizes > NARROWER", "told = sizes > 1e9"),
         instruments_away_from_their_calibration=("-self.span * ((self.off(x)[0] / self.sizes) @ self.directions)", "0.0 * self.span"),
         moves_along_what_is_open=("over - (self.directions @ over) @ self.directions", "over"),
@@ -337,8 +341,8 @@ FAULTS: tuple[Fault, ...] = (
     *_of(
         "model/assembly.py", *_tests("absolute", "link_masses"), *_tests("absolute", "sensitivities"),
         masses_that_weigh_as_stated=("return 1.0 + float(values[self._weighing].sum())", "return 1.0"),
-        masses_that_show_twice=("rest.compliance @ rest.weights[..., None] / self.heavier(values)",
-                                "2.0 * rest.compliance @ rest.weights[..., None] / self.heavier(values)"),
+        masses_that_show_twice=("adjoint @ (rest.weight.compliance @ stated", "2.0 * adjoint @ (rest.weight.compliance @ stated"),
+        masses_that_hang_on_a_gears_curve=("adjoint @ (rest.weight.compliance @ stated", "adjoint @ (rest.compliance @ stated"),
     ),
     *_of(
         "exports/urdf.py", *_tests("exports", "urdf"),

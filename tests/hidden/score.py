@@ -126,6 +126,19 @@ def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[s
     }
 
 
+USUAL = range(90, 111)  # readings of an ordinary campaign
+LONG = 10.0  # s
+
+
+def pace(seconds: list[float]) -> str:
+    """How long answers to ordinary campaigns took, of so many seconds."""
+    slow = sum(each > LONG for each in seconds)
+    return (
+        f"cases of {USUAL[0]} to {USUAL[-1]} readings: median {median(seconds):.1f} s of "
+        f"{len(seconds)}, {slow} over {LONG:.0f} s, longest {max(seconds):.0f} s"
+    )
+
+
 STRENGTHS = ((0.0, 25.0), (25.0, 60.0), (60.0, float("inf")))
 
 
@@ -189,11 +202,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for other in others:
         if (other["program"], other["batched"]) != (frozen["program"], frozen["batched"]):
             raise NotFrozen("the folders were answered by different programs, or not in one way")
-    judged = {}
+    judged, ordinary = {}, []
     for folder in folders:
         lead = f"{folder.name}/" if others else ""
         for path in sorted((folder / "truth").glob("*.json")):
             judged[lead + path.stem] = judge_case(folder, path.stem)
+            readings = folder / "cases" / path.stem / "train.csv"
+            if readings.is_file() and len(readings.read_text("utf-8").splitlines()) - 1 in USUAL:
+                ordinary.append(judged[lead + path.stem][1].seconds)
     rows = []
     for level in GOALS:
         cases = [entry for entry in judged.values() if level_of(entry[0]) == level]
@@ -217,6 +233,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 f"{row['level']}: {_percent(row['right_as_classes'])} % right where causes that "
                 f"lie less than {ALIKE:g} of the noise apart count as one"
             )
+    if ordinary:
+        print(pace(ordinary))
     results = [result for _, _, result in judged.values()]
     for what, hits in (
         ("effect parameters", [hit for result in results for hit in result.effects_covered]),
