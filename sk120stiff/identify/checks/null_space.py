@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import LoadCases
@@ -15,7 +16,8 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.overlaid import Overlay, separating
 from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
-from sk120stiff.model import Parameter
+from sk120stiff.identify.written import MOSTLY
+from sk120stiff.model import CALIBRATED, Parameter
 from sk120stiff.robot.anatomy import arm_length
 
 VAGUE = 0.5  # relative standard error beyond which a value is no knowledge
@@ -83,9 +85,9 @@ def _together(fit: Fit) -> Iterator[tuple[set[int], str]]:
         if not told.issuperset(group):
             yield set(group), _unseen(fit, group, size)
             told.update(group)
-    for pair in _correlated(fit):
-        if not told.issuperset(pair):
-            yield set(pair), _correlation(fit, *pair)
+    for own in _correlated(fit):
+        if not told.issuperset(own):
+            yield set(own), _correlation(fit, *own) if len(own) == 2 else _correlations(fit, own)
 
 
 def overlaid_sentence(fit: Fit, group: Overlay) -> str:
@@ -153,13 +155,29 @@ def words_for(parameter: Parameter) -> str:
     return f"{what} {detail} ({parameter.effect.where})".replace("  ", " ")
 
 
-def _null_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
-    """Sets of lost parameters that null directions tie, and how many of these each has."""
+def _open_directions(fit: Fit) -> Array:
+    """(P, b) orthonormal, parameters over their span: what readings hardly tell, or not at all.
+
+    Hardly is where most of what is known is of calibrations.
+    """
     moving = np.flatnonzero(~fit.held)
-    span = fit.problem.span
-    null = seen_directions(fit.jacobian[:, moving], span[moving])[3]
-    covariance = covariance_of(fit.jacobian, fit.held, span)
-    left = [int(k) for k in np.flatnonzero(np.isinf(np.diag(covariance)[moving]))]
+    span, told = fit.problem.span, fit.calibrations
+    unseen = seen_directions(fit.jacobian[:, moving], span[moving])[3]
+    null = np.zeros((len(span), unseen.shape[1]))
+    null[moving] = unseen
+    read = np.linalg.norm(fit.jacobian @ (span[:, None] * told.ways), axis=0)
+    ways = told.ways[:, (MOSTLY - 1.0) * read**2 < told.sizes**2]
+    U, size, _ = np.linalg.svd(ways - null @ (null.T @ ways), full_matrices=False)
+    return np.hstack([null, U[:, size > LINKED]])
+
+
+def _null_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
+    """Sets of parameters that open directions tie, and how many of these each has."""
+    moving = np.flatnonzero(~fit.held)
+    null = _open_directions(fit)[moving]
+    variance = np.diag(covariance_of(fit.jacobian, fit.held, fit.problem.span))
+    shared = np.array([p.origin == CALIBRATED for p in fit.parameters], dtype=bool)
+    left = [int(k) for k in np.flatnonzero((np.isinf(variance) | shared)[moving])]
     part = null / np.maximum(np.linalg.norm(null, axis=1, keepdims=True), 1e-300)
     tied = np.abs(part @ part.T) > LINKED
     while left:
@@ -194,7 +212,7 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
 def _of_calibrations(fit: Fit, group: Sequence[int]) -> str:
     """What stands for the open direction of a group that instruments belong to."""
     known = {}
-    for k in group:
+    for k in group if np.any(fit.calibrations.ways[list(group)]) else ():
         effect, spec = fit.parameters[k].effect, fit.parameters[k].spec
         if effect.calibrated and fit.identifiable[k]:
             share = spec.unit == "1"
@@ -208,16 +226,16 @@ def _of_calibrations(fit: Fit, group: Sequence[int]) -> str:
 
 
 def _pair(fit: Fit, group: Sequence[int]) -> str:
-    moving = np.flatnonzero(~fit.held)
-    null = seen_directions(fit.jacobian[:, moving], fit.problem.span[moving])[3]
-    place = [int(np.flatnonzero(moving == k)[0]) for k in group]
-    part = null[place] * (fit.problem.span * fit.problem.scale)[list(group)][:, None]
+    part = (
+        _open_directions(fit)[list(group)]
+        * (fit.problem.span * fit.problem.scale)[list(group)][:, None]
+    )
     strongest = part[:, int(np.argmax(np.linalg.norm(part, axis=0)))]
     known, value, std = _combination(fit, group, strongest)
     first, second = (fit.parameters[k] for k in group)
     return (
         f"{words_for(first)} and {words_for(second)} move together: only {known} is known, "
-        f"{value:.4g} ± {std:.2g} {first.spec.internal_unit}."
+        f"{value:.4g} ± {std:.2g} {first.spec.internal_unit}." + _of_calibrations(fit, group)
     )
 
 
@@ -247,10 +265,22 @@ def _std_of(fit: Fit, weights: Array) -> float:
     return float(np.linalg.norm((V.T @ (weights[moving] * span)) / singular)) * fit.unit
 
 
-def _correlated(fit: Fit) -> list[tuple[int, int]]:
+def _correlated(fit: Fit) -> list[tuple[int, ...]]:
+    """Sets of estimates that strong correlations tie."""
     known = np.isfinite(np.diag(fit.covariance)) & ~fit.held
-    upper: Mask = np.triu(np.abs(fit.correlation) > TOGETHER, k=1)
-    return [(int(i), int(j)) for i, j in np.argwhere(upper & np.outer(known, known))]
+    tied: Mask = (np.abs(fit.correlation) > TOGETHER) & np.outer(known, known)
+    count, member = connected_components(tied, directed=False)
+    groups = (np.flatnonzero(member == number) for number in range(count))
+    return [tuple(map(int, own)) for own in groups if len(own) > 1]
+
+
+def _correlations(fit: Fit, group: Sequence[int]) -> str:
+    """One common factor, as a rule: every pair of many would say the same."""
+    names = listed([words_for(fit.parameters[k]) for k in group])
+    return (
+        f"{names} move together (correlations beyond {TOGETHER:g}): combinations of them are known far "
+        "better than each alone." + _of_calibrations(fit, group)
+    )
 
 
 def _correlation(fit: Fit, first: int, second: int) -> str:

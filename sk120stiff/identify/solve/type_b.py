@@ -1,9 +1,10 @@
-"""What is known of an instrument before it reads: its calibration, where readings say nothing.
+"""What is known of an instrument before it reads: its calibration, where readings tell less.
 
 A force sensor's gain and all springs make one product: if every force is read 1 % too large and
-every spring is 1 % stiffer, no reading changes. Readings with such a direction tell the springs up
-to the sensor's calibration, and no less: its usual error is a standard uncertainty of Type B (GUM,
-4.3), which stands for what the readings do not tell. Where they do tell, it does not count.
+every spring is 1 % stiffer, no reading of a stiff arm changes, and hardly one of a soft arm.
+Readings with such a direction tell the springs up to the sensor's calibration, and no less: its
+usual error is a standard uncertainty of Type B (GUM, 4.3) and counts beside the readings. Where
+they tell ten times as much it does not: an error that was measured is what it was measured to be.
 """
 
 from __future__ import annotations
@@ -11,28 +12,30 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import eigh
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
 
-# times as narrow as what is plausible, from where on a calibration tells something; and up to where
-# what the readings tell is less than that
-NARROWER = 1.0
+COUNTS = 0.1  # of what readings tell, as standard errors, below which a calibration is no news
+NARROWER = 1.0  # times as narrow as what is plausible, from where on a calibration tells something
 
 
 @dataclass(frozen=True, eq=False)
 class Calibrations:
-    """Directions of the parameters that calibrations of instruments tell, and readings do not.
+    """Directions of the parameters of which calibrations of instruments tell something.
 
     Attributes:
-        directions: (b, P) orthonormal, of parameters over `span`.
-        errors: (P, b) orthonormal: where a step along a direction leads, over `usual`.
-        sizes: (b,) how far that is.
+        ways: (P, b) where a unit step along each leads, parameters over `span`.
+        steps: (b, P) how far parameters over `span` are along each.
+        errors: (P, b) orthonormal: where a step leads, parameters over `usual`.
+        sizes: (b,) how far a unit step leads there.
         span: (P,) sizes beyond which the parameters are implausible.
         usual: (P,) standard uncertainties by calibration; infinite where there is none.
     """
 
-    directions: Array
+    ways: Array
+    steps: Array
     errors: Array
     sizes: Array
     span: Array
@@ -42,39 +45,50 @@ class Calibrations:
     def of(cls, jacobian: Array, held: Mask, span: Array, usual: Array) -> Calibrations:
         """What a derivative (R, P) in units of the noise leaves open, `held` parameters at rest.
 
-        A parameter that does not show at all is no matter of calibrations: nothing was read of it.
+        Of what readings and calibrations tell both are sums of squares; the directions make either
+        diagonal. A parameter that does not show at all is no matter of calibrations: nothing was
+        read of it.
         """
         shows = np.linalg.norm(jacobian, axis=0) * span > FAINTEST
         moving = np.flatnonzero(~held & shows)
-        directions, errors = np.zeros((0, len(span))), np.zeros((len(span), 0))
+        P = len(span)
         if not np.isfinite(usual[moving]).any():
-            return cls(directions, errors, np.zeros(0), span, usual)
-        null = seen_directions(jacobian[:, moving], span[moving], NARROWER)[3]
-        U, sizes, along = np.linalg.svd((span / usual)[moving, None] * null, full_matrices=False)
-        told = sizes > NARROWER
-        directions = np.zeros((int(told.sum()), len(span)))
-        directions[:, moving] = along[told] @ null.T
-        errors = np.zeros((len(span), len(directions)))
-        errors[moving] = U[:, told]
-        return cls(directions, errors, sizes[told], span, usual)
+            empty = np.zeros((P, 0))
+            return cls(empty, empty.T, empty, np.zeros(0), span, usual)
+        _, singular, V, null = seen_directions(jacobian[:, moving], span[moving])
+        basis = np.hstack([V, null])
+        read = np.concatenate([singular, np.full(null.shape[1], FAINTEST)]) ** 2
+        known = (span / usual)[moving, None] * basis
+        ratio, W = eigh(known.T @ known, np.diag(read))  # WᵀRW = 1
+        sizes = np.sqrt(np.maximum(ratio, 0.0))
+        own = W * np.sqrt(read)[:, None]  # orthonormal
+        length = np.linalg.norm(W, axis=0)
+        told = (sizes > COUNTS) & (sizes > NARROWER * length)
+        W, sizes, own, length = W[:, told], sizes[told], own[:, told], length[told]
+        ways, errors = (np.zeros((P, len(sizes))) for _ in range(2))
+        steps = np.zeros((len(sizes), P))
+        ways[moving] = basis @ W / length
+        steps[:, moving] = (length * own * np.sqrt(read)[:, None]).T @ basis.T
+        errors[moving] = known @ W / sizes
+        return cls(ways, steps, errors, sizes / length, span, usual)
 
     def rows(self, unit: float) -> Array:
         """(b, P) rows of a derivative that say as much; the noise is `unit` times the assumed."""
         known = unit if np.isfinite(unit) else 0.0
-        return np.asarray(known * self.sizes[:, None] * self.directions / self.span)
+        return np.asarray(known * self.sizes[:, None] * self.steps / self.span)
 
     def step(self, x: Array) -> Array:
         """(P,) what leads from parameters `x` to where the instruments are likeliest.
 
-        To first order no prediction changes.
+        To first order the predictions change by less than they are known.
         """
-        return np.asarray(-self.span * ((self.off(x)[0] / self.sizes) @ self.directions))
+        return np.asarray(-self.span * (self.ways @ (self.off(x)[0] / self.sizes)))
 
     def off(self, x: Array) -> tuple[Array, Array]:
         """(b,) how far parameters are off their calibrations there, and (b, P) its derivative."""
         return self.errors.T @ (x / self.usual), self.errors.T / self.usual
 
     def beside(self, change: Array) -> Array:
-        """(P,) a change of the parameters without what calibrations alone tell of it."""
+        """(P,) a change of the parameters without what calibrations tell of it."""
         over = change / self.span
-        return np.asarray(self.span * (over - (self.directions @ over) @ self.directions))
+        return np.asarray(self.span * (over - self.ways @ (self.steps @ over)))
