@@ -273,14 +273,14 @@ class Fit:
 
     @cached_property
     def informed(self) -> Array:
-        """The derivative, small, and calibrations of instruments where the readings say nothing."""
-        return np.vstack([self.small[0], self.calibrations.rows(self.unit)])
+        """The derivative, small, and what calibrations of instruments add."""
+        return np.vstack([self.small[0], self.calibrations.rows()])
 
     @cached_property
     def calibrations(self) -> Calibrations:
         """What calibrations of instruments tell that the readings do not."""
         problem = self.problem
-        return Calibrations.of(self.small[0], self.held, problem.span, problem.usual)
+        return Calibrations.of(self.small[0], self.held, problem.span, problem.usual, self.unit)
 
     @property
     def moves(self) -> Moves:

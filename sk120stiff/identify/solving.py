@@ -12,7 +12,6 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.polish import Minimum, polish
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method, minimise
-from sk120stiff.identify.solve.type_b import Calibrations
 from sk120stiff.identify.written import with_values
 from sk120stiff.measurements import EXACT
 
@@ -38,39 +37,41 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
     rough = polish(linear, problem.start, problem.bounds, problem.span)
     start = _with_equilibrium(problem, rough.x)
     found = minimise(problem.evaluate, start, problem.bounds, problem.span, method)
-    return as_fit(problem, _as_calibrated(problem, found))
+    return with_values(_as_calibrated(_as_fit(problem, found)))
 
 
 def solve_near(problem: Problem, x: Array) -> Fit:
     """Solve a problem whose answer lies near scaled values `x` that are known."""
     found = polish(problem.evaluate, x, problem.bounds, problem.span)
-    return as_fit(problem, _as_calibrated(problem, found))
+    return with_values(_as_calibrated(_as_fit(problem, found)))
 
 
-def _as_calibrated(problem: Problem, found: Minimum) -> Minimum:
-    """Where the readings leave the errors of instruments open, those that are likeliest before.
+def _as_calibrated(fit: Fit) -> Fit:
+    """Where readings hardly tell the errors of instruments, those that are likeliest before.
 
     A direction that is hardly seen at one place is not at another: on the way there the errors
     count as readings of their calibrations.
     """
-    open_ = Calibrations.of(found.jacobian, found.at_bound, problem.span, problem.usual)
-    step = open_.step(found.x)
+    problem, told = fit.problem, fit.calibrations
+    step = told.step(fit.x)
     if np.abs(step / problem.usual).max(initial=0.0) < NEAR:
-        return found
+        return fit
+    weight = told.unit if np.isfinite(told.unit) else 1.0
 
     def evaluate(x: Array) -> tuple[Array, Array]:
         residual, jacobian = problem.evaluate(x)
-        off, slope = open_.off(x)
-        return np.concatenate([residual, off]), np.vstack([jacobian, slope])
+        off, slope = told.off(x)
+        return np.concatenate([residual, weight * off]), np.vstack([jacobian, weight * slope])
 
-    x = np.clip(found.x + step, *problem.bounds)
-    best = polish(evaluate, x, problem.bounds, problem.span)
-    R = len(found.residual)
+    best = polish(evaluate, np.clip(fit.x + step, *problem.bounds), problem.bounds, problem.span)
+    R = len(fit.residual)
     return replace(
-        best,
+        fit,
+        x=best.x,
         residual=best.residual[:R],
         jacobian=best.jacobian[:R],
-        iterations=found.iterations + best.iterations,
+        at_bound=best.at_bound,
+        iterations=fit.iterations + best.iterations,
     )
 
 
@@ -86,16 +87,18 @@ def against_noise_alone(fit: Fit) -> Fit:
 
 def as_fit(problem: Problem, found: Minimum) -> Fit:
     """What a solver found, as a `Fit` of the problem."""
-    return with_values(
-        Fit(
-            problem=problem,
-            model=problem.model,
-            x=found.x,
-            residual=found.residual,
-            jacobian=found.jacobian,
-            at_bound=found.at_bound,
-            iterations=found.iterations,
-        )
+    return with_values(_as_fit(problem, found))
+
+
+def _as_fit(problem: Problem, found: Minimum) -> Fit:
+    return Fit(
+        problem=problem,
+        model=problem.model,
+        x=found.x,
+        residual=found.residual,
+        jacobian=found.jacobian,
+        at_bound=found.at_bound,
+        iterations=found.iterations,
     )
 
 

@@ -116,10 +116,10 @@ def test_compliances_that_lie_on_one_another_stay_open() -> None:
     jacobian, span = np.array([[1e3, 1e3, 0.0], [0.0, 0.0, 5.0]]), np.full(3, 10.0)
     held = np.zeros(3, dtype=bool)
     none = Calibrations.of(jacobian, held, span, np.full(3, np.inf))
-    assert none.rows(1.0).shape == (0, 3)
+    assert none.rows().shape == (0, 3)
     np.testing.assert_array_equal(none.step(np.array([1.0, 2.0, 3.0])), 0.0)
     one = Calibrations.of(jacobian, held, span, np.array([np.inf, 2.0, np.inf]))
-    (row,) = one.rows(1.0)
+    (row,) = one.rows()
     # along (1, -1) the second may be off by 2: so may the first
     assert abs(row @ [2.0, -2.0, 0.0]) == pytest.approx(1.0)
     step = one.step(np.array([1.0, 2.0, 3.0]))
@@ -127,15 +127,18 @@ def test_compliances_that_lie_on_one_another_stay_open() -> None:
     np.testing.assert_allclose(one.beside(np.array([3.0, 1.0, 4.0])), [4.0, 0.0, 4.0], atol=1e-6)
 
 
+@pytest.mark.parametrize("unit", [0.2, 1.0, 10.0])
 @pytest.mark.parametrize("faint", [0.0, 0.03, 0.3, 0.6, 3.0, 30.0])
-def test_what_is_hardly_read_and_what_a_calibration_says_add_up(faint: float) -> None:
+def test_what_is_hardly_read_and_what_a_calibration_says_add_up(faint: float, unit: float) -> None:
     """A sum is read, and the second alone as well, so faintly; it is off by 2 as is usual.
 
-    Of both the inverse variances add, whichever tells more.
+    Of both the inverse variances add, whichever tells more, and whatever the noise turns out to be.
     """
+    faint *= unit
     jacobian = np.array([[1e3, 1e3], [0.0, faint]])
-    open_ = Calibrations.of(jacobian, np.zeros(2, bool), np.full(2, 10.0), np.array([np.inf, 2.0]))
-    told = np.vstack([jacobian, open_.rows(1.0)])
-    variance = np.linalg.inv(told.T @ told)[1, 1]
-    assert variance == pytest.approx(1.0 / (faint**2 + 0.25), rel=1e-3)
-    assert len(open_.sizes) == (faint < 5.0)
+    usual, span = np.array([np.inf, 2.0]), np.full(2, 10.0)
+    open_ = Calibrations.of(jacobian, np.zeros(2, dtype=bool), span, usual, unit)
+    told = np.vstack([jacobian, open_.rows()])
+    variance = unit**2 * np.linalg.inv(told.T @ told)[1, 1]
+    assert variance == pytest.approx(1.0 / ((faint / unit) ** 2 + 0.25), rel=1e-3)
+    assert len(open_.sizes) == (faint < 5.0 * unit)

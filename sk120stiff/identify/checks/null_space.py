@@ -278,8 +278,8 @@ def _correlations(fit: Fit, group: Sequence[int]) -> str:
     """One common factor, as a rule: every pair of many would say the same."""
     names = listed([words_for(fit.parameters[k]) for k in group])
     return (
-        f"{names} move together (correlations beyond {TOGETHER:g}): combinations of them are known far "
-        "better than each alone." + _of_calibrations(fit, group)
+        f"{names} move together (correlations beyond {TOGETHER:g}): combinations of them are known "
+        "far better than each alone." + _of_calibrations(fit, group)
     )
 
 

@@ -32,6 +32,7 @@ class Calibrations:
         sizes: (b,) how far a unit step leads there.
         span: (P,) sizes beyond which the parameters are implausible.
         usual: (P,) standard uncertainties by calibration; infinite where there is none.
+        unit: The readings' noise over the noise assumed.
     """
 
     ways: Array
@@ -40,10 +41,13 @@ class Calibrations:
     sizes: Array
     span: Array
     usual: Array
+    unit: float
 
     @classmethod
-    def of(cls, jacobian: Array, held: Mask, span: Array, usual: Array) -> Calibrations:
-        """What a derivative (R, P) in units of the noise leaves open, `held` parameters at rest.
+    def of(
+        cls, jacobian: Array, held: Mask, span: Array, usual: Array, unit: float = 1.0
+    ) -> Calibrations:
+        """What a derivative (R, P) over the noise assumed leaves open, `held` parameters at rest.
 
         Of what readings and calibrations tell both are sums of squares; the directions make either
         diagonal. A parameter that does not show at all is no matter of calibrations: nothing was
@@ -54,10 +58,11 @@ class Calibrations:
         P = len(span)
         if not np.isfinite(usual[moving]).any():
             empty = np.zeros((P, 0))
-            return cls(empty, empty.T, empty, np.zeros(0), span, usual)
+            return cls(empty, empty.T, empty, np.zeros(0), span, usual, unit)
         _, singular, V, null = seen_directions(jacobian[:, moving], span[moving])
         basis = np.hstack([V, null])
-        read = np.concatenate([singular, np.full(null.shape[1], FAINTEST)]) ** 2
+        read = np.concatenate([singular / unit, np.zeros(null.shape[1])])
+        read = np.maximum(read, FAINTEST) ** 2
         known = (span / usual)[moving, None] * basis
         ratio, W = eigh(known.T @ known, np.diag(read))  # WᵀRW = 1
         sizes = np.sqrt(np.maximum(ratio, 0.0))
@@ -70,11 +75,11 @@ class Calibrations:
         ways[moving] = basis @ W / length
         steps[:, moving] = (length * own * np.sqrt(read)[:, None]).T @ basis.T
         errors[moving] = known @ W / sizes
-        return cls(ways, steps, errors, sizes / length, span, usual)
+        return cls(ways, steps, errors, sizes / length, span, usual, unit)
 
-    def rows(self, unit: float) -> Array:
-        """(b, P) rows of a derivative that say as much; the noise is `unit` times the assumed."""
-        known = unit if np.isfinite(unit) else 0.0
+    def rows(self) -> Array:
+        """(b, P) rows of a derivative over the noise assumed that say as much."""
+        known = self.unit if np.isfinite(self.unit) else 0.0
         return np.asarray(known * self.sizes[:, None] * self.steps / self.span)
 
     def step(self, x: Array) -> Array:

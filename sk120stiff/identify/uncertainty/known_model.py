@@ -52,8 +52,8 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     problem = fit.problem
     scale, span = problem.scale, problem.span
     free = np.zeros(len(fit.x), dtype=bool)
-    before = Calibrations.of(fit.small[0], free, span, problem.usual)
-    informed = np.vstack([fit.small[0], before.rows(fit.unit)])
+    before = Calibrations.of(fit.small[0], free, span, problem.usual, fit.unit)
+    informed = np.vstack([fit.small[0], before.rows()])
     _, singular, V, null = seen_directions(informed, span)
     lost = np.isinf(np.diag(covariance_of(informed, free, span)))
     size = span * scale
