@@ -327,11 +327,11 @@ FAULTS: tuple[Fault, ...] = (
         exchange_that_fits_one_way=("if all(_fits(read[a], told[b], limit)", "if any(_fits(read[a], told[b], limit)"),
     ),
     *_of(
-        "identify/solve/type_b.py", *_tests("identify", "type_b"),
+        "identify/solve/prior.py", *_tests("identify", "type_b"),
         calibration_in_noise_assumed=("known = self.unit if np.isfinite(self.unit) else 0.0", "known = 1.0"),
         calibration_beside_noise_assumed=("[singular / unit, ", "[singular, "),
         calibration_of_what_was_not_read=("np.flatnonzero(~held & shows)", "np.flatnonzero(~held)"),
-        calibration_of_one_axis=("told = (sizes > COUNTS)", "told = (sizes > 1e9)"),
+        calibration_of_one_axis=("told = (sizes > counts)", "told = (sizes > 1e9)"),
         instruments_away_from_their_calibration=("-self.span * (self.ways @ (self.off(x)[0] / self.sizes))", "0.0 * self.span"),
         moves_along_what_is_open=("over - self.ways @ (self.steps @ over)", "over"),
     ),

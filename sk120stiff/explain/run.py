@@ -41,7 +41,7 @@ from sk120stiff.explain.select.best_selection import (
     of_readings,
 )
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
-from sk120stiff.explain.select.stepwise import Selection, select
+from sk120stiff.explain.select.stepwise import Selection, refit, select
 from sk120stiff.identify import Fit, as_seen, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
@@ -202,6 +202,11 @@ def _judged(
             return *exactly, None
         at = held_against(noise, exactly[0].final)
         standing = {effect.id for effect in exactly[0].effects}
+    elif drawn := [effect for effect in found.effects if effect.random_effects]:
+        beside = held_against(noise, refit(found.base, drawn, found.final))
+        tried = beside_model_form(beside, under, names={each.id for each in drawn}, seed=seed)
+        if _drawn(tried[1]) and not _adequacy(tried[0], noise).lacking:
+            return *tried, None
     found, named = beside_model_form(at, under, names=standing, seed=seed)
     account = complete_account(
         base,

@@ -13,6 +13,7 @@ from scipy import stats
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import MissingPart
 from sk120stiff.identify.moves import Moves
+from sk120stiff.identify.solve.beforehand import Beforehand
 from sk120stiff.identify.solve.covariance import (
     condition_of,
     correlation_of,
@@ -23,7 +24,6 @@ from sk120stiff.identify.solve.covariance import (
 from sk120stiff.identify.solve.overlaid import Overlay, overlays
 from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
 from sk120stiff.identify.solve.problem import Problem
-from sk120stiff.identify.solve.type_b import Calibrations
 from sk120stiff.model import Model, Parameter, parameter_frame
 
 if TYPE_CHECKING:
@@ -273,14 +273,13 @@ class Fit:
 
     @cached_property
     def informed(self) -> Array:
-        """The derivative, small, and what calibrations of instruments add."""
-        return np.vstack([self.small[0], self.calibrations.rows()])
+        """The derivative, small, and what is known beforehand."""
+        return np.vstack([self.small[0], self.beforehand.rows()])
 
     @cached_property
-    def calibrations(self) -> Calibrations:
-        """What calibrations of instruments tell that the readings do not."""
-        problem = self.problem
-        return Calibrations.of(self.small[0], self.held, problem.span, problem.usual, self.unit)
+    def beforehand(self) -> Beforehand:
+        """What draws' being draws and calibrations of instruments tell that the readings do not."""
+        return Beforehand.of(self.problem, self.x, self.small[0], self.held, self.unit)
 
     @property
     def moves(self) -> Moves:

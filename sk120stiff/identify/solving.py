@@ -9,13 +9,15 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.beforehand import Beforehand
 from sk120stiff.identify.solve.polish import Minimum, polish
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method, minimise
 from sk120stiff.identify.written import with_values
 from sk120stiff.measurements import EXACT
 
-NEAR = 0.05  # of a usual error, within which an instrument is as calibrated
+NEAR = 0.05  # standard deviations within which draws and instruments are as likely as can be
+ROUNDS = 3  # of weighing; draws tell their own size
 HALVINGS = 12  # of estimates under which the arm has no equilibrium
 
 
@@ -37,33 +39,41 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
     rough = polish(linear, problem.start, problem.bounds, problem.span)
     start = _with_equilibrium(problem, rough.x)
     found = minimise(problem.evaluate, start, problem.bounds, problem.span, method)
-    return with_values(_as_calibrated(_as_fit(problem, found)))
+    return with_values(_likeliest_before(_as_fit(problem, found)))
 
 
 def solve_near(problem: Problem, x: Array) -> Fit:
     """Solve a problem whose answer lies near scaled values `x` that are known."""
     found = polish(problem.evaluate, x, problem.bounds, problem.span)
-    return with_values(_as_calibrated(_as_fit(problem, found)))
+    return with_values(_likeliest_before(_as_fit(problem, found)))
 
 
-def _as_calibrated(fit: Fit) -> Fit:
-    """Where readings hardly tell the errors of instruments, those that are likeliest before.
+def _likeliest_before(fit: Fit) -> Fit:
+    """Where readings hardly tell draws and errors of instruments, those that are likeliest before.
 
-    A direction that is hardly seen at one place is not at another: on the way there the errors
-    count as readings of their calibrations.
+    A direction that is hardly seen at one place is not at another: on the way there what is known
+    beforehand counts as readings of it. Draws that have become smaller tell more.
     """
-    problem, told = fit.problem, fit.calibrations
-    step = told.step(fit.x)
-    if np.abs(step / problem.usual).max(initial=0.0) < NEAR:
-        return fit
-    weight = told.unit if np.isfinite(told.unit) else 1.0
+    for _ in range(ROUNDS):
+        known = fit.beforehand
+        if np.abs(known.off(known.step(fit.x))[0]).max(initial=0.0) < NEAR:
+            break
+        fit = _weighed(fit, known)
+    return fit
+
+
+def _weighed(fit: Fit, known: Beforehand) -> Fit:
+    """The readings and what is known beforehand, each by its weight."""
+    problem = fit.problem
+    weight = fit.unit if np.isfinite(fit.unit) else 1.0
 
     def evaluate(x: Array) -> tuple[Array, Array]:
         residual, jacobian = problem.evaluate(x)
-        off, slope = told.off(x)
+        off, slope = known.off(x)
         return np.concatenate([residual, weight * off]), np.vstack([jacobian, weight * slope])
 
-    best = polish(evaluate, np.clip(fit.x + step, *problem.bounds), problem.bounds, problem.span)
+    start = np.clip(fit.x + known.step(fit.x), *problem.bounds)
+    best = polish(evaluate, start, problem.bounds, problem.span)
     R = len(fit.residual)
     return replace(
         fit,

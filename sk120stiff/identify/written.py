@@ -28,8 +28,8 @@ def with_values(found: AnyFit) -> AnyFit:
     parameters = list(model.parameters)
     together = {k for group in found.overlays for k in group.members}
     alone, known = (
-        np.diag(covariance_of(each, found.held, problem.span))
-        for each in (found.small[0], found.informed)
+        np.diag(covariance_of(np.vstack([found.small[0], each]), found.held, problem.span))
+        for each in (found.beforehand.draws.rows(), found.beforehand.rows())
     )
     for k, index in enumerate(problem.free):
         origin = parameters[index].origin

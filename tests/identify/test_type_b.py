@@ -7,7 +7,8 @@ import pytest
 
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.identify import Fit, fit, known_model, weak_directions
-from sk120stiff.identify.solve.type_b import Calibrations
+from sk120stiff.identify.solve.beforehand import COUNTS
+from sk120stiff.identify.solve.prior import Prior
 from sk120stiff.measurements import NoiseStatement
 from sk120stiff.model import (
     CALIBRATED,
@@ -106,7 +107,7 @@ def test_nothing_is_added_where_the_readings_tell_all(springs: Model, robot: Rob
     model = springs + effect(robot, "force_rotation", "sensor")
     turned = model.with_public(**{"force_rotation:sensor.angle_x": 0.03})
     fitted = fit(model, readings_of(turned, poses=15, sigma=SIGMA))
-    assert len(fitted.calibrations.sizes) == 0
+    assert len(fitted.beforehand.calibrations.sizes) == 0
     np.testing.assert_array_equal(fitted.informed, fitted.small[0])
     assert CALIBRATED not in {p.origin for p in fitted.parameters}
 
@@ -115,10 +116,10 @@ def test_compliances_that_lie_on_one_another_stay_open() -> None:
     """No calibration holds a spring: of two that the readings add up nothing more is known."""
     jacobian, span = np.array([[1e3, 1e3, 0.0], [0.0, 0.0, 5.0]]), np.full(3, 10.0)
     held = np.zeros(3, dtype=bool)
-    none = Calibrations.of(jacobian, held, span, np.full(3, np.inf))
+    none = Prior.of(jacobian, held, span, np.full(3, np.inf), 1.0, COUNTS)
     assert none.rows().shape == (0, 3)
     np.testing.assert_array_equal(none.step(np.array([1.0, 2.0, 3.0])), 0.0)
-    one = Calibrations.of(jacobian, held, span, np.array([np.inf, 2.0, np.inf]))
+    one = Prior.of(jacobian, held, span, np.array([np.inf, 2.0, np.inf]), 1.0, COUNTS)
     (row,) = one.rows()
     # along (1, -1) the second may be off by 2: so may the first
     assert abs(row @ [2.0, -2.0, 0.0]) == pytest.approx(1.0)
@@ -137,7 +138,7 @@ def test_what_is_hardly_read_and_what_a_calibration_says_add_up(faint: float, un
     faint *= unit
     jacobian = np.array([[1e3, 1e3], [0.0, faint]])
     usual, span = np.array([np.inf, 2.0]), np.full(2, 10.0)
-    open_ = Calibrations.of(jacobian, np.zeros(2, dtype=bool), span, usual, unit)
+    open_ = Prior.of(jacobian, np.zeros(2, dtype=bool), span, usual, unit, COUNTS)
     told = np.vstack([jacobian, open_.rows()])
     variance = unit**2 * np.linalg.inv(told.T @ told)[1, 1]
     assert variance == pytest.approx(1.0 / ((faint / unit) ** 2 + 0.25), rel=1e-3)

@@ -61,7 +61,7 @@ def with_selection_uncertainty(
             there.get(p.quantity, 0.0 if p.effect.calibrated else here[k]) - here[k]
             for k, p in enumerate(final.parameters)
         ])  # fmt: skip
-        moved = np.abs(final.calibrations.beside(moved))
+        moved = np.abs(final.beforehand.calibrations.beside(moved))
         moves = np.maximum(moves, np.where([name in there for name in place], moved, 0.0))
     foreign = None
     if found.base.problem.noise.form:

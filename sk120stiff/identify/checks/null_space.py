@@ -85,6 +85,9 @@ def _together(fit: Fit) -> Iterator[tuple[set[int], str]]:
         if not told.issuperset(group):
             yield set(group), _unseen(fit, group, size)
             told.update(group)
+    for members, sentence in _by_chance(fit):
+        yield members, sentence
+        told.update(members)
     for own in _correlated(fit):
         if not told.issuperset(own):
             yield set(own), _correlation(fit, *own) if len(own) == 2 else _correlations(fit, own)
@@ -155,17 +158,41 @@ def words_for(parameter: Parameter) -> str:
     return f"{what} {detail} ({parameter.effect.where})".replace("  ", " ")
 
 
+def _by_chance(fit: Fit) -> Iterator[tuple[set[int], str]]:
+    """What draws could take over, were they no draws."""
+    if not fit.beforehand.draws.sizes.size:
+        return
+    alone, known = (
+        np.diag(covariance_of(each, fit.held, fit.problem.span))
+        for each in (fit.jacobian, _read(fit))
+    )
+    drawn = [int(k) for group in fit.problem.draws for k in group]
+    others = [int(k) for k in np.flatnonzero(alone > MOSTLY * known) if k not in drawn]
+    if others:
+        offset = fit.parameters[drawn[0]].effect.name.replace("_", " ").capitalize()
+        size = 1e6 * float(np.sqrt(np.mean((fit.x * fit.problem.scale)[drawn] ** 2)))
+        names = listed([words_for(fit.parameters[k]) for k in others])
+        said = f"{offset} could take over what {names} do alike to the readings of a pose: offsets "
+        said += f"are taken for chance, about zero and of one size ({size:.3g} µm), and the ± of "
+        yield {*drawn, *others}, said + "each holds that."
+
+
+def _read(fit: Fit) -> Array:
+    """(R + k, P) the derivative over the noise assumed, and what draws' being draws adds."""
+    return np.vstack([fit.jacobian, fit.beforehand.draws.rows()])
+
+
 def _open_directions(fit: Fit) -> Array:
     """(P, b) orthonormal, parameters over their span: what readings hardly tell, or not at all.
 
     Hardly is where most of what is known is of calibrations.
     """
     moving = np.flatnonzero(~fit.held)
-    span, told = fit.problem.span, fit.calibrations
-    unseen = seen_directions(fit.jacobian[:, moving], span[moving])[3]
+    span, told, jacobian = fit.problem.span, fit.beforehand.calibrations, _read(fit)
+    unseen = seen_directions(jacobian[:, moving], span[moving])[3]
     null = np.zeros((len(span), unseen.shape[1]))
     null[moving] = unseen
-    read = np.linalg.norm(fit.jacobian @ (span[:, None] * told.ways), axis=0)
+    read = np.linalg.norm(jacobian @ (span[:, None] * told.ways), axis=0)
     ways = told.ways[:, (MOSTLY - 1.0) * read**2 < told.sizes**2]
     U, size, _ = np.linalg.svd(ways - null @ (null.T @ ways), full_matrices=False)
     return np.hstack([null, U[:, size > LINKED]])
@@ -175,7 +202,7 @@ def _null_groups(fit: Fit) -> Iterator[tuple[list[int], int]]:
     """Sets of parameters that open directions tie, and how many of these each has."""
     moving = np.flatnonzero(~fit.held)
     null = _open_directions(fit)[moving]
-    variance = np.diag(covariance_of(fit.jacobian, fit.held, fit.problem.span))
+    variance = np.diag(covariance_of(_read(fit), fit.held, fit.problem.span))
     shared = np.array([p.origin == CALIBRATED for p in fit.parameters], dtype=bool)
     left = [int(k) for k in np.flatnonzero((np.isinf(variance) | shared)[moving])]
     part = null / np.maximum(np.linalg.norm(null, axis=1, keepdims=True), 1e-300)
@@ -212,7 +239,7 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
 def _of_calibrations(fit: Fit, group: Sequence[int]) -> str:
     """What stands for the open direction of a group that instruments belong to."""
     known = {}
-    for k in group if np.any(fit.calibrations.ways[list(group)]) else ():
+    for k in group if np.any(fit.beforehand.calibrations.ways[list(group)]) else ():
         effect, spec = fit.parameters[k].effect, fit.parameters[k].spec
         if effect.calibrated and fit.identifiable[k]:
             share = spec.unit == "1"
@@ -261,7 +288,7 @@ def _std_of(fit: Fit, weights: Array) -> float:
     """Standard error of a combination (P,) of scaled parameters, along what is seen."""
     moving = np.flatnonzero(~fit.held)
     span = fit.problem.span[moving]
-    _, singular, V, _ = seen_directions(fit.jacobian[:, moving], span)
+    _, singular, V, _ = seen_directions(_read(fit)[:, moving], span)
     return float(np.linalg.norm((V.T @ (weights[moving] * span)) / singular)) * fit.unit
 
 

@@ -105,6 +105,13 @@ class Problem:
         return np.array(usual) / self.scale
 
     @cached_property
+    def draws(self) -> tuple[Index, ...]:
+        """Which estimated parameters are draws of one size, by effect."""
+        drawn = [p.effect.id if p.effect.random_effects else "" for p in self.model.parameters]
+        names = np.array([drawn[k] for k in self.free], dtype=object)
+        return tuple(np.flatnonzero(names == name) for name in dict.fromkeys(names) if name)
+
+    @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """(P_free,) physical bounds in scaled units."""
         specs = [self.model.parameters[k].spec for k in self.free]

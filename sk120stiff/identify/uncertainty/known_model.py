@@ -10,9 +10,9 @@ from sk120stiff.arrays import Array
 from sk120stiff.identify.checks.lack_of_fit import lack_of_fit
 from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.beforehand import Beforehand
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.polish import seen_directions
-from sk120stiff.identify.solve.type_b import Calibrations
 from sk120stiff.identify.uncertainty.left_over import LeftOver, left_over
 from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
@@ -52,7 +52,7 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     problem = fit.problem
     scale, span = problem.scale, problem.span
     free = np.zeros(len(fit.x), dtype=bool)
-    before = Calibrations.of(fit.small[0], free, span, problem.usual, fit.unit)
+    before = Beforehand.of(problem, fit.x, fit.small[0], free, fit.unit)
     informed = np.vstack([fit.small[0], before.rows()])
     _, singular, V, null = seen_directions(informed, span)
     lost = np.isinf(np.diag(covariance_of(informed, free, span)))

@@ -1,11 +1,4 @@
-"""What is known of an instrument before it reads: its calibration, where readings tell less.
-
-A force sensor's gain and all springs make one product: if every force is read 1 % too large and
-every spring is 1 % stiffer, no reading of a stiff arm changes, and hardly one of a soft arm.
-Readings with such a direction tell the springs up to the sensor's calibration, and no less: its
-usual error is a standard uncertainty of Type B (GUM, 4.3) and counts beside the readings. Where
-they tell ten times as much it does not: an error that was measured is what it was measured to be.
-"""
+"""What is known of parameters beside the readings, in directions in which it counts."""
 
 from __future__ import annotations
 
@@ -17,13 +10,12 @@ from scipy.linalg import eigh
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
 
-COUNTS = 0.1  # of what readings tell, as standard errors, below which a calibration is no news
-NARROWER = 1.0  # times as narrow as what is plausible, from where on a calibration tells something
+NARROWER = 1.0  # times as narrow as what is plausible, from where on it is worth something
 
 
 @dataclass(frozen=True, eq=False)
-class Calibrations:
-    """Directions of the parameters of which calibrations of instruments tell something.
+class Prior:
+    """Directions of the parameters of which something is known beforehand, and counts.
 
     Attributes:
         ways: (P, b) where a unit step along each leads, parameters over `span`.
@@ -31,8 +23,8 @@ class Calibrations:
         errors: (P, b) orthonormal: where a step leads, parameters over `usual`.
         sizes: (b,) how far a unit step leads there.
         span: (P,) sizes beyond which the parameters are implausible.
-        usual: (P,) standard uncertainties by calibration; infinite where there is none.
-        unit: The readings' noise over the noise assumed.
+        usual: (P,) standard uncertainties beforehand; infinite where nothing is known.
+        unit: The readings' noise over the noise assumed; infinite where nothing tells it.
     """
 
     ways: Array
@@ -45,13 +37,13 @@ class Calibrations:
 
     @classmethod
     def of(
-        cls, jacobian: Array, held: Mask, span: Array, usual: Array, unit: float = 1.0
-    ) -> Calibrations:
-        """What a derivative (R, P) over the noise assumed leaves open, `held` parameters at rest.
+        cls, jacobian: Array, held: Mask, span: Array, usual: Array, unit: float, counts: float
+    ) -> Prior:
+        """Beside a derivative (R, P) over the noise assumed, `held` parameters at rest.
 
-        Of what readings and calibrations tell both are sums of squares; the directions make either
-        diagonal. A parameter that does not show at all is no matter of calibrations: nothing was
-        read of it.
+        What readings tell and what was known are sums of squares; the directions make either
+        diagonal. It counts where it is `counts` times what readings tell, or more, as standard
+        errors. Of a parameter that does not show at all nothing was read, and nothing is said.
         """
         shows = np.linalg.norm(jacobian, axis=0) * span > FAINTEST
         moving = np.flatnonzero(~held & shows)
@@ -68,7 +60,7 @@ class Calibrations:
         sizes = np.sqrt(np.maximum(ratio, 0.0))
         own = W * np.sqrt(read)[:, None]  # orthonormal
         length = np.linalg.norm(W, axis=0)
-        told = (sizes > COUNTS) & (sizes > NARROWER * length)
+        told = (sizes > counts) & (sizes > NARROWER * length)
         W, sizes, own, length = W[:, told], sizes[told], own[:, told], length[told]
         ways, errors = (np.zeros((P, len(sizes))) for _ in range(2))
         steps = np.zeros((len(sizes), P))
@@ -83,17 +75,17 @@ class Calibrations:
         return np.asarray(known * self.sizes[:, None] * self.steps / self.span)
 
     def step(self, x: Array) -> Array:
-        """(P,) what leads from parameters `x` to where the instruments are likeliest.
+        """(P,) what leads from parameters `x` to where they were likeliest beforehand.
 
         To first order the predictions change by less than they are known.
         """
         return np.asarray(-self.span * (self.ways @ (self.off(x)[0] / self.sizes)))
 
     def off(self, x: Array) -> tuple[Array, Array]:
-        """(b,) how far parameters are off their calibrations there, and (b, P) its derivative."""
+        """(b,) standard deviations that parameters are off there, and (b, P) its derivative."""
         return self.errors.T @ (x / self.usual), self.errors.T / self.usual
 
     def beside(self, change: Array) -> Array:
-        """(P,) a change of the parameters without what calibrations tell of it."""
+        """(P,) a change of the parameters without what was known of it."""
         over = change / self.span
         return np.asarray(self.span * (over - self.ways @ (self.steps @ over)))
