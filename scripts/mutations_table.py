@@ -336,6 +336,15 @@ FAULTS: tuple[Fault, ...] = (
         moves_along_what_is_open=("over - self.ways @ (self.steps @ over)", "over"),
     ),
     *_of(
+        "identify/solve/beforehand.py", *_tests("identify", "draws"),
+        offsets_that_are_no_draws=("size[group] = rms if rms > 0.0 else np.inf", "size[group] = np.inf"),
+        draws_shrunk_where_they_were_read=("CHANCE = 1.0", "CHANCE = 0.01"),
+    ),
+    *_of(
+        "explain/run.py", *_tests("explain", "offsets_of_poses"),
+        offsets_behind_a_statement=("elif drawn := [effect for effect in found.effects if effect.random_effects]:", "elif drawn := []:"),
+    ),
+    *_of(
         "identify/solve/problem.py", *_tests("identify", "null_space"),
         calibration_of_what_has_none=("p.spec.usual if p.effect.calibrated else np.inf", "p.spec.usual"),
     ),

@@ -1,0 +1,61 @@
+"""Zero readings that are off: named though σ was understated, and told from a sensor's bias."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff import Model, base_model, load_robot
+from sk120stiff.explain import explain
+from sk120stiff.measurements import Measurements, NoiseStatement
+from tests.explain.readings import hidden
+from tests.hidden.generator.causes_sensor import ForceBias
+from tests.hidden.generator.world import Cause
+
+SIGMA, SIZE = 4e-6, 1.2e-5
+BIAS = {"x": 9.0, "y": -12.0, "z": 7.0}
+
+
+@pytest.fixture(scope="module")
+def springs() -> Model:
+    model = base_model(load_robot("motoman_sk120"))
+    assert model is not None
+    return model
+
+
+def with_offsets(*causes: Cause, factor: float = 1.0, loads: int = 6) -> Measurements:
+    """Each row with a zero reading of its own, all of a pose off alike; σ is stated / factor."""
+    exact = hidden(*causes, poses=15, loads=loads, sigma=1e-12, seed=31)
+    rng = np.random.default_rng(32)
+    assert exact.displacement is not None
+    poses = {pose: rng.normal(0.0, SIZE, 3) for pose in exact.poses}
+    error = rng.normal(0.0, np.sqrt(2.0) * SIGMA, (exact.n_readings, 3))
+    return replace(
+        exact,
+        displacement=exact.displacement + error + np.array([poses[p] for p in exact.pose]),
+        zero="separate",
+        noise=NoiseStatement(sigma=SIGMA / factor),
+    )
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.4])
+def test_offsets_are_named_whatever_was_stated(springs: Model, factor: float) -> None:
+    """Model-form error that is constant at single poses is what offsets are; a name comes first."""
+    answer = explain(springs, with_offsets(factor=factor))
+    assert answer.verdict == "named"
+    assert [finding.effect.id for finding in answer.findings] == ["zero_offset:tracker"]
+    assert not answer.remainder.significant
+    if factor > 1.0:
+        assert answer.adequacy.understated == pytest.approx(factor, rel=0.1)
+
+
+def test_what_offsets_have_in_common_is_the_sensors(springs: Model) -> None:
+    answer = explain(springs, with_offsets(ForceBias("sensor", BIAS)))
+    names = {finding.effect.id for finding in answer.findings}
+    assert names == {"zero_offset:tracker", "force_bias:sensor"}
+    told = {p.spec.name: p for p in answer.final.parameters if p.effect.name == "force_bias"}
+    for axis, true in BIAS.items():
+        found = told[f"offset_{axis}"]
+        assert found.std is not None and found.std < 3.0
+        # reported minus true; the generator's is what the arm feels beside the report
+        assert abs(found.value + true) < 3.0 * found.std
