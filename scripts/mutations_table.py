@@ -341,6 +341,10 @@ FAULTS: tuple[Fault, ...] = (
         draws_shrunk_where_they_were_read=("CHANCE = 1.0", "CHANCE = 0.01"),
     ),
     *_of(
+        "explain/judge/foreign_cause.py", *_tests("explain", "foreign_cause"),
+        a_cause_that_undoes_calibrations=("np.vstack([J, fit.beforehand.rows()[:, moving] / unit])", "J"),
+    ),
+    *_of(
         "explain/run.py", *_tests("explain", "offsets_of_poses"),
         offsets_behind_a_statement=("elif drawn := [effect for effect in found.effects if effect.random_effects]:", "elif drawn := []:"),
     ),

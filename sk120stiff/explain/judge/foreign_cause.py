@@ -5,7 +5,8 @@ scatter of the readings knows nothing of that: a tracker that stands on the robo
 spring too soft by many standard errors. Of all that `localise` suspects each may be the cause, at
 sizes that leave as much as remains. Beside each the parameters come out elsewhere; by how much, and
 how likely each is, is linear algebra of normal distributions, and the second moment over all of
-them (law of total variance: Hoeting et al. 1999, Bayesian model averaging) joins the errors.
+them (law of total variance: Hoeting et al. 1999, Bayesian model averaging) joins the errors. Where
+readings tell little, what is known beforehand of draws and instruments holds the parameters.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
     lineup = line_up(look)
     unit = np.sqrt(look.noise.scale)
     J = fit.jacobian[:, moving] / unit
-    inside, inverse = orthonormal(J), np.linalg.pinv(J)
+    inside = orthonormal(J)
+    inverse = np.linalg.pinv(np.vstack([J, fit.beforehand.rows()[:, moving] / unit]))[:, : len(J)]
     gap = -fit.residual / unit
     gap = gap - inside @ (inside.T @ gap)
     evidence, squares = [0.0], [np.zeros((J.shape[1],) * 2)]  # first: that there is no such cause
