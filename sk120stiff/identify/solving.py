@@ -44,8 +44,28 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
 
 def solve_near(problem: Problem, x: Array) -> Fit:
     """Solve a problem whose answer lies near scaled values `x` that are known."""
-    found = polish(problem.evaluate, x, problem.bounds, problem.span)
+    try:
+        found = polish(problem.evaluate, x, problem.bounds, problem.span)
+    except Refusal:
+        if not np.isfinite(problem.usual).any():
+            raise
+        found = _held_by_calibrations(problem, x)
     return with_values(_likeliest_before(_as_fit(problem, found)))
+
+
+def _held_by_calibrations(problem: Problem, x: Array) -> Minimum:
+    """Where a gain leads down a valley without end: calibrations count from the start."""
+    known = np.flatnonzero(np.isfinite(problem.usual))
+    rows = np.zeros((len(known), len(x)))
+    rows[np.arange(len(known)), known] = 1.0 / problem.usual[known]
+
+    def evaluate(x: Array) -> tuple[Array, Array]:
+        residual, jacobian = problem.evaluate(x)
+        return np.concatenate([residual, rows @ x]), np.vstack([jacobian, rows])
+
+    best = polish(evaluate, x, problem.bounds, problem.span)
+    R = len(best.residual) - len(known)
+    return replace(best, residual=best.residual[:R], jacobian=best.jacobian[:R])
 
 
 def _likeliest_before(fit: Fit) -> Fit:

@@ -12,6 +12,7 @@ from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Confirmation
+from sk120stiff.explain.judge.attribution import Fallen, Named
 from sk120stiff.explain.options import candidates_for
 from sk120stiff.explain.select.outliers import outlying_rows
 from sk120stiff.explain.select.size_prices import price_of_sizes
@@ -322,3 +323,10 @@ def test_a_taper_next_to_the_usual_one_is_found_without_a_second_name(springs, f
     (stiffness,) = (p for p in answer.final.parameters if p.effect.name == "link_bending")
     assert stiffness.spec.name in {"EI_taper_45", "EI_taper_15"}
     assert stiffness.internal == pytest.approx(flexibility, rel=0.02)  # the usual taper: 0.03 off
+
+
+def test_who_falls_again_on_the_same_ground_is_told_of_once():
+    drift = "drift fits, but poses differ in its size by {} %; it is not named."
+    fallen = [Fallen("drift", drift.format(share)) for share in ("82", "77.5", "80")]
+    fallen.insert(1, Fallen("tilt", "tilt fits, but takes off 2.1 µm; it is not named."))
+    assert Named((), tuple(fallen)).reasons == (fallen[1].reason, drift.format("80"))

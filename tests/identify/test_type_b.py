@@ -1,13 +1,16 @@
 """What readings leave open, calibrations of instruments close, and nothing else."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.identify import Fit, fit, known_model, weak_directions
+from sk120stiff.errors import Refusal
+from sk120stiff.identify import Fit, Problem, fit, known_model, solving, weak_directions
 from sk120stiff.identify.solve.beforehand import COUNTS
+from sk120stiff.identify.solve.polish import Evaluate, Minimum, polish
 from sk120stiff.identify.solve.prior import Prior
 from sk120stiff.measurements import NoiseStatement
 from sk120stiff.model import (
@@ -85,6 +88,23 @@ def test_predictions_for_reported_loads_are_none_the_worse(found: Fit, truth: Mo
     std = predict_with_uncertainty(known, cases).std_parameters
     assert np.nanmax(std) < 2.0 * SIGMA  # of springs alone it would be 2 % of some 600 um
     assert np.abs(known.predict(cases) - truth.predict(cases)).max() < 4.0 * np.nanmax(std)
+
+
+def test_a_search_that_ends_nowhere_is_made_with_calibrations(
+    found: Fit, springs: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lost(evaluate: Evaluate, *rest: Any) -> Minimum:
+        if getattr(evaluate, "__func__", None) is Problem.evaluate:
+            raise Refusal("the least-squares fit did not converge")
+        return polish(evaluate, *rest)
+
+    monkeypatch.setattr(solving, "polish", lost)
+    again = solving.solve_near(found.problem, found.x)
+    std = np.sqrt(np.diag(found.covariance))
+    assert (np.abs(again.x - found.x) < 0.1 * std).all()
+    plain = Problem(springs, found.problem.measurements, found.problem.noise)
+    with pytest.raises(Refusal, match="did not converge"):
+        solving.solve_near(plain, found.x[:3])
 
 
 def test_an_axis_along_which_nothing_pulled_stays_untold(springs: Model, robot: Robot) -> None:

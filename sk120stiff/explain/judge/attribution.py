@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
@@ -29,6 +30,7 @@ CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
 MOST_PLACES = 3  # the same beside model-form error, part of which fits at many places
 SOME = 0.05  # share of the drawings of the poses from which on a law of the same gear counts
+NUMBER = re.compile(r"\d+(\.\d+)?")
 
 
 @dataclass(frozen=True)
@@ -71,8 +73,16 @@ class Named:
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why these are not named, in sentences."""
-        return tuple(each.reason for each in self.fallen)
+        """Why these are not named, in sentences; where one fell on the same ground again, the last.
+
+        Grounds differ by more than their numbers.
+        """
+        said: dict[str, str] = {}
+        for each in self.fallen:
+            ground = NUMBER.sub("", each.reason)
+            said.pop(ground, None)
+            said[ground] = each.reason
+        return tuple(said.values())
 
 
 def judged(
