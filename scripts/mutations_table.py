@@ -49,8 +49,7 @@ POSITIONS = _tests("absolute", "linear", "choose", "names")
 FAULTS: tuple[Fault, ...] = (
     *_of(
         "robot/kinematics/chain.py", "tests/robot/test_kinematics.py", "tests/model",
-        a_mass_where_its_joint_would_be_at_rest=("position + own @ rotation if own.any() else position",
-                                                 "position + own[:, None] if own.any() else position"),
+        a_mass_where_its_joint_would_be_at_rest=("position + own @ rotation if own.any() else position", "position + own[:, None] if own.any() else position"),
     ),
     *_of(
         "explain/select/outliers.py", *_tests("explain", "outliers"),
@@ -70,8 +69,7 @@ FAULTS: tuple[Fault, ...] = (
         "stiffness/cartesian.py", *STIFFNESS,
         sign_of_K_C_of_a_force=("cross_product(force, w), screws.linear", "cross_product(w, force), screws.linear"),
         sign_of_K_C_of_a_moment=("np.swapaxes(cross_product(moment, w)", "np.swapaxes(cross_product(w, moment)"),
-        K_C_of_a_moment_not_transposed=("joints[:, None] > np.arange(w.shape[-2])",
-                                        "joints[:, None] < np.arange(w.shape[-2])"),
+        K_C_of_a_moment_not_transposed=("joints[:, None] > np.arange(w.shape[-2])", "joints[:, None] < np.arange(w.shape[-2])"),
         rows_of_K_C_below_the_diagonal_not_mirrored=("below = far[..., rows, :] @ np.swapaxes(near, -1, -2)",
                                                      "below = near[..., rows, :] @ np.swapaxes(far, -1, -2)"),
         K_C_without_the_curvature_of_a_loop=("bent = screws.second.contracted(screws.joint",
