@@ -330,7 +330,7 @@ FAULTS: tuple[Fault, ...] = (
         calibration_beside_noise_assumed=("[singular / unit, ", "[singular, "),
         calibration_of_what_was_not_read=("np.flatnonzero(~held & shows)", "np.flatnonzero(~held)"),
         calibration_of_one_axis=("told = (sizes > counts)", "told = (sizes > 1e9)"),
-        instruments_away_from_their_calibration=("-self.span * (self.ways @ (self.off(x)[0] / self.sizes))", "0.0 * self.span"),
+        instruments_away_from_their_calibration=("-self.span * (self.ways @ (self.slope @ x / self.sizes))", "0.0 * self.span"),
         moves_along_what_is_open=("over - self.ways @ (self.steps @ over)", "over"),
     ),
     *_of(
@@ -344,7 +344,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/run.py", *_tests("explain", "offsets_of_poses"),
-        offsets_behind_a_statement=("elif drawn := [effect for effect in found.effects if effect.random_effects]:", "elif drawn := []:"),
+        offsets_behind_a_statement=("drawn = [effect for effect in found.effects if effect.random_effects]", "drawn = []"),
     ),
     *_of(
         "identify/solve/problem.py", *_tests("identify", "null_space"),

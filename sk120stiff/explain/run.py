@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.explain.advise.best_guess import contenders
@@ -202,11 +202,8 @@ def _judged(
             return *exactly, None
         at = held_against(noise, exactly[0].final)
         standing = {effect.id for effect in exactly[0].effects}
-    elif drawn := [effect for effect in found.effects if effect.random_effects]:
-        beside = held_against(noise, refit(found.base, drawn, found.final))
-        tried = beside_model_form(beside, under, names={each.id for each in drawn}, seed=seed)
-        if _drawn(tried[1]) and not _adequacy(tried[0], noise).lacking:
-            return *tried, None
+    elif (offsets := _beside_offsets(found, noise, under, seed)) is not None:
+        return *offsets, None
     found, named = beside_model_form(at, under, names=standing, seed=seed)
     account = complete_account(
         base,
@@ -221,6 +218,25 @@ def _judged(
     if account is None or (_drawn(account.named) and _adequacy(account.selection, noise).lacking):
         return found, named, None
     return account.selection, account.named, account
+
+
+def _beside_offsets(
+    found: Selection, noise: NoiseModel, under: Try, seed: int
+) -> tuple[Selection, Named] | None:
+    """What stands beside draws of single poses, where they leave nothing but noise; None: nothing.
+
+    Model-form error that is constant at single poses is what such draws are, and takes their place;
+    where noise alone exceeds what was stated, the name comes first.
+    """
+    drawn = [effect for effect in found.effects if effect.random_effects]
+    if not drawn:
+        return None
+    try:
+        beside = held_against(noise, refit(found.base, drawn, found.final))
+    except Refusal:
+        return None
+    at, named = beside_model_form(beside, under, names={each.id for each in drawn}, seed=seed)
+    return (at, named) if _drawn(named) and not _adequacy(at, noise).lacking else None
 
 
 def _together(found: Selection, named: Named, account: Account | None) -> tuple[Imitated, ...]:

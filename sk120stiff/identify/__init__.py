@@ -11,12 +11,8 @@ from sk120stiff.identify.checks.held_out import (
     refitted,
 )
 from sk120stiff.identify.checks.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
-from sk120stiff.identify.checks.null_space import (
-    known_together,
-    unseen_reasons,
-    weak_directions,
-    why_unseen,
-)
+from sk120stiff.identify.checks.null_space import known_together, weak_directions
+from sk120stiff.identify.checks.unseen import unseen_reasons, why_unseen
 from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
 from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit

@@ -9,7 +9,6 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.solve.beforehand import Beforehand
 from sk120stiff.identify.solve.polish import Minimum, polish
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method, minimise
@@ -17,7 +16,7 @@ from sk120stiff.identify.written import with_values
 from sk120stiff.measurements import EXACT
 
 NEAR = 0.05  # standard deviations within which draws and instruments are as likely as can be
-ROUNDS = 3  # of weighing; draws tell their own size
+ROUNDS = 5  # of weighing draws, whose size is smaller once others have what is theirs
 HALVINGS = 12  # of estimates under which the arm has no equilibrium
 
 
@@ -56,16 +55,7 @@ def solve_near(problem: Problem, x: Array) -> Fit:
 def _held_by_calibrations(problem: Problem, x: Array) -> Minimum:
     """Where a gain leads down a valley without end: calibrations count from the start."""
     known = np.flatnonzero(np.isfinite(problem.usual))
-    rows = np.zeros((len(known), len(x)))
-    rows[np.arange(len(known)), known] = 1.0 / problem.usual[known]
-
-    def evaluate(x: Array) -> tuple[Array, Array]:
-        residual, jacobian = problem.evaluate(x)
-        return np.concatenate([residual, rows @ x]), np.vstack([jacobian, rows])
-
-    best = polish(evaluate, x, problem.bounds, problem.span)
-    R = len(best.residual) - len(known)
-    return replace(best, residual=best.residual[:R], jacobian=best.jacobian[:R])
+    return _polished_with(problem, x, np.diag(1.0 / problem.usual)[known])
 
 
 def _likeliest_before(fit: Fit) -> Fit:
@@ -74,35 +64,39 @@ def _likeliest_before(fit: Fit) -> Fit:
     A direction that is hardly seen at one place is not at another: on the way there what is known
     beforehand counts as readings of it. Draws that have become smaller tell more.
     """
+    problem = fit.problem
     for _ in range(ROUNDS):
         known = fit.beforehand
-        if np.abs(known.off(known.step(fit.x))[0]).max(initial=0.0) < NEAR:
+        step = known.step(fit.x)
+        if np.abs(known.slope @ step).max(initial=0.0) < NEAR:
             break
-        fit = _weighed(fit, known)
+        weight = fit.unit if np.isfinite(fit.unit) else 1.0
+        start = np.clip(fit.x + step, *problem.bounds)
+        best = _polished_with(problem, start, weight * known.slope)
+        moved = known.slope @ (best.x - fit.x)
+        fit = replace(
+            fit,
+            x=best.x,
+            residual=best.residual,
+            jacobian=best.jacobian,
+            at_bound=best.at_bound,
+            iterations=fit.iterations + best.iterations,
+        )
+        if not problem.draws or np.abs(moved).max(initial=0.0) < NEAR:
+            break
     return fit
 
 
-def _weighed(fit: Fit, known: Beforehand) -> Fit:
-    """The readings and what is known beforehand, each by its weight."""
-    problem = fit.problem
-    weight = fit.unit if np.isfinite(fit.unit) else 1.0
+def _polished_with(problem: Problem, x: Array, rows: Array) -> Minimum:
+    """Least squares near `x` where `rows` (b, P) @ x count as residuals beside the readings'."""
 
     def evaluate(x: Array) -> tuple[Array, Array]:
         residual, jacobian = problem.evaluate(x)
-        off, slope = known.off(x)
-        return np.concatenate([residual, weight * off]), np.vstack([jacobian, weight * slope])
+        return np.concatenate([residual, rows @ x]), np.vstack([jacobian, rows])
 
-    start = np.clip(fit.x + known.step(fit.x), *problem.bounds)
-    best = polish(evaluate, start, problem.bounds, problem.span)
-    R = len(fit.residual)
-    return replace(
-        fit,
-        x=best.x,
-        residual=best.residual[:R],
-        jacobian=best.jacobian[:R],
-        at_bound=best.at_bound,
-        iterations=fit.iterations + best.iterations,
-    )
+    best = polish(evaluate, x, problem.bounds, problem.span)
+    R = len(best.residual) - len(rows)
+    return replace(best, residual=best.residual[:R], jacobian=best.jacobian[:R])
 
 
 def against_noise_alone(fit: Fit) -> Fit:

@@ -328,5 +328,6 @@ def test_a_taper_next_to_the_usual_one_is_found_without_a_second_name(springs, f
 def test_who_falls_again_on_the_same_ground_is_told_of_once():
     drift = "drift fits, but poses differ in its size by {} %; it is not named."
     fallen = [Fallen("drift", drift.format(share)) for share in ("82", "77.5", "80")]
-    fallen.insert(1, Fallen("tilt", "tilt fits, but takes off 2.1 µm; it is not named."))
-    assert Named((), tuple(fallen)).reasons == (fallen[1].reason, drift.format("80"))
+    tilts = [f"joint_tilt:joint_{k} fits, but takes off 2.1 µm; it is not named." for k in (1, 2)]
+    fallen[1:1] = [Fallen(said.partition(" ")[0], said) for said in tilts]
+    assert Named((), tuple(fallen)).reasons == (*tilts, drift.format("80"))

@@ -93,6 +93,6 @@ def test_what_poses_have_in_common_is_weighed(seen: float) -> None:
 
 def test_it_is_said(found: Fit) -> None:
     (said,) = [each for each in weak_directions(found) if "taken for chance" in each]
-    assert "Zero offset could take over what force bias offset x (sensor)" in said
-    size = float(said.partition("of one size (")[2].partition(" µm")[0])
+    assert "could take over what force bias offset x (sensor)" in said
+    size = float(said.partition("zero offset (")[2].partition(" µm rms)")[0])
     assert size == pytest.approx(1e6 * SIZE, rel=0.2)

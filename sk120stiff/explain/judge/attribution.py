@@ -77,9 +77,9 @@ class Named:
 
         Grounds differ by more than their numbers.
         """
-        said: dict[str, str] = {}
+        said: dict[tuple[str, str], str] = {}
         for each in self.fallen:
-            ground = NUMBER.sub("", each.reason)
+            ground = each.id, NUMBER.sub("", each.reason)
             said.pop(ground, None)
             said[ground] = each.reason
         return tuple(said.values())

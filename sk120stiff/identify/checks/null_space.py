@@ -1,4 +1,4 @@
-"""Directions of the parameters that readings say nothing or little about, in words, and why."""
+"""Directions of the parameters that readings say nothing or little about, in words."""
 
 from __future__ import annotations
 
@@ -8,25 +8,20 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import LoadCases
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.base import SPRINGS
 from sk120stiff.errors import listed
+from sk120stiff.identify.checks.unseen import why_unseen
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.identify.solve.overlaid import Overlay, separating
-from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
+from sk120stiff.identify.solve.polish import seen_directions
 from sk120stiff.identify.written import MOSTLY
 from sk120stiff.model import CALIBRATED, Parameter
-from sk120stiff.robot.anatomy import arm_length
 
 VAGUE = 0.5  # relative standard error beyond which a value is no knowledge
 TOGETHER = 0.95  # correlation beyond which two estimates are said to move together
 LINKED = 0.1  # cosine of their parts in null directions that ties two parameters
-ON_AXIS = 1e-6  # share of the arm's length below which a lever is rounding of the URDF's numbers
-
-NOT_SHOWN = "it does not show in these readings"
-SHARED = "these readings tell it together with others only"
 
 
 def weak_directions(fit: Fit) -> tuple[str, ...]:
@@ -166,15 +161,25 @@ def _by_chance(fit: Fit) -> Iterator[tuple[set[int], str]]:
         np.diag(covariance_of(each, fit.held, fit.problem.span))
         for each in (fit.jacobian, _read(fit))
     )
-    drawn = [int(k) for group in fit.problem.draws for k in group]
+    drawn = {int(k) for group in fit.problem.draws for k in group}
     others = [int(k) for k in np.flatnonzero(alone > MOSTLY * known) if k not in drawn]
     if others:
-        offset = fit.parameters[drawn[0]].effect.name.replace("_", " ").capitalize()
-        size = 1e6 * float(np.sqrt(np.mean((fit.x * fit.problem.scale)[drawn] ** 2)))
+        sizes = listed([_drawn_size(fit, group) for group in fit.problem.draws])
         names = listed([words_for(fit.parameters[k]) for k in others])
-        said = f"{offset} could take over what {names} do alike to the readings of a pose: offsets "
-        said += f"are taken for chance, about zero and of one size ({size:.3g} µm), and the ± of "
-        yield {*drawn, *others}, said + "each holds that."
+        yield (
+            {*drawn, *others},
+            f"Each pose's {sizes} could take over what {names} do alike to its readings. Offsets "
+            "are taken for chance, about zero and of one size, and the ± of each holds that.",
+        )
+
+
+def _drawn_size(fit: Fit, group: Index) -> str:
+    """Draws in words, with their root mean square."""
+    parameter = fit.parameters[group[0]]
+    size = float(np.sqrt(np.mean((fit.x * fit.problem.scale)[group] ** 2)))
+    unit = parameter.spec.internal_unit
+    told = f"{1e6 * size:.3g} µm" if unit == "m" else f"{size:.3g} {unit}"
+    return f"{parameter.effect.name.replace('_', ' ')} ({told} rms)"
 
 
 def _read(fit: Fit) -> Array:
@@ -347,48 +352,3 @@ def _implausible(parameter: Parameter) -> str:
         f"{parameter.name} is {than} than is plausible ({parameter.value:.3g}, limit "
         f"{limit:.3g} {spec.unit}): it fits, but it explains nothing."
     )
-
-
-def unseen_reasons(fit: Fit) -> dict[str, str]:
-    """Full name → reason, for every estimated parameter that the readings do not determine."""
-    load_cases = fit.problem.load_cases
-    alone = np.linalg.norm(fit.jacobian, axis=0) * fit.problem.span > FAINTEST
-    return {
-        p.name: why_unseen(load_cases, p) or (SHARED if shows else NOT_SHOWN)
-        for p, shown, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
-        if not shown
-    }
-
-
-def why_unseen(load_cases: LoadCases, parameter: Parameter) -> str | None:
-    """The geometric reason why no such reading can show a joint's spring; None: there is none.
-
-    A spring turns the point about its joint's axis by c τ. Nothing of it shows where the point lies
-    on that axis in every pose, or where no load has a torque about it.
-
-    Args:
-        load_cases: Poses (N, n), loads and points of the readings, taken or planned.
-        parameter: The parameter; only a joint's spring has a reason of this kind.
-    """
-    if not parameter.effect.joint_spring or not load_cases.count:
-        return None
-    robot, joint = load_cases.robot, parameter.effect.where
-    k = robot.actuated.index(joint)
-    small = ON_AXIS * arm_length(robot)
-    moved = np.linalg.norm(load_cases.nominal.jacobian[:, :3, k], axis=1)
-    if not robot.prismatic[k] and moved.max() <= small:
-        return (
-            f"the point lies on the axis of {joint}; give a point off the axis (--point of 'plan', "
-            "point: in the YAML file of the readings)"
-        )
-    screw = robot.screws(load_cases.a, point=load_cases.force_point).jacobian[:, :, k]
-    load = load_cases.wrench
-    most = float(np.linalg.norm(load, axis=1).max())
-    if np.abs(np.einsum("ni,ni->n", screw, load)).max() > small * most:
-        return None
-    if robot.prismatic[k]:
-        return f"every load is square to the slide of {joint}; push along it"
-    across = np.linalg.norm(np.cross(screw[:, 3:], load[:, :3]), axis=1).max()
-    if across <= ON_AXIS * most:
-        return f"every load is parallel to the axis of {joint}; push across it, or add a moment"
-    return f"every load passes through the axis of {joint}; push beside it, or add a moment"

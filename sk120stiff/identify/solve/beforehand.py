@@ -66,7 +66,7 @@ class Beforehand:
         step = self.draws.step(x)
         return np.asarray(step + self.calibrations.step(x + step))
 
-    def off(self, x: Array) -> tuple[Array, Array]:
-        """(b,) standard deviations that parameters are off there, and (b, P) its derivative."""
-        off, slope = zip(self.draws.off(x), self.calibrations.off(x), strict=True)
-        return np.concatenate(off), np.concatenate(slope)
+    @property
+    def slope(self) -> Array:
+        """(b, P) times parameters: by how many standard deviations they are off along each."""
+        return np.vstack([self.draws.slope, self.calibrations.slope])

@@ -79,11 +79,12 @@ class Prior:
 
         To first order the predictions change by less than they are known.
         """
-        return np.asarray(-self.span * (self.ways @ (self.off(x)[0] / self.sizes)))
+        return np.asarray(-self.span * (self.ways @ (self.slope @ x / self.sizes)))
 
-    def off(self, x: Array) -> tuple[Array, Array]:
-        """(b,) standard deviations that parameters are off there, and (b, P) its derivative."""
-        return self.errors.T @ (x / self.usual), self.errors.T / self.usual
+    @property
+    def slope(self) -> Array:
+        """(b, P) times parameters: by how many standard deviations they are off along each."""
+        return np.asarray(self.errors.T / self.usual)
 
     def beside(self, change: Array) -> Array:
         """(P,) a change of the parameters without what was known of it."""
