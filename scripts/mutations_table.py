@@ -344,7 +344,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "explain/run.py", *_tests("explain", "offsets_of_poses"),
-        offsets_behind_a_statement=("drawn = [effect for effect in found.effects if effect.random_effects]", "drawn = []"),
+        offsets_behind_a_statement=("if not drawn or not form.constant:", "if True:"),
     ),
     *_of(
         "identify/solve/problem.py", *_tests("identify", "null_space"),

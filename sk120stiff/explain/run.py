@@ -202,9 +202,11 @@ def _judged(
             return *exactly, None
         at = held_against(noise, exactly[0].final)
         standing = {effect.id for effect in exactly[0].effects}
-    elif (offsets := _beside_offsets(found, noise, under, seed)) is not None:
-        return *offsets, None
+    drawn = [each for each in found.regression.candidates if each.random_effects]
     found, named = beside_model_form(at, under, names=standing, seed=seed)
+    offsets = _beside_offsets(found, named, drawn, noise, under, seed)
+    if offsets is not None:
+        return *offsets, None
     account = complete_account(
         base,
         found,
@@ -221,22 +223,35 @@ def _judged(
 
 
 def _beside_offsets(
-    found: Selection, noise: NoiseModel, under: Try, seed: int
+    found: Selection,
+    named: Named,
+    drawn: Sequence[Effect],
+    noise: NoiseModel,
+    under: Try,
+    seed: int,
 ) -> tuple[Selection, Named] | None:
-    """What stands beside draws of single poses, where they leave nothing but noise; None: nothing.
+    """What stands where single poses have a constant of their own, and draws are named for it.
 
-    Model-form error that is constant at single poses is what such draws are, and takes their place;
-    where noise alone exceeds what was stated, the name comes first.
+    Model-form error of that kind is what an offset of each pose is: the same number has a name.
+    None where there is another kind, or where beside the draws more than noise is left.
+
+    Args:
+        found, named: What stands beside model-form error.
+        drawn: Candidates that are draws of single poses.
+        noise: Of the readings, as it was stated.
+        under: Makes a selection.
+        seed: Of folds and resampling.
     """
-    drawn = [effect for effect in found.effects if effect.random_effects]
-    if not drawn:
+    form = found.final.problem.noise.form
+    if not drawn or not form.constant:
         return None
+    effects = [*(finding.effect for finding in named.findings), *drawn]
     try:
-        beside = held_against(noise, refit(found.base, drawn, found.final))
+        at = held_against(noise, refit(found.base, effects))
     except Refusal:
         return None
-    at, named = beside_model_form(beside, under, names={each.id for each in drawn}, seed=seed)
-    return (at, named) if _drawn(named) and not _adequacy(at, noise).lacking else None
+    tried = beside_model_form(at, under, names={each.id for each in effects}, seed=seed)
+    return tried if _drawn(tried[1]) and not _adequacy(tried[0], noise).lacking else None
 
 
 def _together(found: Selection, named: Named, account: Account | None) -> tuple[Imitated, ...]:

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import sk120stiff as sk
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.explain import explain
+from sk120stiff.explain.candidates.aliases import exact_aliases
 from sk120stiff.measurements import Measurements, NoiseStatement
 from tests.explain.readings import hidden
 from tests.hidden.generator.causes_sensor import ForceBias
@@ -59,3 +61,15 @@ def test_what_offsets_have_in_common_is_the_sensors(springs: Model) -> None:
         assert found.std is not None and found.std < 3.0
         # reported minus true; the generator's is what the arm feels beside the report
         assert abs(found.value + true) < 3.0 * found.std
+
+
+def test_what_shows_at_no_other_poses_is_called_no_alias() -> None:
+    """A drift goes by the order of readings, which other poses have not: nothing is told of it."""
+    robot = load_robot("motoman_sk120")
+    model = base_model(robot)
+    assert model is not None
+    drift = sk.effect(robot, "reading_drift", "tracker")
+    tilt = sk.effect(robot, "joint_tilt", "joint_2_l")
+    typical = [spec.typical for spec in drift.parameters]
+    drifting = (model + drift).with_values(np.array([*model.values, *typical]))
+    assert exact_aliases(drifting, drift, [tilt], point=np.array([0.0, 0.1, 0.2])) == ()

@@ -15,6 +15,7 @@ from sk120stiff.plan import random_pool
 
 SHARES_OF_LOAD = (1.0, 0.25, 0.05)  # tried until the model holds the load at every pose
 SAME = 1e-3  # share of the signature that may differ
+ROUNDING = 1e-9  # share of a signature that is left of it where nothing is
 FAINT = 1e-10  # share of the largest singular value below which a direction is rounding
 
 
@@ -48,8 +49,12 @@ def exact_aliases(
     values = model.values[[p.effect.id == effect.id for p in model.parameters]]
     values = values / typical[owner == effect.id]
     base = _directions(_unit(X[:, np.isin(owner, list(present - {effect.id}))]))
-    signature = _without(base, X[:, owner == effect.id] @ values)
-    same = SAME * max(float(np.linalg.norm(signature)), 1e-300)
+    whole = X[:, owner == effect.id] @ values
+    signature = _without(base, whole)
+    left = float(np.linalg.norm(signature))
+    if left <= ROUNDING * float(np.linalg.norm(whole)):
+        return ()  # it goes by order or pose, or the others have all of it: no sign of its own
+    same = SAME * left
     found = []
     for other in others:
         own = _directions(_without(base, _unit(X[:, owner == other.id])))
