@@ -21,7 +21,11 @@ from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
 from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
-from sk120stiff.explain.judge.beside_form import beside_model_form, unless_imitating
+from sk120stiff.explain.judge.beside_form import (
+    beside_model_form,
+    unless_imitating,
+    with_model_form,
+)
 from sk120stiff.explain.judge.beside_suspect import Account, complete_account
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.one_gear import WORTH_A_SENTENCE, Imitated, imitated_together
@@ -233,7 +237,7 @@ def _beside_offsets(
     """What stands where single poses have a constant of their own, and draws are named for it.
 
     Model-form error of that kind is what an offset of each pose is: the same number has a name.
-    None where there is another kind, or where beside the draws more than noise is left.
+    None where more than noise is left beside the draws, be it larger than stated.
 
     Args:
         found, named: What stands beside model-form error.
@@ -249,6 +253,8 @@ def _beside_offsets(
     try:
         at = held_against(noise, refit(found.base, effects))
     except Refusal:
+        return None
+    if with_model_form(at).form:
         return None
     tried = beside_model_form(at, under, names={each.id for each in effects}, seed=seed)
     return tried if _drawn(tried[1]) and not _adequacy(tried[0], noise).lacking else None

@@ -104,6 +104,10 @@ def test_readings_left_out_that_are_foretold_far_worse_are_explained() -> None:
     (sentence,) = held_out_words(Answered(steps=far))
     assert sentence.startswith("a:b: poses that are left out are foretold worse")
     assert held_out_words(Answered()) == ()
+    drawn = SimpleNamespace(effect=SimpleNamespace(id="zero_offset:tracker", random_effects=True))
+    offsets = (SimpleNamespace(name="zero_offset:tracker", rms=10e-5),)
+    (sentence,) = held_out_words(Answered(steps=far, findings=(drawn,), budget=offsets))
+    assert sentence.startswith("Poses that are left out have offsets of their own, 100 µm rms")
 
 
 def test_two_figures_of_one_gap_are_explained() -> None:
