@@ -25,6 +25,12 @@ FOLLOWS = {
     "positions they show the geometry of the arm, and springs as far as its weight and payload "
     "bend it.",
 }
+OF_SEVERAL = (
+    "{rows} rows at {useful} of {poses} poses differ in load from the lightest of their pose. Of "
+    "several markers they are taken as positions, not subtracted from one another: geometry, "
+    "markers and springs come out of one fit. Where the geometry leaves more than the noise, the "
+    "differences of one marker tell springs better: --marker."
+)
 UNKNOWN = (
     "They stay in the tracker's own axes (position: {frame: unknown}): 'identify' and 'explain' "
     "register them together with all else, so that no error of this fit is left in them."
@@ -100,6 +106,8 @@ def identifiable(found: Imported) -> str:
     poses = len(set(found.draft.pose))
     if found.mode != "load pairs":
         text = FOLLOWS[found.mode].format(poses=poses)
+        if found.mode == "positions" and found.differences:
+            text = OF_SEVERAL.format(rows=found.differences, useful=found.useful_poses, poses=poses)
         if found.mode == "displacements":
             return text
         return f"{text} {UNKNOWN if not found.registered else 'They are written in base axes.'}"
@@ -172,9 +180,10 @@ def _against(found: Imported, robot: Robot) -> str:
         return ""
     freed = "the tracker's frame" + (" and the marker's place" if fitted.marker_fitted else "")
     length = arm_length(robot)
+    counted = "readings" if len(set(found.draft.marker_of)) > 1 else "poses"
     return (
         f"Against {robot.name} the positions are {fitted.rms * 1e3:.3g} mm off (rms of "
-        f"{fitted.poses} poses, {freed} fitted), {fitted.largest * 1e3:.3g} mm at pose "
+        f"{fitted.poses} {counted}, {freed} fitted), {fitted.largest * 1e3:.3g} mm at pose "
         f"{found.draft.pose[found.fitted_rows[fitted.worst]]}: {100 * fitted.rms / length:.2g} % "
         f"of the arm's {length:.3g} m."
     )

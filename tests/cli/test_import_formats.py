@@ -203,6 +203,52 @@ def test_markers_of_robodk_keep_their_places(run, tmp_path: Path) -> None:
     assert run("identify", str(out), "--json").document["rms_um"] < 0.1
 
 
+@pytest.mark.parametrize("layout", ["side by side", "in rows"])
+def test_three_reflectors_under_a_payload_are_one_campaign(
+    run, tmp_path: Path, layout: str
+) -> None:
+    """Nobody knows where they sit nor where the tracker stands; springs come out of one fit."""
+    robot = load_robot(ur5(), tool="tool0")
+    places = np.array([[0.06, 0.0, 0.08], [-0.05, 0.07, 0.08], [-0.03, -0.08, 0.14]])
+    spring, mass = 5e4, 8.0
+    rows = []
+    for q in np.radians(SEEN.q[:16]):
+        for payload in (0.0, mass):
+            bent = q.copy()
+            for _ in range(20):
+                jacobian = robot.jacobian(bent[None])[0, 2]
+                bent = (
+                    q + (robot.gravity_torque(bent[None])[0] - 9.81 * payload * jacobian) / spring
+                )
+            T = robot.placement(bent[None])[0]
+            seen = [TURN.apply(T[:3, 3] + T[:3, :3] @ place) + SHIFT for place in places]
+            rows.append((np.degrees(q), payload, seen))
+    joints = [f"J{k}[deg]" for k in range(1, 7)]
+    if layout == "side by side":
+        lines = [[*(f"SMR{k} {a}" for k in (1, 2, 3) for a in "XYZ"), *joints, "payload"]]
+        lines += [[f"{v:.6f}" for v in (*1e3 * np.concatenate(x), *q, m)] for q, m, x in rows]
+    else:
+        lines = [["marker", *"xyz", *joints, "payload"]]
+        lines += [
+            [f"SMR{k}", *(f"{v:.6f}" for v in (*(1e3 * place), *q, m))]
+            for q, m, x in rows for k, place in enumerate(x, 1)
+        ]  # fmt: skip
+    source, out = tmp_path / "three.csv", tmp_path / "own.csv"
+    source.write_text("\n".join(",".join(line) for line in lines))
+    known = (str(source), *exported(tmp_path)[3:], "--length", "mm", "--load", "kg", "--json")
+    found = run("import", *known).document
+    assert found["mode"] == "positions" and found["stiffness_identifiable"]
+    assert found["rows"] == 6 * 16 and "several markers" in found["identifiable"]
+    data = read_measurements(out)
+    assert data.absolute is not None and len(set(data.absolute.markers)) == 3
+    fitted = run("identify", str(out), "--json").document
+    assert fitted["rms_um"] < 0.5
+    told = {p["name"]: p["value"] for p in fitted["parameters"]}
+    assert told["joint_springs:elbow_joint.stiffness"] == pytest.approx(spring, rel=0.01)
+    refused = run("import", *known, "--point", "0,0,0 mm", "--out", str(tmp_path / "no.csv"))
+    assert refused.code == 2 and "Leave it out: the fit finds where each sits" in refused.stderr
+
+
 def test_load_pairs_of_a_tracker_anywhere_give_the_springs(run, tmp_path: Path) -> None:
     """Encoders jitter, the tracker is turned, the marker's place is not known, two loads a pose."""
     robot = load_robot("motoman_sk120")

@@ -196,7 +196,8 @@ class Formats:
                 "no format that is known fits this file",
                 where=str(source.path),
                 remedy="Name its columns, e.g. --columns 'name,x,y,z,q1,q2,q3,q4,q5,q6' (a dash "
-                f"for one that is not needed). Formats are {names}.",
+                "for one that is not needed; of several markers x1,y1,z1,x2,y2,z2). "
+                f"Formats are {names}.",
             )
         guesses.sort(key=lambda pair: -pair[0].confidence)
         best = guesses[0]

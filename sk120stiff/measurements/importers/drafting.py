@@ -63,6 +63,12 @@ class Draft:
     unused: tuple[str, ...]
     said: tuple[str, ...]
 
+    @property
+    def marker_of(self) -> tuple[str, ...]:
+        """The marker of every row, N names; empty ones where the file names none."""
+        named = next((cells for header, cells in self.other if header == "marker"), ())
+        return named or self.markers[0] or ("",) * len(self.pose)
+
 
 def drafted(
     sheet: Sheet, told: Told, actuated: tuple[str, ...], prismatic: tuple[str, ...]

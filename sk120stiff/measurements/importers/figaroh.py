@@ -1,63 +1,152 @@
-"""Calibration files as FIGAROH takes them: ``x1,y1,z1``, orientations, joints."""
+"""Several markers side by side: ``x1,y1,z1,x2`` as FIGAROH writes, ``SMR2 X``, ``M1_x``."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
 
-from sk120stiff.errors import InputError
-from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import Layout, layout_of, sheet_of
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.contract import NO, Column, Guess, Sheet, Source
+from sk120stiff.measurements.importers.layout import POSITION, Layout, layout_of, sheet_of
 from sk120stiff.measurements.importers.words import meaning_of, unit_of_header
 
-_MARKER = re.compile(r"(?:phi)?([xyz])([1-9]\d*)")
+_MARKER = re.compile(
+    r"(?P<what>phi|d)?(?P<axis>[xyz])[ _.-]?(?P<number>[1-9]\d*)"
+    r"|(?:markers?|reflectors?|smr|nest|point|target|[mnpt])?[ _.-]?(?P<number_before>[1-9]\d*)"
+    r"[ _.-]?(?P<what_before>d)?(?P<axis_behind>[xyz])",
+    re.IGNORECASE,
+)
 
 
 @dataclass(frozen=True)
 class Figaroh:
-    """Several markers side by side; one is chosen."""
+    """Several markers side by side: one that is chosen, or each a reading of its own."""
 
     name: str = "figaroh"
-    title: str = "FIGAROH's calibration file"
+    title: str = "a table of markers by their number, as FIGAROH's"
 
     def sniff(self, source: Source) -> Guess:
         """Columns x1, y1 ... in the header."""
         names = _headers(source) if source.role == "points" else []
-        if not {"x", "y", "z"} & set(names) and any(_MARKER.fullmatch(name) for name in names):
-            return Guess(0.9, "columns x1, y1, z1")
+        if not set(POSITION) & set(names) and any(_axis_of(name) for name in names):
+            return Guess(0.9, _why(source))
         return NO
 
     def read(self, source: Source) -> Sheet:
-        """The readings of one marker.
+        """The readings of one marker, or of all of them, each in a row of its own.
 
         Raises:
-            InputError: The marker is not there, incomplete, or one of several and nobody chose.
+            InputError: The marker is not there or incomplete, or displacements are of several.
         """
-        headers = _headers(source)
-        number = _chosen(
-            source, sorted({int(m[2]) for h in headers if (m := _MARKER.fullmatch(h))})
-        )
-        for axis in "xyz":
-            if f"{axis}{number}" not in headers:
+        found = [marker for name in _headers(source) if (marker := _axis_of(name))]
+        numbers = sorted({number for number, _ in found})
+        chosen = numbers if source.marker is None else [_chosen(source, numbers)]
+        moved = {number for number, axis in found if axis.startswith("d")}
+        if len(chosen) > 1 and moved:
+            raise InputError(
+                f"displacements under load are of one point, and this file has the markers "
+                f"{listed([str(number) for number in numbers])}",
+                where=source.grid.place(0),
+                remedy="Import each marker into a file of its own, which names its place: "
+                f"--marker {numbers[0]}.",
+            )
+        sheets = {number: self._of(source, number, set(found)) for number in chosen}
+        if source.marker is not None or len(sheets) == 1:
+            return replace(next(iter(sheets.values())), marker=source.marker)
+        return _stacked(sheets)
+
+    def _of(self, source: Source, number: int, found: set[tuple[int, str]]) -> Sheet:
+        """The readings of one marker."""
+        kind = "d" if (number, "dx") in found else ""
+        for axis in POSITION:
+            if (number, kind + axis) not in found:
                 raise InputError(
-                    f"the column '{axis}{number}' is missing",
+                    f"the column '{kind}{axis}{number}' is missing",
                     where=source.grid.place(0),
-                    remedy=f"A marker has three columns: x{number}, y{number}, z{number}.",
+                    remedy="A marker has three columns: "
+                    f"{', '.join(f'{kind}{axis}{number}' for axis in POSITION)}.",
                 )
 
         def meaning(name: str, actuated: tuple[str, ...]) -> tuple[str, float] | None:
-            marker = _MARKER.fullmatch(name)
-            if marker is None:
-                return meaning_of(name, actuated)
-            own = int(marker[2]) == number and not name.startswith("phi")
-            return (marker[1], 1.0) if own else None
+            if name not in actuated and _MARKER.fullmatch(name):
+                marker = _axis_of(name)
+                return (marker[1], 1.0) if marker and marker[0] == number else None
+            return meaning_of(name, actuated)
 
         layout: Layout | None = layout_of(source, meaning)
         if layout is None:
             raise InputError("no marker is in this file", where=str(source.path))
         said = (f"Marker {number} is read.",) if source.marker else ()
-        sheet = sheet_of(source, layout, self.title, "columns x1, y1, z1", notes=said)
-        return replace(sheet, marker=source.marker)
+        return sheet_of(source, layout, self.title, _why(source), notes=said)
+
+
+def _stacked(sheets: dict[int, Sheet]) -> Sheet:
+    """One sheet of several of one table: a row for each marker, beside it a column of its number.
+
+    A row in which one marker was lost keeps the others.
+    """
+    first = next(iter(sheets.values()))
+    rows = sorted(
+        (rank, number, row)
+        for number, sheet in sheets.items()
+        for row, rank in enumerate(sheet.rank)
+    )
+
+    def cells(columns: list[tuple[str, ...]]) -> tuple[str, ...]:
+        of = dict(zip(sheets, columns, strict=True))
+        return tuple(of[number][row] for _, number, row in rows)
+
+    columns, spare = (
+        tuple(
+            replace(
+                each[0],
+                header=", ".join(dict.fromkeys(column.header for column in each)),
+                cells=cells([column.cells for column in each]),
+            )
+            for each in zip(*kind, strict=True)
+        )
+        for kind in (
+            [sheet.columns for sheet in sheets.values()],
+            [[c for c in sheet.spare if not _of_a_marker(c)] for sheet in sheets.values()],
+        )
+    )
+    label = Column("marker", "marker", None, "", tuple(str(number) for _, number, _ in rows))
+    skipped = [
+        (line, f"marker {number}: {reason}")
+        for number, sheet in sheets.items()
+        for line, reason in sheet.skipped
+    ]
+    return replace(
+        first,
+        columns=(*columns, label),
+        spare=spare,
+        lines=tuple(sheets[number].lines[row] for _, number, row in rows),
+        rank=tuple(rank for rank, _, _ in rows),
+        skipped=tuple(sorted(skipped)),
+        notes=(
+            *first.notes,
+            f"Each row is a reading of {len(sheets)} markers, and becomes as many rows.",
+        ),
+    )
+
+
+def _why(source: Source) -> str:
+    found = next(name for name in _headers(source) if _axis_of(name))
+    return f"columns such as {found}, of markers by their number"
+
+
+def _of_a_marker(column: Column) -> bool:
+    return _axis_of(unit_of_header(column.header)[0]) is not None
+
+
+def _axis_of(name: str) -> tuple[int, str] | None:
+    """Number of the marker and what the column holds of it: ``x``, or ``dx`` of a displacement."""
+    found = _MARKER.fullmatch(name)
+    if found is None or found["what"] == "phi":
+        return None
+    number = found["number"] or found["number_before"]
+    axis = found["axis"] or found["axis_behind"]
+    return int(number), f"{found['what'] or found['what_before'] or ''}{axis}".lower()
 
 
 def _headers(source: Source) -> list[str]:
@@ -67,19 +156,14 @@ def _headers(source: Source) -> list[str]:
 
 
 def _chosen(source: Source, markers: list[int]) -> int:
-    listed = ", ".join(map(str, markers))
-    if source.marker is None and len(markers) > 1:
-        raise InputError(
-            f"this file has the markers {listed}",
-            where=source.grid.place(0),
-            remedy=f"Choose one: --marker {markers[0]}. Its point is where the load acts.",
-        )
-    wanted = source.marker or str((markers or [1])[0])
+    wanted = source.marker or ""
     chosen = int(wanted) if wanted.isdecimal() else 0
     if chosen not in markers:
         raise InputError(
             f"this file has no marker {wanted}",
             where=source.grid.place(0),
-            remedy=f"There is {listed}." if listed else "Its columns are x1, y1, z1.",
+            remedy=f"There is {', '.join(map(str, markers))}."
+            if markers
+            else "Its columns are x1, y1, z1.",
         )
     return chosen

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.errors import InputError, Refusal
+from sk120stiff.errors import InputError, Refusal, listed
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements
@@ -63,7 +63,7 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         line=np.array(draft.sheet.lines),
         absolute=Absolute(
             Channels(position=draft.measured),
-            "unknown", point, not known, ("",) * len(draft.pose), np.zeros(len(draft.pose)),
+            "unknown", point, not known, draft.marker_of, np.zeros(len(draft.pose)),
         ),
     ).select(rows)  # fmt: skip
     try:
@@ -84,10 +84,14 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         )
     kept = rows[~placing.wild]
     screws = robot.screws(draft.joints.values[kept])
+    markers = np.unique(np.array(draft.marker_of)[kept], return_inverse=True)[1]
 
     def fit(x: Array) -> Registration | None:
         where, turn = screws.frame_position, screws.rotation
-        return register(x[kept], where, turn, point[kept], fit_marker=not known)
+        return register(
+            x[kept], where, turn, point[kept],
+            fit_marker=not known, group=np.zeros_like(markers) if known else markers,
+        )  # fmt: skip
 
     fitted = fit(draft.measured)
     other = None if draft.reversed is None else fit(draft.reversed)
@@ -124,8 +128,19 @@ def _understood(draft: Draft) -> str:
 
 
 def points_of(draft: Draft, told: Told) -> tuple[Array, bool]:
-    """(N, 3) marker of each row in the tool frame [m], and whether its place was stated."""
+    """(N, 3) marker of each row in the tool frame [m], and whether its place was stated.
+
+    Raises:
+        InputError: One place was told of several markers.
+    """
     names, places = draft.markers
+    if told.point is not None and len(several := sorted(set(draft.marker_of))) > 1:
+        raise InputError(
+            f"one place was told, and the file has the markers {listed(several)}",
+            where="--point",
+            remedy="Leave it out: "
+            + ("the file says where each sits." if places else "the fit finds where each sits."),
+        )
     if told.point is not None:
         return np.tile(told.point, (len(draft.pose), 1)), True
     if places:

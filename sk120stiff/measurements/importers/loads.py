@@ -88,7 +88,7 @@ def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:
             remedy="Write what hangs on the robot; its weight pulls along -z of the base.",
         )
     W[:, 2] = -STANDARD_GRAVITY * mass
-    said = "The payload is taken to hang at the marker and to pull along -z of the base frame."
+    said = "The payload is taken to pull along -z of the base frame."
     return Loads(W, mass, (column,), said)
 
 
@@ -105,7 +105,7 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
     for k, column in enumerate(taken):
         kind = "force" if k < 3 else "moment"
         W[:, k] = quantity(sheet, column, kind, unit_of(sheet, column, kind, told))
-    said = "Forces are taken to act on the robot at the marker, in axes of the base frame."
+    said = "Forces are taken to act on the robot, in axes of the base frame."
     return Loads(W, None, tuple(taken), said)
 
 

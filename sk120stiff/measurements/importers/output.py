@@ -36,6 +36,7 @@ def settings_for(
 ) -> tuple[dict[str, Any], str]:
     """Keys of the YAML file, and what is said of the marker's place."""
     point, known = points_of(draft, told)
+    several = mode == "positions" and len(set(draft.marker_of)) > 1
     settings: dict[str, Any] = {
         "robot": _lasting(robot.source),
         "base_frame": robot.base_frame,
@@ -43,7 +44,15 @@ def settings_for(
     }
     xyz = point[0]
     said = "The marker and the load sit at the origin of the tool frame."
-    if told.point is not None:
+    if several and not known:
+        said = (
+            "Where the markers sit is not known; the fit finds the place of each. The load is "
+            "taken to act at the origin of the tool frame; elsewhere it is what force.point or "
+            "payload.point in the YAML file says."
+            if draft.loads.taken
+            else "Where the markers sit is not known; the fit finds the place of each."
+        )
+    elif told.point is not None:
         said = "The marker sits, and the load acts, where --point says."
     elif known:
         said = "The markers sit where the file says (TCP)."

@@ -128,7 +128,7 @@ def import_readings(
     mode: Mode = "positions"
     if draft.displaced:
         mode = "displacements"
-    elif paired_rows.any() and len(draft.markers[1]) < 2:
+    elif paired_rows.any() and len(set(draft.marker_of)) < 2:
         mode = "load pairs"
     if mode != "positions":
         refuse_several_points(draft)

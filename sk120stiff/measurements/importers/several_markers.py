@@ -59,10 +59,10 @@ def refuse_several_points(draft: Draft) -> None:
     """
     sheet = draft.sheet
     column = sheet.get("marker")
-    names = _names(column.cells) if column is not None else []
+    names = list(dict.fromkeys(draft.marker_of))
     remedy = (
         "Import each marker into a file of its own, which names its place: "
-        f"--marker {names[0] if names else 'NAME'}."
+        f"--marker {names[0] or 'NAME'}."
     )
     if column is not None and len(names) > 1:
         raise InputError(
