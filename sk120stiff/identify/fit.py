@@ -174,12 +174,16 @@ class Fit:
         That is everything, or the readings of known noise among others whose size is fitted: their
         number less the share of the parameters that they determine (trace of the hat matrix).
         """
+        return self.held_against(self.residual)
+
+    def held_against(self, left: Array) -> tuple[float, int]:
+        """Sum of squares and degrees of freedom of what is left (M,) in units of the noise."""
         own = self.problem.judged
         if own is None:
-            return self.chi_square, self.degrees_of_freedom
+            return float(left @ left), self.degrees_of_freedom
         U = np.linalg.svd(self.jacobian[:, ~self.at_bound], full_matrices=False)[0]
         spent = float((U[own, : self.estimated] ** 2).sum())
-        part = self.residual[own]
+        part = left[own]
         return float(part @ part), max(round(len(part) - spent), 0)
 
     @property

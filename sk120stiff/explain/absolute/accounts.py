@@ -11,7 +11,8 @@ from sk120stiff.explain.absolute.candidates import family
 from sk120stiff.explain.absolute.choose import Chosen, lengths
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Contender
-from sk120stiff.identify.absolute.calibrate import Calibration, far_off
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.noise_sizes import far_off
 from sk120stiff.measurements import Measurements
 
 
@@ -55,8 +56,8 @@ def steps_of(
     linear: Linear, found: Chosen, base: Calibration, seen: Calibration, inside: Index
 ) -> tuple[GapStep, ...]:
     """The gap as one named cause after the other joins, over the numbers `inside`."""
-    sigma = seen.problem.of_channels.sigma
-    whole = _whole(linear, seen) & np.isin(np.arange(len(sigma)), inside)
+    metres = seen.problem.of_channels.undo
+    whole = _whole(linear, seen) & np.isin(np.arange(len(linear.residual)), inside)
     first = " + ".join(effect.id for effect in base.model.effects) or "rigid"
     labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
     steps = []
@@ -65,12 +66,12 @@ def steps_of(
         noise = linear.noise(chosen)
         fitted = linear.gap(chosen, noise, held_out=False)
         held = linear.gap(chosen, noise, held_out=True)
-        distance = lengths(held, linear, sigma, whole)
+        distance = lengths(metres(held), linear, whole)
         steps.append(
             GapStep(
                 label,
-                rms((fitted * sigma)[inside]),
-                rms((held * sigma)[inside]),
+                rms(metres(fitted)[inside]),
+                rms(metres(held)[inside]),
                 float(distance.mean()) if len(distance) else np.nan,
             )
         )
@@ -89,16 +90,16 @@ def families_of(
     linear: Linear, found: Chosen, seen: Calibration, inside: Index
 ) -> dict[str, float]:
     """Family → rms that its causes take off the held-out gap together, over `inside` [m]."""
-    sigma = seen.problem.of_channels.sigma
+    metres = seen.problem.of_channels.undo
     groups: dict[str, list[int]] = {}
     for e in found.order:
         groups.setdefault(family(linear.candidates[e]), []).append(e)
     noise = linear.noise(found.order)
-    left = rms((linear.gap(found.order, noise, held_out=True) * sigma)[inside])
+    left = rms(metres(linear.gap(found.order, noise, held_out=True))[inside])
     out = {}
     for name, members in groups.items():
         rest = tuple(e for e in found.order if e not in members)
-        out[name] = rms((linear.gap(rest, noise, held_out=True) * sigma)[inside]) - left
+        out[name] = rms(metres(linear.gap(rest, noise, held_out=True))[inside]) - left
     return out
 
 
@@ -116,11 +117,11 @@ def suspects_of(
     linear: Linear, found: Chosen, seen: Calibration, inside: Index
 ) -> tuple[Contender, ...]:
     """Names that fit, and what each takes off the held-out rms over `inside` by itself [m]."""
-    sigma = seen.problem.of_channels.sigma
+    metres = seen.problem.of_channels.undo
 
     def left(chosen: tuple[int, ...]) -> float:
         gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
-        return rms((gap * sigma)[inside])
+        return rms(metres(gap)[inside])
 
     whole = left(found.order)
     return tuple(

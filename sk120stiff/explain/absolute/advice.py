@@ -172,7 +172,7 @@ def _columns(
     """(R, k) columns of R numbers in units of the noise, see `over_ranges`; and their readings."""
     model = with_both(problem.model, effect, rival)
     here = replace(problem, model=model, measurements=readings)
-    slope = here.channel_gap(model.values, derivative=True)[1] / here.of_channels.sigma[:, None]
+    slope = here.of_channels.apply(here.channel_gap(model.values, derivative=True)[1])
     return over_ranges(model, slope, effect), here.rows
 
 

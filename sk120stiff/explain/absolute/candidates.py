@@ -93,7 +93,7 @@ def linear_at(
     readings = problem.measurements
     present = [effect.id for effect in base.model.effects]
     effects = candidates_at(model.robot, problem.load_cases, readings, present, options, catalogue)
-    sigma = problem.of_channels.sigma
+    white = problem.of_channels.apply
     residual = seen.residual
     own = [k for k, p in enumerate(seen.parameters) if p.effect.id in present]
     Q = np.asarray(np.linalg.qr(seen.jacobian[:, own])[0])
@@ -105,7 +105,7 @@ def linear_at(
         for effect in fitted.values():
             columns = [k for k, p in enumerate(model.parameters) if p.effect == effect]
             found[effect] = slope[:, columns]
-            residual = residual + found[effect] @ model.values[columns] / sigma
+            residual = residual + white(found[effect] @ model.values[columns])
     off = frames_off(model)
     shown: list[Effect] = []
     sizes: list[Array] = []
@@ -114,7 +114,7 @@ def linear_at(
     hidden: list[Effect] = []
     for effect in effects:
         size = usual_sizes(effect, off)
-        block = beside(Q, found[effect] * size / sigma[:, None])
+        block = beside(Q, white(found[effect] * size))
         if not block.any():
             hidden.append(effect)
             continue

@@ -362,8 +362,8 @@ def _impostor(linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]) ->
     return left / (left + max(before - after, 0.0))
 
 
-def lengths(gap: Array, linear: Linear, sigma: Array, whole: Mask) -> Array:
-    """(K,) distances [m] of rows whose three coordinates were read, from a whitened gap."""
-    square = np.bincount(linear.row[whole], (gap * sigma)[whole] ** 2)
+def lengths(gap: Array, linear: Linear, whole: Mask) -> Array:
+    """(K,) distances [m] of rows whose three coordinates were read, from the gap (M,) [m]."""
+    square = np.bincount(linear.row[whole], gap[whole] ** 2)
     count = np.bincount(linear.row[whole])
     return np.asarray(np.sqrt(square[count == 3]))

@@ -44,7 +44,7 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
         seen: The calibration about which they were.
     """
     problem, model = seen.problem, seen.model
-    told, per = options_of(problem.measurements), 1.0 / problem.of_channels.sigma[:, None]
+    told, white = options_of(problem.measurements), problem.of_channels.apply
     laws: dict[int, tuple[Effect, ...]] = {}
     for e in chosen:
         own = linear.candidates[e]
@@ -65,7 +65,7 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
             part = linear.slices[e]
             return law, linear.sizes[part], linear.columns[:, part]
         sizes = usual_sizes(law, off)
-        return law, sizes, beside(linear.base, found[law] * sizes * per)
+        return law, sizes, beside(linear.base, white(found[law] * sizes))
 
     return {e: [block(e, law) for law in own] for e, own in laws.items()}
 

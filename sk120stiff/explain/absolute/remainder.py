@@ -23,7 +23,7 @@ def where_it_lives(
     """
     rows = np.flatnonzero(readings.use & ~seen.wild)
     unit = seen.problem.unit
-    square = (gap * seen.problem.of_channels.sigma)[counted] ** 2
+    square = seen.problem.of_channels.undo(gap)[counted] ** 2
     size = np.sqrt(np.bincount(linear.row[counted], square, minlength=len(rows)))
     worst = np.argsort(-size)[:LARGEST]
     places = ", ".join(f"{readings.pose[rows[k]]} ({1e6 * size[k]:.0f} {unit})" for k in worst)

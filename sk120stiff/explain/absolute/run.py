@@ -100,7 +100,9 @@ def explain_positions(
             "'sk120stiff identify'.",
         )
     tell("registering the tracker", 0.05)
-    base = calibrate(model, readings, geometry=False, waves=False, catalogue=catalogue)
+    base = calibrate(
+        model, readings, geometry=False, waves=False, shared=False, catalogue=catalogue
+    )
     tell("searching the catalogue", 0.2)
     seen = base
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
@@ -189,7 +191,8 @@ def _exactly(
     picked = _picked(linear, found)
     final = refined(base, picked, readings, seen.model, catalogue)
     noise = linear.noise(found.order)
-    foretold = linear.gap(found.order, noise, held_out=False) * seen.problem.of_channels.sigma
+    foretold = linear.gap(found.order, noise, held_out=False)
+    foretold = seen.problem.of_channels.undo(foretold)
     if _left(final) <= MORE * rms(foretold):
         return final
     known = linear.values(found.order, noise)
@@ -206,12 +209,14 @@ def _less_likely(again: Calibration, before: Calibration, linear: Linear) -> boo
     """
     numbers = len(before.residual)
     gain = numbers * np.log(_left(before) ** 2 / _left(again) ** 2)
+    if before.problem.common or again.problem.common:
+        gain = 2.0 * (again.log_likelihood - before.log_likelihood)
     price = (len(again.x) - len(before.x)) * np.log(numbers)
     return bool(gain - price < -2.0 * threshold(linear))
 
 
 def _left(found: Calibration) -> float:
-    return rms(found.residual * found.problem.of_channels.sigma)
+    return rms(found.problem.of_channels.undo(found.residual))
 
 
 def _picked(linear: Linear, found: Chosen) -> list[Effect]:

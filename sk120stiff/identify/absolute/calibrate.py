@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import stats
 from scipy.spatial.transform import Rotation
 
 from sk120stiff.arrays import Array, Mask
@@ -17,6 +17,14 @@ from sk120stiff.identify.absolute.gauge import Frozen, least_set
 from sk120stiff.identify.absolute.gauss_newton import gauss_newton
 from sk120stiff.identify.absolute.left_out import doubted
 from sk120stiff.identify.absolute.model_form import ModelForm, model_form, widened
+from sk120stiff.identify.absolute.noise_sizes import (
+    START,
+    alike,
+    common_of,
+    far_off,
+    learned,
+    of_poses,
+)
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.start import loaded, started
 from sk120stiff.identify.absolute.waves import beside_waves, waves_that_show
@@ -30,13 +38,8 @@ from sk120stiff.measurements.turned import refuse_other_turns
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import arm_length
 
-START = {  # m or rad
-    "position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4, "inclination": 1e-4,
-}  # fmt: skip
-SAME = 0.2  # change of the logarithm of a noise that is none
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
 MORE_ROUNDS = 3  # where other rows are still set aside
-FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is wild
 LARGEST = 0.03  # of the reach of the arm, which the fitted model of the right arm does not leave
 
 
@@ -70,10 +73,32 @@ class Calibration(Fit):
         """A fit of poses, with what is told beside it."""
         return cls(**{own.name: getattr(found, own.name) for own in fields(Fit)}, **told)
 
+    @cached_property
+    def judged(self) -> tuple[float, int]:
+        """See `Fit.judged`: against the noise alone, without what a pose's readings share."""
+        white = self.problem.of_channels
+        return self.held_against(white.undo(self.residual) / white.sigma)
+
+    @cached_property
+    def chance_of_common(self) -> float:
+        """Probability that noise alone lets the readings of a pose err together as much."""
+        return common_of(self).chance
+
+    @property
+    def unit(self) -> float:
+        """See `Fit.unit`; what a pose's readings share is in the whitened derivative already."""
+        if self.problem.common == 0.0:
+            return super().unit
+        square, freedom = self.held_against(self.residual)
+        if freedom < 1:
+            return float(np.inf)
+        factor = square / freedom
+        return float(np.sqrt(self.inflation * (max(factor, 1.0) if self.sigma_known else factor)))
+
     @property
     def size(self) -> str:
         """See `Fit.size`: of lengths, or of angles where nothing else was read."""
-        gap = (self.residual * self.problem.of_channels.sigma)[self.problem.counted]
+        gap = self.problem.of_channels.undo(self.residual)[self.problem.counted]
         return f"{1e6 * np.sqrt(np.mean(gap**2)):.3g} {self.problem.unit} rms"
 
     @property
@@ -106,6 +131,7 @@ def calibrate(
     *,
     geometry: bool = True,
     waves: bool = True,
+    shared: bool = True,
     freedom: Sequence[str] = (),
     catalogue: Catalogue = CATALOGUE,
 ) -> Calibration:
@@ -117,6 +143,8 @@ def calibrate(
         geometry: Estimate six small errors of every joint's frame, as far as they can be told.
         waves: Let transmission errors in where the readings show them beyond doubt: what they leave
             out would be taken for springs.
+        shared: Look for what all readings of a pose have in common, see `pose_errors.py`; without
+            geometry that would be its errors.
         freedom: Full names of parameters to keep at their values.
         catalogue: Where effects come from.
 
@@ -145,7 +173,7 @@ def calibrate(
             replace(p, free=False) if p.name in kept_back else p for p in start.parameters
         ),
     )
-    found, frozen, wild = _fitted(start, readings, wild)
+    found, frozen, wild = _fitted(start, readings, wild, shared=shared)
     if placed is None:
         _refuse_another_robot(found, readings)
     chosen: tuple[str, ...] = ()
@@ -200,8 +228,8 @@ def _refuse_another_robot(found: Fit, readings: Measurements) -> None:
     Raises:
         InputError: The fit leaves more than any arm of that size does.
     """
-    problem = _poses(found)
-    gap = found.residual * problem.of_channels.sigma
+    problem = of_poses(found)
+    gap = problem.of_channels.undo(found.residual)
     left = float(np.sqrt(np.mean(gap[problem.lengths] ** 2))) if len(problem.lengths) else 0.0
     reach = arm_length(found.model.robot)
     if left <= LARGEST * reach:
@@ -218,24 +246,31 @@ def _refuse_another_robot(found: Fit, readings: Measurements) -> None:
 
 
 def _fitted(
-    start: Model, readings: Measurements, wild: Mask
+    start: Model, readings: Measurements, wild: Mask, *, shared: bool = True
 ) -> tuple[Fit, tuple[Frozen, ...], Mask]:
     """Fit, learn the noise, set wild rows aside, until nothing changes.
 
     What is called wild in the end took no part in the fit.
     """
-    sigma, model = dict(START), start
+    sigma, common, model = dict(START), 0.0, start
     for turn in range(1, ROUNDS + MORE_ROUNDS + 1):
         used = readings.select(np.flatnonzero(readings.use & ~wild))
-        wide = _problem(model, used, sigma)
+        wide = _problem(model, used, sigma, common)
         _refuse_too_few(wide)
         small, frozen = least_set(model, _rigid_columns(wide, start), wide.span)
-        problem = _problem(small, used, sigma)
+        problem = _problem(small, used, sigma, common)
         _refuse_no_rest(problem)
         found = fitted(problem)
-        before, sigma = sigma, learned(found)
+        before, sigma = {**sigma, "": common}, learned(found)
+        if shared:
+            told = common_of(found)
+            if told.size and not common:  # what was all noise is parted into two
+                sigma = {k: told.noise * before[k] for k in START}
+            common = told.size
         again = far_off(found, readings, wild)
-        same = all(abs(np.log(sigma[k] / before[k])) < SAME for k in wide.channels.present)
+        same = alike(common, before.pop("")) and all(
+            alike(sigma[k], before[k]) for k in wide.channels.present
+        )
         settled = bool((again == wild).all()) and (same or turn >= ROUNDS)
         if settled or turn == ROUNDS + MORE_ROUNDS:
             break
@@ -256,21 +291,18 @@ def extended(found: Fit, effects: Sequence[Effect]) -> Fit:
     model = found.model
     for effect in effects:
         model = model + effect
-    first = fitted(replace(_poses(found), model=model))
-    return fitted(replace(_poses(first), model=first.model, sigma=learned(first)))
+    first = fitted(replace(of_poses(found), model=model))
+    common = common_of(first).size if of_poses(found).common else 0.0
+    return fitted(replace(of_poses(first), model=first.model, sigma=learned(first), common=common))
 
 
-def _poses(found: Fit) -> PoseProblem:
-    if not isinstance(found.problem, PoseProblem):
-        raise TypeError("a fit of poses")
-    return found.problem
-
-
-def _problem(model: Model, used: Measurements, sigma: dict[str, float]) -> PoseProblem:
+def _problem(
+    model: Model, used: Measurements, sigma: dict[str, float], common: float = 0.0
+) -> PoseProblem:
     channels = None if used.absolute is None else used.absolute.channels
     stated = channels is not None and any(channels.stated(kind) for kind in channels.present)
     noise = NoiseModel(START["position"], zero="separate", freedom=np.inf if stated else 0)
-    problem = PoseProblem(model, used, noise, sigma=sigma)
+    problem = PoseProblem(model, used, noise, sigma=sigma, common=common)
     own = problem.of_channels.sigma[problem.counted]  # rows may state their own
     return replace(problem, noise=replace(noise, sigma=float(np.sqrt(np.mean(own**2)))))
 
@@ -283,7 +315,7 @@ def _rigid_columns(problem: PoseProblem, start: Model) -> Array:
     """
     stiff = [p.internal * (not isinstance(p.effect, Elastic)) for p in start.parameters]
     slope = problem.channel_gap(np.array(stiff), derivative=True)[1]
-    return slope[:, problem.free] * problem.scale / problem.of_channels.sigma[:, None]
+    return problem.of_channels.apply(slope[:, problem.free] * problem.scale)
 
 
 def _refuse_too_few(problem: PoseProblem) -> None:
@@ -319,42 +351,6 @@ def _refuse_no_rest(problem: PoseProblem) -> None:
         where=str(measured.path or "measurements"),
         remedy="Measure more poses, or state the noise: noise: {sigma: 30, unit: um}.",
     )
-
-
-def learned(found: Fit) -> dict[str, float]:
-    """Standard size of what is left in each kind of channel, over what it states of itself."""
-    problem = _poses(found)
-    gap = found.residual * problem.of_channels.sigma
-    out = dict(START)
-    share = len(gap) / max(found.degrees_of_freedom, 1)
-    for kind, part in zip(problem.channels.present, problem.channels.kinds, strict=True):
-        unit = problem.channels.scale(kind)
-        size = float(np.sqrt(np.mean((gap[part] / unit) ** 2) * share))
-        out[kind] = max(size, 1e-9)
-    return out
-
-
-def far_off(found: Fit, readings: Measurements, wild: Mask) -> Mask:
-    """(N,) rows whose gap no normal noise of the size of the others gives; others come back.
-
-    Args:
-        found: The fit.
-        readings: Those of the fit, or others.
-        wild: (N,) rows that were set aside before.
-    """
-    whole = readings.masked()
-    problem = replace(_poses(found), measurements=whole, model=found.model)
-    gap = problem.channel_gap(found.model.values)[0] / problem.of_channels.sigma
-    count = np.bincount(problem.rows, minlength=whole.n_readings)
-    square = np.bincount(problem.rows, gap**2, minlength=whole.n_readings)
-    usual = np.sqrt(stats.chi2.ppf(0.5, np.maximum(count, 1)))  # the median of so many numbers
-    kept = ~wild[readings.use]
-    size = float(np.median((np.sqrt(square) / usual)[kept & (count > 0)]))
-    far = np.sqrt(square / np.maximum(count, 1)) > FAR * size
-    out = wild.copy()
-    if size > 0.0 and far.mean() < 0.1:
-        out[np.flatnonzero(readings.use)] = far
-    return out
 
 
 def with_values_of(model: Model, other: Model) -> Model:

@@ -38,9 +38,9 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
     if not len(sizes) or counted.all():
         return found
     slope = replace(problem, model=wide).channel_gap(wide.values, derivative=True)[1]
-    per = 1.0 / (problem.of_channels.sigma * found.unit)
-    kept = slope[:, found.problem.free] * problem.scale * per[:, None]
-    more = slope[:, list(sizes)] * np.array(list(sizes.values())) * per[:, None]
+    slope = problem.of_channels.apply(slope) / found.unit
+    kept = slope[:, found.problem.free] * problem.scale
+    more = slope[:, list(sizes)] * np.array(list(sizes.values()))
     moving = ~found.at_bound
     left = found.residual / found.unit
     drawn = 1.0 / problem.prior[moving] ** 2

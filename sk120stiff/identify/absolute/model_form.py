@@ -18,12 +18,9 @@ from scipy import linalg, stats
 from scipy.optimize import minimize
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects.base import Options
-from sk120stiff.effects.geometry import JointOffset
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.written import AnyFit, with_values
-from sk120stiff.model import Parameter
 
 MOST = 480  # numbers that sizes are estimated from: time goes with the cube
 FEWEST = 12  # numbers left over, below which no error of the model can be told from noise
@@ -144,21 +141,9 @@ def _complement(columns: Array) -> Array:
 
 def _smooth(problem: PoseProblem) -> Iterator[Array]:
     """(M, r) whitened: what waves and their products in the error of each joint do."""
-    model = problem.model
-    robot = model.robot
-    for joint in robot.actuated:
-        effect = JointOffset.at(robot, joint, Options())
-        if effect.id not in {own.id for own in model.effects}:
-            model = model + [Parameter(effect, spec, 0.0) for spec in effect.parameters]
-    slope = replace(problem, model=model).channel_gap(model.values, derivative=True)[1]
     basis = UNIT * waves(problem.load_cases.a)[problem.rows]
-    basis /= problem.of_channels.sigma[:, None]
-    for joint in robot.actuated:
-        (own,) = [
-            k for k, p in enumerate(model.parameters)
-            if p.effect.name == JointOffset.name and p.effect.where == joint
-        ]  # fmt: skip
-        yield slope[:, own, None] * basis
+    for column in problem.by_joints.T:
+        yield problem.of_channels.apply(column[:, None] * basis)
 
 
 def waves(a: Array) -> Array:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects.geometry import ToolOffset
+from sk120stiff.effects.base import Options
+from sk120stiff.effects.geometry import JointOffset, ToolOffset
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError
+from sk120stiff.identify.absolute.pose_errors import PoseWhitening
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Channels
 from sk120stiff.measurements.absolute import Absolute
@@ -24,31 +26,18 @@ from sk120stiff.model.pose_reading import read_poses
 ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
 
 
-@dataclass(frozen=True)
-class Independent:
-    """Whitening of M channels that are independent of one another.
-
-    Attributes:
-        sigma: (M,) standard uncertainty of each [m or rad].
-    """
-
-    sigma: Array
-
-    @property
-    def logdet(self) -> float:
-        """Natural logarithm of the determinant of the covariance."""
-        return float(2.0 * np.log(self.sigma).sum())
-
-
 @dataclass(frozen=True, eq=False)
 class PoseProblem(Problem):
     """A model and readings of where markers stand.
 
     Attributes:
         sigma: Standard uncertainty of each kind of channel that did not state its own [m or rad].
+        common: Standard size of what each joint of a pose stands off by [rad or m], see
+            `pose_errors.py`; 0: nothing.
     """
 
     sigma: Mapping[str, float] = field(default_factory=dict)
+    common: float = 0.0
 
     def __post_init__(self) -> None:
         if self.measurements.absolute is None:
@@ -96,13 +85,57 @@ class PoseProblem(Problem):
         return f"{self.unit} rms" + (" per axis" if set(told) <= set(OF_AXES) else "")
 
     @cached_property
-    def of_channels(self) -> Independent:
-        """How uncertain every channel is."""
+    def of_channels(self) -> PoseWhitening:
+        """How uncertain every channel is, and what those of a pose have in common."""
         scales = []
         for kind in self.channels.present:
             scale = self.channels.scale(kind)
             scales.append(scale if self.channels.stated(kind) else scale * self.sigma[kind])
-        return Independent(np.concatenate(scales))
+        sigma = np.concatenate(scales)
+        if self.common == 0.0:
+            return PoseWhitening(sigma)
+        return PoseWhitening(sigma, self.by_pose, self.pose_of_channels, self.common)
+
+    @property
+    def pose_of_channels(self) -> Index:
+        """(M,) pose of each channel."""
+        return np.asarray(self.load_cases.pose[self.rows], dtype=np.intp)
+
+    @cached_property
+    def by_pose(self) -> Array:
+        """(M, k) what may be a pose's own: an offset of each joint, and a shift of what is read.
+
+        The shift is as large as joints make it, whatever they are: what bends behind them, or the
+        instrument's, turns nothing.
+        """
+        joints = self.by_joints
+        shift = np.zeros((len(joints), 3))
+        for kind, part in zip(self.channels.present, self.channels.kinds, strict=True):
+            if kind == "position":
+                axis = np.nonzero(self.channels.held(kind))[1]
+                lever = float(np.sqrt((joints[part] ** 2).sum(axis=1).mean()))
+                shift[part] = lever * np.eye(3)[axis]
+        return np.concatenate([joints, shift], axis=1)
+
+    @cached_property
+    def by_joints(self) -> Array:
+        """(M, n) derivative of the readings by an offset of each actuated joint."""
+        model = self.model
+        robot = model.robot
+        own = {effect.id for effect in model.effects}
+        for joint in robot.actuated:
+            effect = JointOffset.at(robot, joint, Options())
+            if effect.id not in own:
+                model = model + [Parameter(effect, spec, 0.0) for spec in effect.parameters]
+        slope = replace(self, model=model, common=0.0).channel_gap(model.values, derivative=True)[1]
+        columns = [
+            next(
+                k for k, p in enumerate(model.parameters)
+                if p.effect.name == JointOffset.name and p.effect.where == joint
+            )
+            for joint in robot.actuated
+        ]  # fmt: skip
+        return np.asarray(slope[:, columns])
 
     @cached_property
     def known(self) -> Mask:
@@ -124,7 +157,7 @@ class PoseProblem(Problem):
         return float(np.sqrt(np.mean(own**2))) if len(own) else None
 
     @property
-    def whitener(self) -> Independent:  # type: ignore[override]
+    def whitener(self) -> PoseWhitening:  # type: ignore[override]
         """See `Problem.whitener`."""
         return self.of_channels
 
@@ -202,5 +235,5 @@ class PoseProblem(Problem):
     def evaluate(self, x: Array) -> tuple[Array, Array]:
         """Whitened gap (M,) and its derivative (M, P_free) by `x`."""
         gap, slope = self.channel_gap(self.values(x), derivative=True)
-        per = 1.0 / self.of_channels.sigma
-        return gap * per, -(slope[:, self.free] * self.scale) * per[:, None]
+        white = self.of_channels.apply
+        return white(gap), -white(slope[:, self.free] * self.scale)

@@ -33,7 +33,7 @@ def beyond(final: Calibration, sigma: float) -> Size:
 
 def smooth_part(final: Calibration, form: ModelForm) -> Size:
     """Rms per axis of the smooth error where no noise is stated [m]."""
-    gap = final.residual * final.problem.of_channels.sigma
+    gap = final.problem.of_channels.undo(final.residual)
     whole = len(gap) / max(final.degrees_of_freedom, 1)
     own = gap[final.problem.counted]
     best = float(np.sqrt(np.mean(own**2) * form.share * whole))
@@ -41,19 +41,46 @@ def smooth_part(final: Calibration, form: ModelForm) -> Size:
     return best, best * ends[0], best * ends[1]
 
 
+def common_part(final: Calibration) -> Size:
+    """Rms per axis of what the readings of a pose have in common, where no noise is stated [m].
+
+    That is what the gap holds beyond the noise. Of its 95 % interval every pose counts as often as
+    its joints move it, less what was estimated.
+    """
+    problem = final.problem
+    white, counted = problem.of_channels, problem.counted
+    square = white.undo(final.residual)[counted] ** 2
+    noise = (final.unit * white.sigma[counted]) ** 2
+    poses = len(np.unique(problem.load_cases.pose))
+    each = min(len(problem.rows) // poses, problem.by_joints.shape[1])
+    freedom = max(poses * each - final.estimated, 1)
+    best = float(np.sqrt(max(float(np.mean(square - noise)), 0.0) * poses * each / freedom))
+    low, high = (best * (freedom / float(stats.chi2.ppf(q, freedom))) ** 0.5 for q in ENDS)
+    return best, low, high
+
+
 def left_beyond_noise(final: Calibration) -> Size | None:
     """Rms per axis beyond the noise and its 95 % interval; None where nothing tells the two."""
     form, stated = final.form, final.problem.stated_sigma
     if final.sigma_known and stated is not None:
         return beyond(final, stated)
-    return None if form is None else smooth_part(final, form)
+    parts = [smooth_part(final, form)] if form is not None else []
+    if final.problem.common:
+        parts.append(common_part(final))
+    if not parts:
+        return None
+    best, low, high = np.sqrt((np.array(parts) ** 2).sum(axis=0))
+    return float(best), float(low), float(high)
 
 
 def chance_of_noise(final: Calibration) -> float | None:
     """Probability that noise alone leaves as much; None where nothing tells the two apart."""
     if final.sigma_known and final.misfit is not None:
         return final.misfit[2]
-    return None if final.form is None else final.form.chance
+    chances = [] if final.form is None else [final.form.chance]
+    if final.problem.common:
+        chances.append(final.chance_of_common)
+    return min(chances, default=None)
 
 
 def remainder_at_other_poses(final: Calibration) -> Remainder | None:
@@ -94,7 +121,17 @@ def remainder_sentences(final: Calibration) -> list[str]:
     size = left_beyond_noise(final)
     if size is None:
         return []
-    said = [in_words(size, final.problem.rms_unit, stated=final.sigma_known)]
+    unit, stated = final.problem.rms_unit, final.sigma_known
+    said = []
+    if stated or final.form is not None:
+        own = size if stated or final.form is None else smooth_part(final, final.form)
+        said.append(in_words(own, unit, stated=stated))
+    if final.problem.common:
+        best, low, high = (f"{1e6 * x:.3g}" for x in common_part(final))
+        said.append(
+            f"The readings of a pose have {best} {unit} (95 %: {low} to {high}) in common that no "
+            "law explains: each pose is off by something of its own, as gears and bearings make it."
+        )
     chance = chance_of_noise(final)
     if final.sigma_known and final.form is None and chance is not None and chance < LEVEL:
         square, freedom = final.judged

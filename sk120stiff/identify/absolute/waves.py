@@ -48,7 +48,7 @@ def columns_of(found: Fit, effects: Sequence[Effect]) -> list[Array]:
     for effect in effects:
         wider = wider + effect
     slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
-    white = slope[:, len(found.model.parameters) :] / problem.of_channels.sigma[:, None]
+    white = problem.of_channels.apply(slope[:, len(found.model.parameters) :])
     Q = np.asarray(np.linalg.qr(found.jacobian)[0])
     white = white - Q @ (Q.T @ white)
     ends = np.cumsum([len(effect.parameters) for effect in effects])
@@ -99,7 +99,7 @@ def beside_waves(found: Fit, catalogue: Catalogue) -> Fit:
     for effect in effects:
         wider = wider + effect
     slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
-    more = slope[:, len(model.parameters) :] / problem.of_channels.sigma[:, None]
+    more = problem.of_channels.apply(slope[:, len(model.parameters) :])
     more *= [spec.typical for effect in effects for spec in effect.parameters]
     moving = ~found.at_bound
     kept, left = -found.jacobian[:, moving], found.residual

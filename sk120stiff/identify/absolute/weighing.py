@@ -35,6 +35,7 @@ def pounds(found: Calibration) -> list[str]:
         replace(problem.measurements, absolute=lighter),
         problem.noise,
         sigma=problem.sigma,
+        common=problem.common,
     )
     try:
         tried = fitted(other)

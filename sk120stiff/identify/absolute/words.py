@@ -32,10 +32,18 @@ SHARED = "these positions tell it together with errors of geometry only"
 def known_calibration(found: Calibration) -> Model:
     """The fitted model with its uncertainty, as it is written to a file."""
     problem = found.problem
-    sigma = problem.stated_sigma or found.rms if len(problem.lengths) else None
+    sigma = None
+    if len(problem.lengths):
+        sigma = problem.stated_sigma or (noise_of(found) if problem.common else found.rms)
     source = f"{found.problem.load_cases.count} readings of positions"
     known = known_estimates(found, sigma, source)
     return found.model.known(replace(known, remainder=remainder_at_other_poses(found)))
+
+
+def noise_of(found: Calibration) -> float:
+    """What readings of one pose differ by beyond the model, rms [m or rad]."""
+    own = found.problem.of_channels.sigma[found.problem.counted]
+    return float(np.sqrt(np.mean(own**2))) * found.unit
 
 
 def gap_sentence(found: Calibration) -> str:
@@ -55,7 +63,12 @@ def gap_sentence(found: Calibration) -> str:
     if unstated:
         whole = len(unstated) == len(problem.channels.present)
         of = "" if whole else f" of {listed(unstated)}"
-        said += f" No uncertainty{of} is stated; the gap itself is taken for it."
+        said += f" No uncertainty{of} is stated; "
+        if problem.common and len(problem.lengths):
+            noise = f"{1e6 * noise_of(found):.3g} {problem.rms_unit}"
+            said += f"what differs between the readings of a pose tells it: {noise}."
+        else:
+            said += "the gap itself is taken for it."
         if whole:
             return said
         others = [kind for kind in problem.channels.present if kind not in unstated]
@@ -76,7 +89,7 @@ def gap_sentence(found: Calibration) -> str:
 def angle_gap(found: Calibration) -> Array:
     """(K,) what is left of every channel that is an angle [rad]."""
     problem = found.problem
-    return np.delete(found.residual * problem.of_channels.sigma, problem.lengths)
+    return np.delete(problem.of_channels.undo(found.residual), problem.lengths)
 
 
 def unseen(found: Calibration) -> dict[str, str]:

@@ -1,0 +1,84 @@
+"""How large the noise is, and what lies far beyond it, from what a fit of positions leaves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import stats
+
+from sk120stiff.arrays import Mask
+from sk120stiff.identify.absolute.pose_errors import Common, PoseWhitening, common_error
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.fit import Fit
+from sk120stiff.measurements import Measurements
+
+START = {  # m or rad
+    "position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4, "inclination": 1e-4,
+}  # fmt: skip
+SAME = 0.2  # change of the logarithm of a noise that is none
+FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is wild
+
+
+def of_poses(found: Fit) -> PoseProblem:
+    """The problem of a fit of poses."""
+    if not isinstance(found.problem, PoseProblem):
+        raise TypeError("a fit of poses")
+    return found.problem
+
+
+def learned(found: Fit) -> dict[str, float]:
+    """Standard size of what is left in each kind of channel, over what it states of itself."""
+    problem = of_poses(found)
+    gap = found.residual * problem.of_channels.sigma
+    out = dict(START)
+    share = len(gap) / max(found.degrees_of_freedom, 1)
+    for kind, part in zip(problem.channels.present, problem.channels.kinds, strict=True):
+        unit = problem.channels.scale(kind)
+        size = float(np.sqrt(np.mean((gap[part] / unit) ** 2) * share))
+        out[kind] = max(size, 1e-9)
+    return out
+
+
+def common_of(found: Fit) -> Common:
+    """What the joints of a pose stand off by, in what a fit leaves."""
+    problem = of_poses(found)
+    if len(np.unique(problem.load_cases.pose)) == problem.load_cases.count:
+        return Common(0.0, 1.0, 0.0)  # no pose was read twice
+    white = problem.of_channels
+    return common_error(
+        white.undo(found.residual),
+        white.undo(found.jacobian[:, ~found.at_bound]),
+        PoseWhitening(white.sigma, problem.by_pose, problem.pose_of_channels),
+        stated=found.sigma_known,
+    )
+
+
+def far_off(found: Fit, readings: Measurements, wild: Mask) -> Mask:
+    """(N,) rows whose gap no normal noise of the size of the others gives; others come back.
+
+    Args:
+        found: The fit.
+        readings: Those of the fit, or others.
+        wild: (N,) rows that were set aside before.
+    """
+    whole = readings.masked()
+    problem = replace(of_poses(found), measurements=whole, model=found.model)
+    gap = problem.channel_gap(found.model.values)[0] / problem.of_channels.sigma
+    count = np.bincount(problem.rows, minlength=whole.n_readings)
+    square = np.bincount(problem.rows, gap**2, minlength=whole.n_readings)
+    usual = np.sqrt(stats.chi2.ppf(0.5, np.maximum(count, 1)))  # the median of so many numbers
+    kept = ~wild[readings.use]
+    size = float(np.median((np.sqrt(square) / usual)[kept & (count > 0)]))
+    far = np.sqrt(square / np.maximum(count, 1)) > FAR * size
+    out = wild.copy()
+    if size > 0.0 and far.mean() < 0.1:
+        out[np.flatnonzero(readings.use)] = far
+    return out
+
+
+def alike(size: float, before: float) -> bool:
+    """Are two sizes one, as far as a fit needs to know?"""
+    if size == 0.0 or before == 0.0:
+        return size == before
+    return bool(abs(np.log(size / before)) < SAME)
