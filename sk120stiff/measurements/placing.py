@@ -8,6 +8,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.cloud import Cloud
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.placing_distances import place_distances
@@ -19,7 +20,7 @@ from sk120stiff.measurements.placing_slips import (
     with_sums,
 )
 from sk120stiff.measurements.registration import Registration
-from sk120stiff.robot import Robot
+from sk120stiff.robot import STANDARD_GRAVITY, Robot
 from sk120stiff.robot.rotations import rotation_vector
 
 FEWEST = 3  # positions that a frame can be registered from
@@ -71,6 +72,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     x = said.channels.position
     x = np.full((readings.n_readings, 3), np.nan) if x is None else x
     whole = np.flatnonzero(np.isfinite(x).all(axis=1) & readings.use)
+    whole = _lightest(readings, said, whole)
     if len(whole) < FEWEST:
         return _by_distances(robot, readings)
     free = said.fit_point
@@ -133,6 +135,16 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         distance=distance,
         notes=tuple(notes),
     )
+
+
+def _lightest(readings: Measurements, said: Absolute, rows: Index) -> Index:
+    """Of these rows those under the least load that their marker was read under at their pose."""
+    load = np.abs(said.payload) * STANDARD_GRAVITY + np.linalg.norm(readings.wrench[:, :3], axis=1)
+    where = zip((readings.pose[k] for k in rows), (said.markers[k] for k in rows), strict=True)
+    own = np.unique(np.array([f"{pose}\n{marker}" for pose, marker in where]), return_inverse=True)
+    least = np.full(len(own[0]), np.inf)
+    np.minimum.at(least, own[1], load[rows])
+    return np.asarray(rows[load[rows] <= least[own[1]]])
 
 
 def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:

@@ -36,6 +36,7 @@ class Arm:
     flank: float = 0.0  # N·m over which teeth take hold
     hardens: Array = field(default_factory=lambda: np.zeros(6))  # rad/(N·m)²
     weighs: bool = True
+    payload: float = 0.0  # kg, at the tool's origin
 
     def pose(self, q: Array) -> tuple[Array, Array, Array]:
         """Marker (N, 3), tool axes (N, 3, 3) and potential energy (N,) at true joint values."""
@@ -46,6 +47,7 @@ class Arm:
             R = R * Rotation.from_rotvec(AXES[k] * q[:, k, None])
             energy += MASSES[k] * G * (p + R.apply(CENTRES[k]))[:, 2]
         p = p + R.apply(TOOL)
+        energy += self.payload * G * p[:, 2]
         return p + R.apply(self.marker), R.as_matrix(), energy
 
     def stands(self, a: Array) -> tuple[Array, Array]:

@@ -14,7 +14,12 @@ from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import headline
 from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
-from sk120stiff.identify.absolute.remainder import remainder_entry, remainder_sentences
+from sk120stiff.identify.absolute.remainder import (
+    common_part,
+    remainder_entry,
+    remainder_sentences,
+)
+from sk120stiff.identify.absolute.words import gap_sentence, noise_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
@@ -95,10 +100,10 @@ def test_noise_alone_is_no_error_of_the_model(tmp_path: Path) -> None:
     assert told == [None] * 3
 
 
-def placed(folder: Path, a: Array, x: Array) -> Calibration:
+def placed(folder: Path, a: Array, x: Array, *, shared: bool = True) -> Calibration:
     m = readings(folder, a, x, FIT)
     model = Model(sk.load_robot(m.robot, base="base", tool="tool"))
-    return calibrate(model, m, geometry=False, waves=False)
+    return calibrate(model, m, geometry=False, waves=False, shared=shared)
 
 
 def test_repeats_tell_noise_from_what_poses_have_of_their_own(tmp_path: Path) -> None:
@@ -106,14 +111,18 @@ def test_repeats_tell_noise_from_what_poses_have_of_their_own(tmp_path: Path) ->
     a = np.repeat(poses(24, 5), 4, axis=0)
     own = 1e-4 * np.random.default_rng(1).normal(size=(24, 3))
     x = noisy(Arm().stands(a)[0], 4) + np.repeat(own, 4, axis=0)
-    plain = placed(tmp_path, a, x)
-    found = with_model_form(plain)
-    assert found.form is not None
-    size = found.form.share**0.5 * found.rms
+    found = with_model_form(placed(tmp_path, a, x))
+    assert found.form is None
+    size, low, high = common_part(found)
+    assert low < size < high < 1.5 * size
     assert size == pytest.approx(float(np.sqrt(np.mean(own**2))), rel=0.15)
-    assert found.rms * (1.0 - found.form.share) ** 0.5 == pytest.approx(SIGMA, rel=0.25)
-    assert 45 < found.form.independent < 100  # 72 numbers, not 288
+    assert noise_of(found) == pytest.approx(SIGMA, rel=0.1)
+    assert remainder_entry(found)["significant"]
+    said = " ".join((gap_sentence(found), *remainder_sentences(found)))
+    assert "what differs between the readings of a pose tells it" in said
+    assert "in common that no law explains" in said
     once = placed(tmp_path, a[::4], x.reshape(24, 4, 3).mean(axis=1))
+    plain = placed(tmp_path, a, x, shared=False)
     std = [
         np.array([f.model.parameter(f"tool_offset:tool.offset_{k}").std for k in "xyz"])
         for f in (once, plain, found)
