@@ -42,15 +42,15 @@ def smooth_part(final: Calibration, form: ModelForm) -> Size:
 
 
 def common_part(final: Calibration) -> Size:
-    """Rms per axis of what the readings of a pose have in common, where no noise is stated [m].
+    """Rms per axis of what the readings of a pose have in common [m].
 
-    That is what the gap holds beyond the noise. Of its 95 % interval every pose counts as often as
-    its joints move it, less what was estimated.
+    That is what the gap holds beyond the noise, as stated or as differences within poses tell it.
+    Of its 95 % interval every pose counts as often as its joints move it, less what was estimated.
     """
     problem = final.problem
     white, counted = problem.of_channels, problem.counted
     square = white.undo(final.residual)[counted] ** 2
-    noise = (final.unit * white.sigma[counted]) ** 2
+    noise = ((1.0 if final.sigma_known else final.unit) * white.sigma[counted]) ** 2
     poses = len(np.unique(problem.load_cases.pose))
     each = min(len(problem.rows) // poses, problem.by_joints.shape[1])
     freedom = max(poses * each - final.estimated, 1)
@@ -63,7 +63,7 @@ def left_beyond_noise(final: Calibration) -> Size | None:
     """Rms per axis beyond the noise and its 95 % interval; None where nothing tells the two."""
     form, stated = final.form, final.problem.stated_sigma
     if final.sigma_known and stated is not None:
-        return beyond(final, stated)
+        return common_part(final) if final.problem.common else beyond(final, stated)
     parts = [smooth_part(final, form)] if form is not None else []
     if final.problem.common:
         parts.append(common_part(final))
@@ -122,18 +122,25 @@ def remainder_sentences(final: Calibration) -> list[str]:
     if size is None:
         return []
     unit, stated = final.problem.rms_unit, final.sigma_known
+    own_course = "each pose is off by something of its own, as gears and bearings make it."
     said = []
-    if stated or final.form is not None:
-        own = size if stated or final.form is None else smooth_part(final, final.form)
-        said.append(in_words(own, unit, stated=stated))
-    if final.problem.common:
+    if stated:
+        said.append(in_words(size, unit, stated=True))
+    elif final.form is not None:
+        said.append(in_words(smooth_part(final, final.form), unit, stated=False))
+    if final.problem.common and stated:
+        said.append(
+            f"The readings of a pose have it in common, and no law explains it: {own_course}"
+        )
+    elif final.problem.common:
         best, low, high = (f"{1e6 * x:.3g}" for x in common_part(final))
         said.append(
             f"The readings of a pose have {best} {unit} (95 %: {low} to {high}) in common that no "
-            "law explains: each pose is off by something of its own, as gears and bearings make it."
+            f"law explains: {own_course}"
         )
     chance = chance_of_noise(final)
-    if final.sigma_known and final.form is None and chance is not None and chance < LEVEL:
+    alone = stated and final.form is None and not final.problem.common
+    if alone and chance is not None and chance < LEVEL:
         square, freedom = final.judged
         said.append(
             "It has no smooth course over the joints, as an error of the model has: rather the "

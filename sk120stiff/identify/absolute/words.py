@@ -74,9 +74,10 @@ def gap_sentence(found: Calibration) -> str:
         others = [kind for kind in problem.channels.present if kind not in unstated]
         said += f" Of {listed(others)}:"
     if found.exceeds:
+        wider = "hold what a pose's readings share" if problem.common else "are larger by as much"
         return (
             f"{said} That is {found.noise_factor:.3g} times the stated uncertainty: more is at "
-            "work than is in the model, and the standard errors are larger by as much."
+            f"work than is in the model, and the standard errors {wider}."
         )
     if found.misfit is not None and found.misfit[2] > SURELY and found.noise_factor < MUCH_LESS:
         return (
