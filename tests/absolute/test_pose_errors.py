@@ -13,13 +13,9 @@ from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.pose_errors import Common, PoseWhitening, common_error
 from sk120stiff.identify.absolute.words import noise_of
-from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
-from tests.absolute.arm import NAMES, Arm, Array, errors, poses, tracked, write
-
-SIGMA, OFF = 1.5e-5, 4e-5  # m of a reading; rad that every joint of every pose stands off by
-FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
-PLACES = {"A": (0.05, -0.08, 0.12), "B": (-0.07, 0.05, 0.10), "C": (0.02, 0.09, 0.18)}
+from tests.absolute.arm import Arm, Array, errors
+from tests.absolute.shared import OFF, SIGMA, campaign
 
 
 def drawn(seed: int, count: int = 12) -> tuple[PoseWhitening, Array]:
@@ -79,27 +75,6 @@ def test_noise_alone_has_nothing_in_common() -> None:
         )
         found = common_error(rng.normal(size=120), np.ones((120, 1)), whitening, stated=False)
         assert found.size == 0.0 and found.chance > 1e-4
-
-
-def campaign(
-    folder: Path, seed: int, count: int, *, loads: tuple[float, ...], markers: str, off: float = OFF
-) -> Measurements:
-    """Every marker under every payload at poses whose joints are not where encoders read."""
-    a, rng, arm = poses(count, seed), np.random.default_rng(seed), errors(seed)
-    q = a + off * rng.normal(size=a.shape)
-    rows, cells, seen = [], [], []
-    for load in loads:
-        for name in markers:
-            at = replace(arm, marker=np.array(PLACES[name]), payload=load)
-            seen.append(tracked(at.stands(q)[0]))
-            rows.append(a)
-            cells += [f"{name},{load},p{k}" for k in range(len(a))]
-    x = np.concatenate(seen)
-    x += SIGMA * rng.normal(size=x.shape)
-    settings = FIT + "payload: {point: {xyz: [0, 0, 0], unit: mm}}\n"
-    more = {"more": ",marker,payload[kg],pose", "cells": cells}
-    data = sk.read(write(folder, np.concatenate(rows), x, settings, **more))
-    return data.with_joints(NAMES)
 
 
 def springs(found: Calibration) -> tuple[Array, Array]:
