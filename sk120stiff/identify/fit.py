@@ -174,9 +174,9 @@ class Fit:
         That is everything, or the readings of known noise among others whose size is fitted: their
         number less the share of the parameters that they determine (trace of the hat matrix).
         """
-        return self.held_against(self.residual)
+        return self._held_against(self.residual)
 
-    def held_against(self, left: Array) -> tuple[float, int]:
+    def _held_against(self, left: Array) -> tuple[float, int]:
         """Sum of squares and degrees of freedom of what is left (M,) in units of the noise."""
         own = self.problem.judged
         if own is None:

@@ -77,7 +77,7 @@ class Calibration(Fit):
     def judged(self) -> tuple[float, int]:
         """See `Fit.judged`: against the noise alone, without what a pose's readings share."""
         white = self.problem.of_channels
-        return self.held_against(white.undo(self.residual) / white.sigma)
+        return self._held_against(white.undo(self.residual) / white.sigma)
 
     @cached_property
     def chance_of_common(self) -> float:
@@ -89,7 +89,7 @@ class Calibration(Fit):
         """See `Fit.unit`; what a pose's readings share is in the whitened derivative already."""
         if self.problem.common == 0.0:
             return super().unit
-        square, freedom = self.held_against(self.residual)
+        square, freedom = self._held_against(self.residual)
         if freedom < 1:
             return float(np.inf)
         factor = square / freedom
