@@ -110,7 +110,8 @@ def command(
             where displacements are made of positions in other axes]
         format_name (NAME): sa, leica, polyworks, robodk, delmia, figaroh, rosbag or points.
             [default: told by the content]
-        marker (NAME): Which marker, where there are several (of a column marker, or 2 of x1, x2).
+        marker (NAME): One marker alone, where there are several (of a column marker, or 2 of x1,
+            x2). [default: all, as positions]
         sheet (NAME): Which sheet of a workbook.
         topic (NAME): Which topic of a recording has positions.
     """
