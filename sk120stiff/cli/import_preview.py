@@ -28,8 +28,8 @@ FOLLOWS = {
 OF_SEVERAL = (
     "{rows} rows at {useful} of {poses} poses differ in load from the lightest of their pose. Of "
     "several markers they are taken as positions, not subtracted from one another: geometry, "
-    "markers and springs come out of one fit. Where the geometry leaves more than the noise, the "
-    "differences of one marker tell springs better: --marker."
+    "markers and springs come out of one fit, in which what a pose has of its own is one error of "
+    "all its readings."
 )
 UNKNOWN = (
     "They stay in the tracker's own axes (position: {frame: unknown}): 'identify' and 'explain' "
