@@ -303,7 +303,7 @@ def _problem(
     stated = channels is not None and any(channels.stated(kind) for kind in channels.present)
     noise = NoiseModel(START["position"], zero="separate", freedom=np.inf if stated else 0)
     problem = PoseProblem(model, used, noise, sigma=sigma, common=common)
-    own = problem.of_channels.sigma[problem.counted]  # rows may state their own
+    own = problem.sigma_of_channels[problem.counted]  # rows may state their own
     return replace(problem, noise=replace(noise, sigma=float(np.sqrt(np.mean(own**2)))))
 
 

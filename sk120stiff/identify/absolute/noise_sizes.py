@@ -66,7 +66,7 @@ def far_off(found: Fit, readings: Measurements, wild: Mask) -> Mask:
     """
     whole = readings.masked()
     problem = replace(of_poses(found), measurements=whole, model=found.model)
-    gap = problem.channel_gap(found.model.values)[0] / problem.of_channels.sigma
+    gap = problem.channel_gap(found.model.values)[0] / problem.sigma_of_channels
     count = np.bincount(problem.rows, minlength=whole.n_readings)
     square = np.bincount(problem.rows, gap**2, minlength=whole.n_readings)
     usual = np.sqrt(stats.chi2.ppf(0.5, np.maximum(count, 1)))  # the median of so many numbers

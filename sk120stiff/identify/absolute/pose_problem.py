@@ -85,13 +85,18 @@ class PoseProblem(Problem):
         return f"{self.unit} rms" + (" per axis" if set(told) <= set(OF_AXES) else "")
 
     @cached_property
-    def of_channels(self) -> PoseWhitening:
-        """How uncertain every channel is, and what those of a pose have in common."""
+    def sigma_of_channels(self) -> Array:
+        """(M,) standard uncertainty of every channel by itself [m or rad]."""
         scales = []
         for kind in self.channels.present:
             scale = self.channels.scale(kind)
             scales.append(scale if self.channels.stated(kind) else scale * self.sigma[kind])
-        sigma = np.concatenate(scales)
+        return np.concatenate(scales)
+
+    @cached_property
+    def of_channels(self) -> PoseWhitening:
+        """How uncertain every channel is, and what those of a pose have in common."""
+        sigma = self.sigma_of_channels
         if self.common == 0.0:
             return PoseWhitening(sigma)
         return PoseWhitening(sigma, self.by_pose, self.pose_of_channels, self.common)
@@ -153,7 +158,7 @@ class PoseProblem(Problem):
     @property
     def stated_sigma(self) -> float | None:
         """Stated uncertainty of what `counted` tells [m or rad], rms; None where none is."""
-        own = self.of_channels.sigma[self.counted][self.known[self.counted]]
+        own = self.sigma_of_channels[self.counted][self.known[self.counted]]
         return float(np.sqrt(np.mean(own**2))) if len(own) else None
 
     @property
