@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 MOVED = 1e-4  # rad or m: a joint that moves by less has not changed sides
 
 IDLE = -1  # in a history: no load, at a zero reading or before a repeat
+
+# What was worked out of the load cases of these readings serves every fit to them.
+_of_readings: WeakKeyDictionary[Measurements, LoadCases] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +163,19 @@ class LoadCases:
         """`Screws` of the unloaded, rigid robot at the measured point."""
         return self.robot.screws(self.a, point=self.point)
 
+    def blocks(self, size: int) -> tuple[LoadCases, ...]:
+        """The readings in stretches of so many, the same objects every time."""
+        if self.count <= size:
+            return (self,)
+        if size not in self._in_blocks:
+            starts = range(0, self.count, size)
+            self._in_blocks[size] = tuple(self.rows(slice(k, k + size)) for k in starts)
+        return self._in_blocks[size]
+
+    @cached_property
+    def _in_blocks(self) -> dict[int, tuple[LoadCases, ...]]:
+        return {}
+
     def rows(self, pick: slice | Index | Mask) -> LoadCases:
         """Part of the readings."""
 
@@ -223,11 +240,18 @@ def load_case(
 
 
 def load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
-    """Readings of a measurement file on a robot.
+    """Readings of a measurement file on a robot; the same object as long as both are the same.
 
     Raises:
         InputError: The file's joints are not the robot's actuated joints.
     """
+    known = _of_readings.get(measurements)
+    if known is None or known.robot is not robot:
+        known = _of_readings[measurements] = _load_cases_of(robot, measurements)
+    return known
+
+
+def _load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
     measurements = measurements.with_joints(robot.actuated, robot.kinds)
     a = measurements.joints
     rotation = robot.screws(a).rotation

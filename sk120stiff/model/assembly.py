@@ -22,7 +22,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import (
     Effect,
     Elastic,
@@ -236,17 +236,28 @@ class Assembly:
         soft: Index,
         near: Array | None,
     ) -> Equilibrium:
-        """The arm before the load comes, bent by its own weight only."""
-        return equilibrium(
-            self.mechanism,
-            z_0,
-            np.zeros((len(z_0), 6)),
-            lambda torques: (np.zeros_like(torques), np.zeros((z_0.shape[1],) * 2)),
-            point=load_cases.point,
-            soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
-            weight=weight,
-            near=near,
-        )
+        """The arm before the load comes, bent by its own weight only.
+
+        Under one load after the other it begins alike: where it rests is sought once.
+        """
+        points = np.broadcast_to(load_cases.point, (len(z_0), 3))
+
+        def hanging(rows: slice | Mask, near: Array | None) -> Equilibrium:
+            return equilibrium(
+                self.mechanism,
+                z_0[rows],
+                np.zeros((len(z_0[rows]), 6)),
+                lambda torques: (np.zeros_like(torques), np.zeros((z_0.shape[1],) * 2)),
+                point=points[rows],
+                soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
+                weight=weight,
+                near=near,
+            )
+
+        fresh = np.append(True, (z_0[1:] != z_0[:-1]).any(axis=1))
+        if weight is not None and near is None and weight.compliance.ndim == 2 and not fresh.all():
+            near = hanging(fresh, None).z[np.cumsum(fresh) - 1]
+        return hanging(slice(None), near)
 
     def of(self, kind: type[LoadError] | type[ReadingError]) -> list[tuple[Misreading, slice]]:
         """The misreadings of a kind, each with its part of the vector of values."""
@@ -376,13 +387,8 @@ class Assembly:
         loaded = rest.screws.at(load_cases.force_point)
         per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, k, 6)
         for part, columns in solution.loads.columns:
-            turned = np.concatenate(
-                [
-                    np.einsum("nij,njp->nip", load_cases.rotation, columns[:, :3]),
-                    np.einsum("nij,njp->nip", load_cases.rotation, columns[:, 3:]),
-                ],
-                axis=1,
-            )
+            halves = columns.reshape(len(columns), 2, 3, -1)  # forces, moments
+            turned = np.einsum("nij,nhjp->nhip", load_cases.rotation, halves).reshape(columns.shape)
             out[:, :, part] += per_wrench @ turned
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff.identify import Fit, fit, held_out, pose_parts
+from sk120stiff.identify import Fit, fit, held_out, pose_parts, refitted
 from sk120stiff.measurements import Measurements, NoiseModel
 from tests.identify.conftest import readings_of
 
@@ -66,3 +66,12 @@ def test_a_part_that_is_not_predicted_is_an_error(springs, readings) -> None:
 
     with pytest.raises(ValueError, match="not predicted"):
         held_out(readings, learn)
+
+
+def test_of_many_poses_a_fifth_is_left_out_at_once(springs) -> None:
+    many = readings_of(springs, poses=100, seed=4)
+    (error,) = held_out(many, refitted(springs, noise=NOISE))
+    assert error.folds == 5
+    (fewer,) = held_out(many.select(many.pose_index < 99), refitted(springs, noise=NOISE))
+    assert fewer.folds == 10
+    assert fewer.rms == pytest.approx(error.rms, rel=0.1)

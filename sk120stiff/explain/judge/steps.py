@@ -73,25 +73,27 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
     whole = found.base.problem.noise
 
     def searched(
-        base: Fit, counts: Sequence[int], near: Linearised | None = None
+        base: Fit, counts: Sequence[int], near: Linearised | None = None, about: Fit | None = None
     ) -> tuple[list[Fit], Linearised | None]:
         if not any(counts):
-            return [with_settled_sizes(base) for _ in counts], near
+            return [with_settled_sizes(base)] * len(counts), near
         regression = regression_at(
             base, found.candidates, ids, alpha=alpha, prior=found.regression.prior, near=near
         )
         base, regression = with_own_sizes(base, regression)
         ranked = beam_search(regression, width=NARROW, max_effects=max(counts))
         return [
-            _first_fit(base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count])
+            _first_fit(
+                base, [laws_of(regression, m) for m in ranked if len(m.effects) <= count], about
+            )
             for count in counts
         ], regression.linearised
 
     def beside_what_is_left(
-        at: Fit, counts: Sequence[int], near: Linearised | None = None
+        at: Fit, counts: Sequence[int], near: Linearised | None = None, about: Fit | None = None
     ) -> tuple[list[Fit], Linearised | None]:
         base = fit(start, at.problem.measurements, noise=with_model_form(at))
-        return searched(base, counts, near)
+        return searched(base, counts, near, about)
 
     def learn(readings: Measurements) -> list[Fit]:
         base = fit(start, readings)
@@ -101,7 +103,7 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
         if not any(counts):
             return once
         most = once[int(np.argmax(counts))]
-        again, _ = beside_what_is_left(asked_anew(most, base), counts, near)
+        again, _ = beside_what_is_left(asked_anew(most, base), counts, near, most)
         return [
             second if count else first
             for count, first, second in zip(counts, once, again, strict=True)
@@ -110,11 +112,15 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
     return learn
 
 
-def _first_fit(base: Fit, choices: Sequence[Sequence[Effect]]) -> Fit:
-    """The first of some sets of effects that can be fitted at exact equilibrium."""
+def _first_fit(base: Fit, choices: Sequence[Sequence[Effect]], about: Fit | None) -> Fit:
+    """The first of some sets of effects that can be fitted at exact equilibrium.
+
+    Values are sought about those of a fit to the same readings, if there is one with such effects.
+    """
     for effects in choices[:TRIED]:
+        held = about is not None and set(effects) <= set(about.model.effects)
         try:
-            return with_settled_sizes(refit(base, effects))
+            return with_settled_sizes(refit(base, effects, about if held else None))
         except Refusal:
             continue
     return with_settled_sizes(base)

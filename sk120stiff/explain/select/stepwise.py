@@ -193,10 +193,12 @@ def _start(problem: Problem, near: Fit | None) -> tuple[Array, float]:
     """(P_free,) the best values to first order, most of them on their bounds; the misfit there.
 
     About the values of a fit that is near, or about an arm that does not move; a misread
-    displacement shows once there is one, and is seen about what the base model makes of it.
+    displacement shows once there is one, and is seen about what the base model makes of it. What
+    shows in neither, like the spring of a last joint about which the point turns, stays where it
+    is.
 
     Raises:
-        Refusal: There is a parameter that shows in neither.
+        Refusal: A parameter shows in one of the two only, where the values are sought in the other.
     """
     x = np.zeros(len(problem.free))
     if near is not None:
@@ -204,21 +206,28 @@ def _start(problem: Problem, near: Fit | None) -> tuple[Array, float]:
         own = [known.get(p.name, p.internal) for p in problem.model.parameters]
         x = np.clip(np.array(own)[problem.free] / problem.scale, *problem.bounds)
     residual, jacobian = problem.evaluate(x)
-    at_rest = near is None
-    if at_rest and not _sizes(jacobian).all():
-        at_rest = False
-        x = np.clip(problem.start, *problem.bounds)
-        residual, jacobian = problem.evaluate(x)
     size = _sizes(jacobian)
+    at_rest = near is None
     if not size.all():
-        raise Refusal("a parameter does not show to first order")
-    rows, wanted = jacobian / size, -residual
+        moved = np.clip(problem.start, *problem.bounds)
+        there = problem.evaluate(moved)
+        shown = _sizes(there[1])
+        if not (shown > 0.0)[size == 0.0].any():  # nowhere: it stays at its start
+            x = np.where(size > 0.0, x, moved)
+        elif near is None and (shown > 0.0)[size > 0.0].all():
+            at_rest, x, (residual, jacobian), size = False, moved, there, shown
+        else:
+            raise Refusal("a parameter does not show to first order")
+    seen = np.flatnonzero(size)
+    rows, wanted = jacobian[:, seen] / size[seen], -residual
     if not at_rest:  # drawn towards zero by what is plausible, where no reading tells
-        rows = np.vstack([rows, np.diag(1.0 / (problem.span * size))])
-        wanted = -np.concatenate([residual, x / problem.span])
-    bounds = tuple((bound - x) * size for bound in problem.bounds)
+        span = problem.span[seen]
+        rows = np.vstack([rows, np.diag(1.0 / (span * size[seen]))])
+        wanted = -np.concatenate([residual, x[seen] / span])
+    bounds = tuple((bound - x)[seen] * size[seen] for bound in problem.bounds)
+    step = np.zeros(len(x))
     with np.errstate(invalid="ignore"):  # scipy asks how far it is to a bound at infinity
-        step = lsq_linear(rows, wanted, bounds).x / size
+        step[seen] = lsq_linear(rows, wanted, bounds).x / size[seen]
     return x + step, _misfit(residual + jacobian @ step)
 
 

@@ -21,6 +21,8 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 
 FOLDS = 10  # parts in which poses are left out, as is usual
+FEWER = 5  # of many poses, as usual: a fifth of them is little missed
+MANY = 100  # poses from which on there are fewer parts, in half the time
 SAME = 9  # decimals to which joint values of one and the same posture agree [rad or m]
 
 #: From readings to fits: of one model, or of several that were learned together.
@@ -77,7 +79,7 @@ def held_out(
     measurements: Measurements,
     learn: Learn,
     *,
-    folds: int = FOLDS,
+    folds: int | None = None,
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[HeldOut, ...]:
@@ -86,7 +88,8 @@ def held_out(
     Args:
         measurements: Readings with displacements; masked ones take no part.
         learn: The way from readings to fits, see `refitted`.
-        folds: Number of parts, at most; with fewer poses every pose is left out by itself.
+        folds: Number of parts, at most; with fewer poses every pose is left out by itself. Default:
+            `FOLDS`, or `FEWER` of `MANY` poses.
         seed: Of the draw of the parts.
         progress: Called as ``progress(done, total)``.
 
@@ -99,7 +102,8 @@ def held_out(
     """
     used = measurements.masked()
     measured = used.displacement
-    part = pose_parts(used, folds=folds, seed=seed)[used.pose_index]
+    parts = folds or (FOLDS if len(used.poses) < MANY else FEWER)
+    part = pose_parts(used, folds=parts, seed=seed)[used.pose_index]
     count = int(part.max(initial=0)) + 1
     if measured is None or count < 2:
         raise InputError(
