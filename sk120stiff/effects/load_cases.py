@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Integers, Mask
+from sk120stiff.effects.latest import Latest
 from sk120stiff.robot import Robot, Screws, VirtualJoint
 from sk120stiff.stiffness.wrench import wrenches
 
@@ -157,6 +158,11 @@ class LoadCases:
         longest = max((len(steps) for steps in series), default=0)
         padded = [steps + [IDLE] * (longest - len(steps)) for steps in series]
         return np.array(padded, dtype=np.intp).T, zero, own
+
+    @cached_property
+    def latest(self) -> Latest:
+        """What was predicted of them last."""
+        return Latest()
 
     @cached_property
     def nominal(self) -> Screws:

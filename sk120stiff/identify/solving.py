@@ -18,6 +18,7 @@ from sk120stiff.measurements import EXACT
 NEAR = 0.05  # standard deviations within which draws and instruments are as likely as can be
 ROUNDS = 5  # of weighing draws, whose size is smaller once others have what is theirs
 HALVINGS = 12  # of estimates under which the arm has no equilibrium
+VALLEY = 40  # steps after which a gain that is still on its way leads down a valley; 5 are usual
 
 
 def solve(problem: Problem, *, method: Method = "trf") -> Fit:
@@ -43,10 +44,12 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
 
 def solve_near(problem: Problem, x: Array) -> Fit:
     """Solve a problem whose answer lies near scaled values `x` that are known."""
+    calibrated = bool(np.isfinite(problem.usual).any())
+    steps = VALLEY if calibrated else None
     try:
-        found = polish(problem.evaluate, x, problem.bounds, problem.span)
+        found = polish(problem.evaluate, x, problem.bounds, problem.span, steps=steps)
     except Refusal:
-        if not np.isfinite(problem.usual).any():
+        if not calibrated:
             raise
         found = _held_by_calibrations(problem, x)
     return with_values(_likeliest_before(_as_fit(problem, found)))

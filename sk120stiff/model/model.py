@@ -22,7 +22,6 @@ from sk120stiff.effects import (
 )
 from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.model.assembly import Assembly
-from sk120stiff.model.latest import latest
 from sk120stiff.model.parameter import Parameter, parameter_frame
 from sk120stiff.model.standing import Solution
 from sk120stiff.model.uncertainty import Uncertainty
@@ -277,7 +276,7 @@ class Model:
             (1, 3)
         """
         given = self.values if values is None else values
-        known = latest(load_cases).get(self.effects, given)
+        known = load_cases.latest.get(self.effects, given)
         if known is not None:
             return known[0].copy()
         return np.concatenate(
@@ -298,7 +297,7 @@ class Model:
             (1, 3, 3)
         """
         given = self.values if values is None else values
-        known = latest(load_cases).get(self.effects, given)
+        known = load_cases.latest.get(self.effects, given)
         if known is None:
             displacement, derivative = [], []
             for part in self._blocks(load_cases):
@@ -306,7 +305,7 @@ class Model:
                 displacement.append(solution.displacement)
                 derivative.append(self.assembly.sensitivities(solution, given))
             known = np.concatenate(displacement), np.concatenate(derivative)
-            latest(load_cases).keep(self.effects, given, known)
+            load_cases.latest.keep(self.effects, given, known)
         return known[0].copy(), known[1].copy()
 
     def _blocks(self, load_cases: LoadCases) -> tuple[LoadCases, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 import sk120stiff as sk
 from sk120stiff.effects import load_case, load_cases_of
-from sk120stiff.model.latest import KEPT, latest
+from sk120stiff.effects.latest import KEPT
 
 HOME = sk.bundled_robots()["motoman_sk120"]
 MODEL = sk.base_model(sk.load_robot("motoman_sk120"))
@@ -43,12 +43,22 @@ def test_few_are_kept_and_none_outlives_its_readings() -> None:
     cases = load_case(MODEL.robot, POSES, LOADS)
     for factor in range(1, KEPT + 3):
         MODEL.predict_with_sensitivities(cases, factor * MODEL.values)
-    assert len(latest(cases).known) == KEPT
-    assert latest(cases).get(MODEL.effects, MODEL.values) is None
+    assert len(cases.latest.known) == KEPT
+    assert cases.latest.get(MODEL.effects, MODEL.values) is None
     gone = weakref.ref(cases)
     del cases
     gc.collect()
     assert gone() is None
+
+
+def test_readings_do_not_outlive_an_explanation() -> None:
+    readings = sk.read(HOME / "data/table2_measured.csv")
+    assert sk.explain(MODEL, readings).verdict == "none"
+    gone = weakref.ref(readings), weakref.ref(load_cases_of(MODEL.robot, readings))
+    del readings
+    gc.collect()
+    assert gone[0]() is None
+    assert gone[1]() is None
 
 
 def test_readings_have_the_same_load_cases_as_long_as_the_robot_is_the_same() -> None:

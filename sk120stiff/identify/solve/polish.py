@@ -60,6 +60,7 @@ def polish(
     span: Array,
     *,
     fine: float = FINE,
+    steps: int | None = None,
 ) -> Minimum:
     """Least squares within bounds from a start that is near.
 
@@ -70,6 +71,7 @@ def polish(
         bounds: Lower and upper (P,).
         span: (P,) sizes of the parameters beyond which they are implausible.
         fine: Relative step at which nothing is left to gain.
+        steps: How many there may be. Default: `STEPS`, and four for every parameter.
 
     Raises:
         Refusal: The steps do not become small, or the model cannot be evaluated at the start.
@@ -80,7 +82,7 @@ def polish(
     held = _pushed_out(x, residual, jacobian, bounds)
     curvature = np.zeros((len(x), len(x)))
     misfit = np.inf
-    for _ in range(STEPS + 4 * len(x)):
+    for _ in range(STEPS + 4 * len(x) if steps is None else steps):
         if count >= due:  # a law with jumps lets the steps creep on for ever
             due = count + PATIENCE
             fallen, misfit = misfit - float(residual @ residual), float(residual @ residual)

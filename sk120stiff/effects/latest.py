@@ -1,37 +1,35 @@
 """The last few predictions of the same readings, which are often asked for once more.
 
 A fit ends where its solver ended; its gap, its errors under another noise and the start of the
-next fit ask for the same model at the same values again.
+next fit ask for the same effects at the same values again.
 """
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from threading import Lock
-from weakref import WeakKeyDictionary
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect, LoadCases
 
 KEPT = 4  # predictions of the same readings
 LARGEST = 4_000_000  # numbers in one that is kept, 32 MB
 
 Prediction = tuple[Array, Array]
-Key = tuple[tuple[Effect, ...], bytes]
 
 
 @dataclass(frozen=True, eq=False)
 class Latest:
     """Predictions with their sensitivities, by effects and values, the oldest first."""
 
-    known: dict[Key, Prediction] = field(default_factory=dict)
+    known: dict[tuple[Hashable, bytes], Prediction] = field(default_factory=dict)
     lock: Lock = field(default_factory=Lock)
 
-    def get(self, effects: tuple[Effect, ...], values: Array) -> Prediction | None:
+    def get(self, effects: Hashable, values: Array) -> Prediction | None:
         """(N, 3) and (N, 3, P) of these effects at these values (P,), if they are still known."""
         return self.known.get((effects, values.tobytes()))
 
-    def keep(self, effects: tuple[Effect, ...], values: Array, found: Prediction) -> None:
+    def keep(self, effects: Hashable, values: Array, found: Prediction) -> None:
         """Keep a prediction in the place of the oldest."""
         if found[1].size > LARGEST:
             return
@@ -39,14 +37,3 @@ class Latest:
             self.known[effects, values.tobytes()] = found
             while len(self.known) > KEPT:
                 del self.known[next(iter(self.known))]
-
-
-_of_load_cases: WeakKeyDictionary[LoadCases, Latest] = WeakKeyDictionary()
-
-
-def latest(load_cases: LoadCases) -> Latest:
-    """What is still known of these readings."""
-    found = _of_load_cases.get(load_cases)
-    if found is None:
-        found = _of_load_cases.setdefault(load_cases, Latest())
-    return found
