@@ -163,6 +163,10 @@ def tasks(seconds: float) -> Iterator[Row]:
         which = f"{candidates} kinds of effect" if candidates else "the whole catalogue"
         found = selection(lambda count=count, some=candidates: jobs.explanation(count, some))
         yield Row(group, f"{count} readings, {which}", found[0], "s", found[1])
+    for count in (100, 500, 2_000):
+        found = selection(lambda count=count: jobs.explanation(count, 0, remainder=0.06))
+        what = f"{count:,} readings of an arm that keeps to no law within 6 %"
+        yield Row(group, what, found[0], "s", found[1])
     found = selection(lambda: jobs.live_frame(seconds) * 1e3)
     yield Row("view", "one request of the live page, answered", found[0], "ms", found[1])
 
