@@ -93,10 +93,10 @@ def test_predictions_for_reported_loads_are_none_the_worse(found: Fit, truth: Mo
 def test_a_search_that_ends_nowhere_is_made_with_calibrations(
     found: Fit, springs: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lost(evaluate: Evaluate, *rest: Any) -> Minimum:
+    def lost(evaluate: Evaluate, *rest: Any, **options: Any) -> Minimum:
         if getattr(evaluate, "__func__", None) is Problem.evaluate:
             raise Refusal("the least-squares fit did not converge")
-        return polish(evaluate, *rest)
+        return polish(evaluate, *rest, **options)
 
     monkeypatch.setattr(solving, "polish", lost)
     again = solving.solve_near(found.problem, found.x)
@@ -105,6 +105,27 @@ def test_a_search_that_ends_nowhere_is_made_with_calibrations(
     plain = Problem(springs, found.problem.measurements, found.problem.noise)
     with pytest.raises(Refusal, match="did not converge"):
         solving.solve_near(plain, found.x[:3])
+
+
+def test_a_search_that_creeps_does_not_creep_for_long(
+    found: Fit, springs: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int | None] = []
+
+    def counted(*rest: Any, steps: int | None = None, **options: Any) -> Minimum:
+        asked.append(steps)
+        return polish(*rest, steps=steps, **options)
+
+    monkeypatch.setattr(solving, "polish", counted)
+    solving.solve_near(found.problem, found.x)
+    assert asked[0] == solving.VALLEY
+    plain = Problem(springs, found.problem.measurements, found.problem.noise)
+    asked.clear()
+    solving.solve_near(plain, found.x[:3])
+    assert asked == [None]
+    with pytest.raises(Refusal, match="did not converge"):
+        polish(found.problem.evaluate, 3.0 * found.x, found.problem.bounds, found.problem.span,
+               steps=1)  # fmt: skip
 
 
 def test_an_axis_along_which_nothing_pulled_stays_untold(springs: Model, robot: Robot) -> None:
