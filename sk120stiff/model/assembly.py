@@ -240,7 +240,7 @@ class Assembly:
 
         Under one load after the other it begins alike: where it rests is sought once.
         """
-        points = np.broadcast_to(load_cases.point, (len(z_0), 3))
+        points = load_cases.point
 
         def hanging(rows: slice | Mask, near: Array | None) -> Equilibrium:
             return equilibrium(
@@ -248,7 +248,7 @@ class Assembly:
                 z_0[rows],
                 np.zeros((len(z_0[rows]), 6)),
                 lambda torques: (np.zeros_like(torques), np.zeros((z_0.shape[1],) * 2)),
-                point=points[rows],
+                point=points if points.ndim == 1 else points[rows],
                 soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
                 weight=weight,
                 near=near,
