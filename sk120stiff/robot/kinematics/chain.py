@@ -188,6 +188,8 @@ class Chain:
         """
         batch = q.shape[:-1]
         flat = q.reshape(int(np.prod(batch, dtype=int)), self.m)
+        if len(flat) == 1:  # a product with one column is rounded otherwise than with many
+            return self.sweep(np.repeat(flat, 2, axis=0)).of_first(batch)
         moving: Mask = np.asarray(flat.any(axis=0))
         value = np.ascontiguousarray(flat[:, moving].T)
         sines, versines = np.sin(value), 1.0 - np.cos(value)
@@ -265,3 +267,9 @@ class Sweep(NamedTuple):
     rotation: Array
     position: Array
     centres: Array | None
+
+    def of_first(self, batch: tuple[int, ...]) -> Sweep:
+        """The first pose alone, in the shape of a batch of one."""
+        axes, origins, rotation, position = (x[:1].reshape(*batch, *x.shape[1:]) for x in self[:4])
+        centres = None if self.centres is None else self.centres[:1].reshape(axes.shape)
+        return Sweep(axes, origins, rotation, position, centres)
