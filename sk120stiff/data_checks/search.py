@@ -125,7 +125,7 @@ def _one_by_one(start: Tried, enough: float) -> tuple[Tried, Correction | None]:
 
 def as_it_stands(sheet: Sheet) -> Tried:
     """The sheet without a correction."""
-    return Tried((), sheet, passive(_columns(sheet), sheet.measured))
+    return Tried((), sheet, passive(_columns(sheet, sheet.told), sheet.measured))
 
 
 def _single(sheet: Sheet) -> Iterator[Correction]:
@@ -135,7 +135,8 @@ def _single(sheet: Sheet) -> Iterator[Correction]:
 
 
 def _tried(now: Tried, corrections: Iterable[Correction]) -> Iterator[Tried]:
-    known = _columns(now.sheet)
+    told = now.sheet.told
+    known = _columns(now.sheet, told)
     for correction in corrections:
         sheet = correction.mend(now.sheet)
         own = known
@@ -143,17 +144,16 @@ def _tried(now: Tried, corrections: Iterable[Correction]) -> Iterator[Tried]:
             if not sheet.exists():
                 continue
             try:
-                own = _columns(sheet)
+                own = _columns(sheet, told)
             except ToolkitError:
                 continue  # the arm cannot stand so
         yield Tried((*now.corrections, correction), sheet, passive(own, sheet.measured))
 
 
-def _columns(sheet: Sheet) -> Array:
-    """Unit displacements; of few readings only those of the drives, or they would explain all."""
+def _columns(sheet: Sheet, told: int) -> Array:
+    """Unit displacements; where little was told only of the drives, or they would explain all."""
     columns = sheet.columns()
-    enough = int(np.isfinite(sheet.measured).sum()) >= columns.shape[2] + SPARE
-    return columns if enough else columns[:, :, : sheet.robot.n]
+    return columns if told >= columns.shape[2] + SPARE else columns[:, :, : sheet.robot.n]
 
 
 def _clearly(now: Tried, other: Tried, ratio: float) -> bool:
@@ -161,7 +161,7 @@ def _clearly(now: Tried, other: Tried, ratio: float) -> bool:
     if other.left <= 0.0:
         return now.left > 0.0
     gained = np.log(now.left / other.left)
-    return bool(gained > np.log(ratio) and other.found.count * gained > LUCK)
+    return bool(gained > np.log(ratio) and now.sheet.told * gained > LUCK)
 
 
 def _joints_together(start: Tried) -> Tried | None:
@@ -190,8 +190,9 @@ def _joints_together(start: Tried) -> Tried | None:
 
 def _all_of(corrections: tuple[Correction, ...], sheet: Sheet) -> Tried | None:
     """The sheet with all corrections, in their order; None if the arm cannot stand so."""
+    told = sheet.told
     for correction in corrections:
         sheet = correction.mend(sheet)
     if not sheet.exists():
         return None
-    return Tried(corrections, sheet, passive(_columns(sheet), sheet.measured))
+    return Tried(corrections, sheet, passive(_columns(sheet, told), sheet.measured))

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.data_checks.passive import unit_displacements
@@ -15,6 +19,7 @@ from sk120stiff.robot import Robot, Screws
 MOST = 2000  # rows that tell what is wrong with a file as well as all of them
 STRETCH = 100  # rows that are taken together, so that rows that moved still have their neighbours
 APART = 2  # rows between stretches, as far as a row is sought
+ALIKE = 0.01  # rad or m, and of a unit load: nearer to one another rows tell the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +64,27 @@ class Sheet:
     def moves(self) -> bool:
         """Any reading differs from zero."""
         return bool(np.nan_to_num(self.measured).any())
+
+    @cached_property
+    def told(self) -> int:
+        """Numbers read that could tell something of their own.
+
+        Larger loads along one line at one pose move the point further, and the other way with the
+        opposite sign: where the law of an arm is not quite right, it is off alike under all.
+        """
+        load = self.wrench[self.kept]
+        length = np.linalg.norm(load, axis=1, keepdims=True)
+        line = load / np.where(length > 0.0, length, 1.0)
+        largest = np.abs(line).argmax(axis=1)[:, None]
+        line *= np.sign(np.take_along_axis(line, largest, axis=1))
+        near = cKDTree(np.hstack([self.joints[self.kept], line])).query_pairs(
+            ALIKE, p=np.inf, output_type="ndarray"
+        )
+        links = coo_array((np.ones(len(near)), near.T), shape=(len(load), len(load)))
+        groups, group = connected_components(links, directed=False)
+        read = np.zeros((groups, 3), dtype=bool)
+        np.logical_or.at(read, group, np.isfinite(self.measured))
+        return int(read.sum())
 
     def same_columns(self, other: Sheet) -> bool:
         """Would unit compliances displace the point just as on the other sheet?"""

@@ -3,8 +3,13 @@
 The long table is scripts/11_data_checks.py.
 """
 
+import numpy as np
 import pytest
 
+from sk120stiff.data_checks.search import find_slip
+from sk120stiff.data_checks.sheet import sheet_of
+from sk120stiff.measurements import Measurements
+from tests.data_checks.readings import ur5
 from tests.data_checks.table import blind_readings, sound_readings
 
 
@@ -19,3 +24,39 @@ def test_blind_cases_are_not_doubted(level: str) -> None:
     """Another generator: effects stronger than noise, foreign ones, several at once, outliers."""
     (only,) = blind_readings([level], 1, 4711)
     assert only.said == ""
+
+
+def uneven(seed: int, poses: int, loads: int) -> Measurements:
+    """A dial gauge at few poses: gears a third softer at some angles, loads along one line each."""
+    robot, rng = ur5().robot, np.random.default_rng(seed)
+    n, rows = robot.n, poses * loads
+    q = np.repeat(rng.uniform(-2.3, 2.3, (poses, n)), loads, axis=0)
+    way = np.repeat(rng.normal(size=(poses, 3)), loads, axis=0)
+    force = way / np.linalg.norm(way, axis=1, keepdims=True)
+    force *= np.tile(np.linspace(30.0, 90.0, loads), poses)[:, None]
+    J = robot.screws(q).linear_jacobian
+    softer = (1.0 + 0.3 * np.sin(3.0 * q + rng.uniform(0.0, 6.0, n))) / (1e4 * rng.uniform(1, 6, n))
+    moved = (J @ (softer * (np.swapaxes(J, 1, 2) @ force[:, :, None])[:, :, 0])[:, :, None])[
+        :, :, 0
+    ]
+    moved[:, :2] = np.nan
+    return Measurements(
+        pose=tuple(f"p{k // loads}" for k in range(rows)),
+        joint_names=robot.actuated,
+        joints=q,
+        wrench=np.hstack([force, np.zeros_like(force)]),
+        displacement=moved + 2e-6 * rng.normal(size=moved.shape),
+    )
+
+
+def test_loads_along_one_line_tell_no_more_than_one() -> None:
+    """Readings of one axis at seven poses are seven numbers, whatever the law, and no proof."""
+    sheet = sheet_of(ur5().robot, uneven(0, poses=7, loads=3))
+    assert sheet is not None and sheet.told == 7
+    other = sheet_of(ur5().robot, ur5().readings)  # loads in other directions, three axes
+    assert other is not None and other.told == other.measured.size
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_few_readings_of_uneven_gears_are_not_doubted(seed: int) -> None:
+    assert find_slip(ur5().robot, uneven(seed, poses=7, loads=4)) is None
