@@ -26,7 +26,7 @@ from sk120stiff.explain.judge.beside_form import (
     unless_imitating,
     with_model_form,
 )
-from sk120stiff.explain.judge.beside_suspect import Account, complete_account
+from sk120stiff.explain.judge.beside_suspect import Account, account_beside
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.one_gear import WORTH_A_SENTENCE, Imitated, imitated_together
 from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
@@ -211,7 +211,7 @@ def _judged(
     offsets = _beside_offsets(found, named, drawn, noise, under, seed)
     if offsets is not None:
         return *offsets, None
-    account = complete_account(
+    account = account_beside(
         base,
         found,
         named,

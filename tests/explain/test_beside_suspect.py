@@ -9,6 +9,7 @@ from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain import explain
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.attribution import Fallen, Named
 from sk120stiff.explain.judge.beside_suspect import _holds, _with_the_last_fallen, nuisance
 from sk120stiff.explain.select.stepwise import select
@@ -45,6 +46,22 @@ def test_free_factors_are_the_columns_of_the_suspect():
     assert np.allclose(made.T @ made / len(made), np.eye(9), atol=1e-9)
     left = columns - made @ (made.T @ columns) / len(made)
     assert np.abs(left).max() < 1e-9 * np.abs(columns).max()
+
+
+def test_two_suspects_are_two_effects():
+    """What is remembered of a model by its effects is never another suspect's."""
+    base = base_fit(hidden(TEETH, poses=8, loads=4))
+    gear = "the position of joint_2_l, on which a drive's stiffness may depend"
+    loads = "the load in axes of the base"
+    first, second, third = nuisance(gear, base), nuisance(loads, base), nuisance(gear, base)
+    assert len({first, second, third}) == 3 and first == first and first != third
+    values = np.append(base.model.values, 1e-5)
+    cases = base.problem.load_cases
+    moved = [
+        (base.model + each).predict(cases, np.append(values, np.zeros(each.factors.shape[1] - 1)))
+        for each in (first, second)
+    ]
+    assert np.abs(moved[0] - moved[1]).max() > 1e-6
 
 
 def test_what_other_readings_do_not_tell_moves_nothing_there():
@@ -108,6 +125,18 @@ def test_a_name_stands_beside_a_cause_without_one(springs):
     assert answer.remainder.rms < 1.05 * np.sqrt(np.mean(without**2))
     for spring, true in zip(answer.final.parameters, sk120().typical.joint.values(), strict=False):
         assert abs(spring.value - true) < 3.0 * spring.std
+
+
+def test_a_name_shows_beside_a_cause_that_takes_most_of_the_rest(springs):
+    """Two gears are softer at some angles: beside both the third, which stiffens, is outweighed."""
+    waves = PeriodicGear("joint_2_l", {"share": 0.3}, {"count": 1, "phase": 1.0})
+    others = PeriodicGear("joint_3_u", {"share": 0.15}, {"count": 2, "phase": 2.0})
+    answer = explain(springs, hidden(GEAR, waves, others, poses=16, loads=3))
+    assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
+    assert answer.remainder.where[0].startswith("Most of it goes with the position of joint_2_l")
+    left = float(answer.remainder.where[0].partition("names, ")[2].partition(" µm")[0])
+    assert 0.0 < 1e-6 * left < 0.7 * answer.remainder.rms
+    assert "Most of the rest goes with the position of joint_2_l" in next_step(answer)
 
 
 def test_a_sigma_that_was_stated_too_small_hides_no_account(springs):

@@ -264,6 +264,30 @@ def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(sp
         assert instead_of(found, [named(found)]) is None
 
 
+def test_name_and_suspect_give_way_to_one_suspect_that_does_as_well_by_itself(springs):
+    """Both accounts hold a cause without a name; that of fewer parts needs no margin over it."""
+    found = fitted(springs, hidden(TILT), "joint_tilt", "joint_2_l")
+    columns = np.array([[1.0, 0.0, 0.8], [0.0, 1.0, 0.6]])  # name, a suspect beside it, the mimic
+    gap = 5.0 * columns[:, 2]
+    line = Lineup(
+        suspects=tuple(
+            Suspect("place", name, np.zeros((1, 3, 1)), columns[0], "") for name in "fm"
+        ),
+        gram=columns.T @ columns,
+        moment=columns.T @ gap,
+        names=[np.array([0])],
+        parts=[np.array([1]), np.array([2])],
+        unit=1.0,
+        drawn={},
+    )
+    apart = line.score([0], 0) - line.score([], 1)
+    assert 0.0 < apart < imitation.BETTER < line.score([0]) - line.score([], 1)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(imitation, "line_up_with", lambda *_: line)
+        other = instead_of(found, [named(found)])
+    assert other is not None and other.name == "m"
+
+
 @pytest.mark.parametrize(("noise", "fall"), [(NOISE, False), (ROUGH, True)])
 def test_only_where_something_has_no_name_a_suspect_stands_for_several(springs, noise, fall):
     names = [effect(springs.robot, "joint_tilt", where) for where in ("joint_2_l", "joint_3_u")]

@@ -12,6 +12,7 @@ from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.words import (
     accounted,
     held_out_words,
+    mostly_accounted,
     noise_words,
     plain_words,
     told_next,
@@ -84,6 +85,15 @@ def test_what_to_do_now_sends_to_the_place_where_one_is_known() -> None:
     assert f"The rest goes with {PLACE}" in next_step(Answered())
     assert "repeat a few readings" not in next_step(Answered())
     assert "repeat a few readings" in next_step(Answered(where=(CLOSE,)))
+
+
+def test_where_most_of_it_goes_with_one_place_it_is_sent_there_too() -> None:
+    most = f"Most of it goes with {PLACE}: with that beside the names, 3 µm rms per axis are left."
+    told = Answered(where=(most,))
+    assert mostly_accounted(told) == PLACE and accounted(told) is None
+    assert mostly_accounted(Answered()) is None
+    assert f"Most of the rest goes with {PLACE}: look there first" in next_step(told)
+    assert noise_words(told) == told.noise_reasons  # what is left may be noise as well
 
 
 @pytest.mark.parametrize("verdict", ["named", "ambiguous", "none"])

@@ -9,7 +9,7 @@ import numpy as np
 from sk120stiff.data_checks import place_of
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
-from sk120stiff.explain.answer.words import accounted
+from sk120stiff.explain.answer.words import accounted, mostly_accounted
 from sk120stiff.explain.localise.suspects import TO_AND_FRO
 from sk120stiff.explain.localise.words import microns
 
@@ -182,6 +182,12 @@ def _of_the_remainder(answer: Explanation) -> str:
         return (
             f"The rest goes with {place}, and beside that only noise is left: look there, and read "
             "at more poses and loads that change it, so that its law shows."
+        )
+    most = mostly_accounted(answer)
+    if most is not None:
+        return (
+            f"Most of the rest goes with {most}: look there first, and read at more poses and "
+            "loads that change it, so that its law shows."
         )
     readings = answer.final.problem.measurements
     wishes = []

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from sk120stiff.explain.findings import Finding
 
 GOES, ALL_OF_IT = "It goes with ", "nothing is left beyond the noise"
+MOSTLY = "Most of it goes with "
 APART = 0.01  # share by which two figures of one gap may differ unexplained
 WORSE = 1.5  # times as large held out as fitted: worth a sentence
 
@@ -24,6 +25,14 @@ def accounted(answer: Explanation) -> str | None:
     for sentence in answer.remainder.where:
         if sentence.startswith(GOES) and ALL_OF_IT in sentence:
             return sentence.removeprefix(GOES).partition(":")[0]
+    return None
+
+
+def mostly_accounted(answer: Explanation) -> str | None:
+    """What most of the remainder goes with, beside which the names were judged; None: nothing."""
+    for sentence in answer.remainder.where:
+        if sentence.startswith(MOSTLY):
+            return sentence.removeprefix(MOSTLY).partition(":")[0]
     return None
 
 

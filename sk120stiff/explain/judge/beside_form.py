@@ -46,15 +46,15 @@ def beside_model_form(
         names: Ids of these effects.
         seed: Of folds and resampling.
     """
-    found, named, total = _settled(at, under, names, seed)
+    found, named = _settled(at, under, names, seed)
     nearest = None if named.findings else _nearest(found)
     if nearest is not None and nearest.id not in names:
         try:
             beside = _settled(refit(at, [nearest]), under, {nearest.id}, seed)
         except Refusal:
-            beside = found, named, total
-        if beside[2] < total:
-            found, named, _ = beside
+            beside = found, named
+        if beside[0].total < found.total:
+            found, named = beside
     stood = bool(named.findings)
     found, named = unless_imitating(found, named, seed)
     return _by_itself(found, named, seed) if stood and not named.findings else (found, named)
@@ -71,25 +71,22 @@ def _by_itself(found: Selection, named: Named, seed: int) -> tuple[Selection, Na
     return (single, Named(said.findings, fallen)) if said.findings else (found, named)
 
 
-def _settled(
-    at: Fit, under: Try, names: Collection[str], seed: int
-) -> tuple[Selection, Named, float]:
-    """Selection, names and score, once what they leave is what they were sought beside.
+def _settled(at: Fit, under: Try, names: Collection[str], seed: int) -> tuple[Selection, Named]:
+    """Selection and names, once what they leave is what they were sought beside.
 
     A round may take the noise for larger than stated; the next asks again whether it is. Where one
     set leads to another and that one back, what was confirmed beside its own model-form error is
     not lost: of those with names the likeliest counts.
     """
-    before, ends = set(names), list[tuple[Selection, Named, float]]()
+    before, ends = set(names), list[tuple[Selection, Named]]()
     for _ in range(ROUNDS):
-        tried = under(with_model_form(at))
-        found, named = judged(tried, seed=seed, least=MARGIN)
-        ends.append((found, named, tried.total + found.scored.score - tried.scored.score))
+        found, named = judged(under(with_model_form(at)), seed=seed, least=MARGIN)
+        ends.append((found, named))
         now = {finding.effect.id for finding in named.findings}
         if now == before:
             return ends[-1]
         at, before = asked_anew(found.final, at), now
-    return min(ends, key=lambda end: (not end[1].findings, end[2]))
+    return min(ends, key=lambda end: (not end[1].findings, end[0].total))
 
 
 def _nearest(found: Selection) -> Effect | None:

@@ -23,6 +23,7 @@ from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.judge.attribution import (
+    MARGIN,
     Fallen,
     Named,
     judged,
@@ -39,6 +40,8 @@ from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import Model
 
+ROUNDS = 3  # of estimating what is left beside a suspect, searching and judging
+WORTH = 6.0  # evidence (BIC) by which a suspect that leaves something has to win
 TRIED = 1  # suspects, of those that come nearest to the gap of the springs and of the names
 NARROW = 4  # models kept by the search that tells which suspect is worth a whole one
 LEFT = 2.5  # times the noise's variance: what names may leave, before any law is exact
@@ -64,6 +67,12 @@ class Nuisance(ReadingError):
     price: float = field(kw_only=True, default=0.0)
     name: ClassVar[str] = "nuisance"
     says: ClassVar[str] = "Something without a name is at work."
+
+    def __eq__(self, other: object) -> bool:
+        """Only with itself: that of another suspect, or of another fit, has other columns."""
+        return self is other
+
+    __hash__ = object.__hash__
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -112,27 +121,53 @@ def nuisance(name: str, base: Fit) -> Nuisance:
 
 @dataclass(frozen=True)
 class Account:
-    """Names, and the suspect beside which they leave nothing but noise.
+    """Names, and the suspect beside which they leave nothing but noise, or little more.
 
     Attributes:
         selection: The names beside model-form error, without the suspect.
         named: What was said of each name beside the suspect.
         suspect: Completes the sentence "The gap goes with ...".
         fit: Of names and suspect together.
+        complete: Nothing is left beyond the noise.
     """
 
     selection: Selection
     named: Named
     suspect: str
     fit: Fit
+    complete: bool = True
 
     def sentence(self) -> str:
         """Where the remainder lives."""
         beside = "with that beside the names" if self.named.findings else "with that in the model"
-        return f"It goes with {self.suspect}: {beside}, nothing is left beyond the noise."
+        if self.complete:
+            return f"It goes with {self.suspect}: {beside}, nothing is left beyond the noise."
+        form = self.fit.problem.noise.form.rms(self.fit.problem.measurements)
+        return (
+            f"Most of it goes with {self.suspect}: {beside}, {1e6 * form:.3g} µm rms per axis are "
+            "left beyond the noise."
+        )
 
 
-def complete_account(
+@dataclass(frozen=True)
+class _Told:
+    """What is named beside one suspect.
+
+    Attributes:
+        suspect: The suspect, as parameters of the base model.
+        found, named: Selection and names beside it.
+        total: Score of the whole, noise and choice of the suspect included.
+        complete: Nothing is left beyond the noise.
+    """
+
+    suspect: Nuisance
+    found: Selection
+    named: Named
+    total: float
+    complete: bool
+
+
+def account_beside(
     at: Fit,
     found: Selection,
     named: Named,
@@ -141,11 +176,12 @@ def complete_account(
     complete: Callable[[Selection, Named, NoiseModel], bool],
     seed: int,
 ) -> Account | None:
-    """The likeliest account by names and one suspect that leaves noise alone; None: there is none.
+    """The likeliest account by names and one suspect that tells all or most; None: there is none.
 
     A suspect that holds a name, or is the free form of a candidate's law, says what that says. It
-    is not tried. Where only the account itself tells the noise, that it leaves nothing beyond that
-    noise is no reason to say nothing: names stand against an account without any.
+    is not tried. One that leaves noise alone goes before any that leaves more. Where only the
+    account itself tells the noise, that it leaves nothing beyond that noise is no reason to say
+    nothing, and neither is one that leaves more: names stand against an account without any.
 
     Args:
         at: Fit of the base model under the noise of the readings.
@@ -162,14 +198,21 @@ def complete_account(
         for name, each in suspects.items()
         if not any(_holds(each, known, found) for known in names)
     }
-    suspect = min(scores, key=lambda name: scores[name], default=None)
-    if suspect is None or scores[suspect] == np.inf:
-        return None
+    partial: list[_Told] = []
+    for suspect in sorted(scores, key=lambda name: scores[name]):
+        told = _beside(suspects[suspect], at, found, under, complete, scores[suspect], seed)
+        if told is not None and told.complete:
+            return _accounted(told, at, named, under, seed)
+        partial += [] if told is None else [told]
+    told = min(partial, key=lambda each: each.total, default=None)
+    return None if told is None else _accounted(told, at, named, under, seed)
+
+
+def _accounted(told: _Told, at: Fit, named: Named, under: Try, seed: int) -> Account | None:
+    """The account with the names that imitate nothing beside its suspect."""
+    suspect = told.suspect.suspect
     try:
-        told = _beside(suspects[suspect], at, under, complete, seed)
-        if told is None:
-            return None
-        told_beside, said = unless_imitating(*told, seed)
+        beside_it, said = unless_imitating(told.found, told.named, seed)
         effects = [finding.effect for finding in said.findings]
         beside = under(with_model_form(refit(at, effects)))
     except Refusal:
@@ -177,33 +220,73 @@ def complete_account(
     kept = with_the_strongest(beside, effects)
     stand = {effect.id for effect in kept.effects}
     findings = tuple(each for each in said.findings if each.effect.id in stand)
-    if named.findings and not findings and not at.sigma_known:
+    silent = named.findings and not findings
+    if silent and not (at.sigma_known and told.complete):
+        return None
+    if not told.complete and not findings:
         return None
     fallen = (*_fallen(named, stand, suspect), *said.fallen)
-    return Account(kept, Named(findings, fallen), suspect, told_beside.final)
+    return Account(kept, Named(findings, fallen), suspect, beside_it.final, told.complete)
 
 
 def _beside(
     suspect: Nuisance,
     at: Fit,
+    without: Selection,
     under: Try,
     complete: Callable[[Selection, Named, NoiseModel], bool],
+    score: float,
     seed: int,
-) -> tuple[Selection, Named] | None:
-    """What is named beside a suspect, where nothing else is left; None where something is.
+) -> _Told | None:
+    """What is named beside a suspect; None where it does no better than model-form error alone.
 
     Where more is left than the noise that was stated, and it has no structure, σ was understated:
-    its size is let free.
+    its size is let free. Where what is left has structure, it is model-form error once more, of
+    another size, and what is named goes on with it until both stay (as in `beside_form.py`).
+
+    Args:
+        suspect: As parameters of the base model.
+        at: Fit of the base model under the noise of the readings.
+        without: Names beside model-form error alone.
+        under: Makes a selection.
+        complete: Nothing is left that this noise does not explain.
+        score: Of the best names beside the suspect; infinite where they leave far more than noise.
+        seed: Of folds and resampling.
     """
-    noise = at.problem.noise
-    for _ in range(2):
-        tried, said = judged(under(noise, suspect), seed=seed, unless_exceeding=True)
-        if complete(tried, said, noise):
-            return tried, said
-        noise = with_model_form(tried.final)
-        if noise.form or not at.problem.noise.known:
-            return None
-    return None
+    noise, ends = at.problem.noise, list[_Told]()
+    try:
+        if score == np.inf:
+            noise = with_model_form(_with_suspect(suspect, at, without.effects))
+        for _ in range(ROUNDS):
+            tried = under(noise, suspect)
+            if noise.form and tried.total + suspect.price > without.total - WORTH:
+                break
+            least = MARGIN if noise.form else -np.inf
+            found, said = judged(tried, seed=seed, least=least, unless_exceeding=not noise.form)
+            if not noise.form and complete(found, said, noise):
+                return _Told(suspect, found, said, found.total + suspect.price, complete=True)
+            if noise.form:
+                total = found.total + suspect.price
+                ends.append(_Told(suspect, found, said, total, complete=False))
+                if len(ends) > 1 and _names(ends[-2]) == _names(ends[-1]):
+                    break
+            noise = with_model_form(found.final)
+            if not noise.form and not at.problem.noise.known:
+                break
+    except Refusal:
+        return None
+    return min(ends, key=lambda each: (not each.named.findings, each.total), default=None)
+
+
+def _with_suspect(suspect: Nuisance, at: Fit, effects: Sequence[Effect]) -> Fit:
+    """Fit of the base model, a suspect and effects."""
+    problem = at.problem
+    base = fit(at.model + suspect, problem.measurements, noise=problem.noise)
+    return refit(base, effects) if effects else base
+
+
+def _names(told: _Told) -> set[str]:
+    return {finding.effect.id for finding in told.named.findings}
 
 
 def _holds(suspect: Nuisance, effect: Effect, found: Selection) -> bool:
@@ -251,9 +334,8 @@ def _nearest(fits: Sequence[Fit], found: Selection) -> list[str]:
 
 def _at_best(at: Fit, beside: Nuisance, candidates: Regression) -> float:
     """Score of the best names beside a suspect, infinite where they leave far more than noise."""
-    problem = at.problem
     try:
-        base = fit(at.model + beside, problem.measurements, noise=problem.noise)
+        base = _with_suspect(beside, at, ())
     except Refusal:
         return float(np.inf)
     ids = [effect.id for effect in base.model.effects]

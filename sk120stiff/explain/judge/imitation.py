@@ -123,10 +123,11 @@ def instead_of(
     name's own law, or of the law of an effect that the readings do not tell from it, says what the
     name says, and is no reason against it; neither is one in the place of one name beside which it
     would explain less than it costs: fewer columns for the same make no better cause. The strongest
-    name has to be beaten clearly, also by all names beside any other suspect: a cause without a
-    name may stand beside them. Beside model-form error such a cause is at work for certain and
-    needs no evidence of its own: a further name has to do better than it, and it may stand for
-    several. Where laws seem exact it takes the place of one.
+    name has to be beaten clearly, and by all that stand without it beside one suspect: names and
+    any other suspect may stand together, and then both accounts hold a cause without a name.
+    Beside model-form error such a cause is at work for certain and needs no evidence of its own: a
+    further name has to do better than it, and it may stand for several. Where laws seem exact it
+    takes the place of one.
 
     Args:
         fit: The fitted model.
@@ -167,7 +168,7 @@ def instead_of(
             needed = 0.0 if certain and 0 in kept else BETTER
             found.append(Instead(suspect.name, better - needed, fallen))
         else:
-            beside = max(beside, better)
+            beside = max(beside, better - BETTER)
     won = [each for each in found if each.better > (beside if names[0].id in each.effects else 0.0)]
     return max(won, key=lambda each: each.better, default=None)
 

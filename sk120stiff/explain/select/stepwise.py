@@ -139,14 +139,14 @@ def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
         alpha=linear.alpha, prior=linear.prior, near=linear.linearised,
     )  # fmt: skip
     chosen = positions(regression, effects)
-    return Selection(
-        base=found.base,
+    score = score_set(regression, regression.sums(), chosen).score
+    return replace(
+        found,
         final=final,
         regression=regression,
         chosen=chosen,
-        outliers=found.outliers,
-        candidates=found.candidates,
-        total=np.nan,
+        total=found.total + score - found.scored.score,
+        at_base=None,
     )
 
 
