@@ -179,9 +179,10 @@ def account_beside(
     """The likeliest account by names and one suspect that tells all or most; None: there is none.
 
     A suspect that holds a name, or is the free form of a candidate's law, says what that says. It
-    is not tried. One that leaves noise alone goes before any that leaves more. Where only the
-    account itself tells the noise, that it leaves nothing beyond that noise is no reason to say
-    nothing, and neither is one that leaves more: names stand against an account without any.
+    is not tried. Only the one with which names explain most may leave noise alone, and goes before
+    any that leaves more then. Where only the account itself tells the noise, that it leaves nothing
+    beyond that noise is no reason to say nothing, and neither is one that leaves more: names stand
+    against an account without any.
 
     Args:
         at: Fit of the base model under the noise of the readings.
@@ -199,8 +200,9 @@ def account_beside(
         if not any(_holds(each, known, found) for known in names)
     }
     partial: list[_Told] = []
-    for suspect in sorted(scores, key=lambda name: scores[name]):
-        told = _beside(suspects[suspect], at, found, under, complete, scores[suspect], seed)
+    for place, name in enumerate(sorted(scores, key=lambda name: scores[name])):
+        exact = place == 0 and scores[name] < np.inf
+        told = _beside(suspects[name], at, found, under, complete if exact else None, seed)
         if told is not None and told.complete:
             return _accounted(told, at, named, under, seed)
         partial += [] if told is None else [told]
@@ -234,8 +236,7 @@ def _beside(
     at: Fit,
     without: Selection,
     under: Try,
-    complete: Callable[[Selection, Named, NoiseModel], bool],
-    score: float,
+    complete: Callable[[Selection, Named, NoiseModel], bool] | None,
     seed: int,
 ) -> _Told | None:
     """What is named beside a suspect; None where it does no better than model-form error alone.
@@ -249,21 +250,22 @@ def _beside(
         at: Fit of the base model under the noise of the readings.
         without: Names beside model-form error alone.
         under: Makes a selection.
-        complete: Nothing is left that this noise does not explain.
-        score: Of the best names beside the suspect; infinite where they leave far more than noise.
+        complete: Nothing is left that this noise does not explain; None: that is not asked.
         seed: Of folds and resampling.
     """
     noise, ends = at.problem.noise, list[_Told]()
     try:
-        if score == np.inf:
+        if complete is None:
             noise = with_model_form(_with_suspect(suspect, at, without.effects))
         for _ in range(ROUNDS):
+            if complete is None and not noise.form:
+                break
             tried = under(noise, suspect)
             if noise.form and tried.total + suspect.price > without.total - WORTH:
                 break
             least = MARGIN if noise.form else -np.inf
             found, said = judged(tried, seed=seed, least=least, unless_exceeding=not noise.form)
-            if not noise.form and complete(found, said, noise):
+            if not noise.form and complete is not None and complete(found, said, noise):
                 return _Told(suspect, found, said, found.total + suspect.price, complete=True)
             if noise.form:
                 total = found.total + suspect.price

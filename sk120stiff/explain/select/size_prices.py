@@ -57,8 +57,9 @@ def prices_of_sizes(
     prices = price_of_sizes(gains, counts, n)
     if regression.form is None:  # else rows of two kinds count by two sizes
         bounded = mine & (regression.lower[own] == 0.0)[:, :, None]
-        for row in np.flatnonzero((bounded.any(axis=1) & (counts > 1)).any(axis=1)):
-            ways = _Held.of(regression, sums, solved, int(row), float(variance[row, 0]))
+        rows = np.flatnonzero((bounded.any(axis=1) & (counts > 1)).any(axis=1))
+        for row, scatter in zip(rows, _scatters(regression, sums, solved, rows), strict=True):
+            ways = _Held(scatter, solved.values[row], float(variance[row, 0]))
             for effect in np.flatnonzero(bounded[row].any(axis=0) & (counts[row] > 1)):
                 places = (len(base) + np.flatnonzero(bounded[row, :, effect])).tolist()
                 price = float(prices[row, effect])
@@ -68,25 +69,24 @@ def prices_of_sizes(
     return np.asarray(prices.sum(axis=1))
 
 
+def _scatters(regression: Regression, sums: Sums, solved: Solutions, rows: Index) -> Array:
+    """(m, k, k) covariance of the values of some solutions with their beliefs."""
+    moves, columns = solved.moves[rows], solved.columns[rows]
+    gram = sums.gram[columns[:, :, None], columns[:, None, :]] * (
+        moves[:, :, None] & moves[:, None, :]
+    )
+    diagonal = np.arange(columns.shape[1])
+    gram[:, diagonal, diagonal] += np.where(moves, regression.plausible[columns] ** -2.0, 1.0)
+    scale = 1.0 / np.sqrt(gram[:, diagonal, diagonal])
+    both = scale[:, :, None] * scale[:, None, :]
+    return np.linalg.inv(gram * both) * both
+
+
 class _Held:
     """One solution, some of whose values are held at zero, the others moving on."""
 
     def __init__(self, scatter: Array, values: Array, variance: float) -> None:
         self._scatter, self._values, self._variance = scatter, values.copy(), variance
-
-    @classmethod
-    def of(
-        cls, regression: Regression, sums: Sums, solved: Solutions, row: int, variance: float
-    ) -> _Held:
-        """Solution `row` of several, the covariance of its values with their beliefs."""
-        moves, columns = solved.moves[row], solved.columns[row]
-        gram = sums.gram[columns[:, None], columns] * np.outer(moves, moves)
-        gram.flat[:: len(columns) + 1] += np.where(
-            moves, regression.plausible[columns] ** -2.0, 1.0
-        )
-        scale = 1.0 / np.sqrt(gram.diagonal())
-        both = scale[:, None] * scale
-        return cls(np.linalg.inv(gram * both) * both, solved.values[row], variance)
 
     def growth(self, place: int) -> float:
         """Of the misfit, in noise variances, when one more value is held."""
