@@ -202,19 +202,26 @@ def account_beside(
     partial: list[_Told] = []
     for place, name in enumerate(sorted(scores, key=lambda name: scores[name])):
         exact = place == 0 and scores[name] < np.inf
-        told = _beside(suspects[name], at, found, under, complete if exact else None, seed)
+        told = _beside(suspects[name], at, found, named, under, complete if exact else None, seed)
         if told is not None and told.complete:
-            return _accounted(told, at, named, under, seed)
+            return _accounted(told, at, found, named, under, seed)
         partial += [] if told is None else [told]
     told = min(partial, key=lambda each: each.total, default=None)
-    return None if told is None else _accounted(told, at, named, under, seed)
+    return None if told is None else _accounted(told, at, found, named, under, seed)
 
 
-def _accounted(told: _Told, at: Fit, named: Named, under: Try, seed: int) -> Account | None:
-    """The account with the names that imitate nothing beside its suspect."""
+def _accounted(
+    told: _Told, at: Fit, without: Selection, named: Named, under: Try, seed: int
+) -> Account | None:
+    """The account with the names that imitate nothing beside its suspect.
+
+    Where these are those that stand without it, only where the rest lives is told with it.
+    """
     suspect = told.suspect.suspect
     try:
         beside_it, said = unless_imitating(told.found, told.named, seed)
+        if not told.complete and _names(said) == _names(named):
+            return Account(without, named, suspect, beside_it.final, complete=False)
         effects = [finding.effect for finding in said.findings]
         beside = under(with_model_form(refit(at, effects)))
     except Refusal:
@@ -222,10 +229,7 @@ def _accounted(told: _Told, at: Fit, named: Named, under: Try, seed: int) -> Acc
     kept = with_the_strongest(beside, effects)
     stand = {effect.id for effect in kept.effects}
     findings = tuple(each for each in said.findings if each.effect.id in stand)
-    silent = named.findings and not findings
-    if silent and not (at.sigma_known and told.complete):
-        return None
-    if not told.complete and not findings:
+    if named.findings and not findings and not (at.sigma_known and told.complete):
         return None
     fallen = (*_fallen(named, stand, suspect), *said.fallen)
     return Account(kept, Named(findings, fallen), suspect, beside_it.final, told.complete)
@@ -235,6 +239,7 @@ def _beside(
     suspect: Nuisance,
     at: Fit,
     without: Selection,
+    named: Named,
     under: Try,
     complete: Callable[[Selection, Named, NoiseModel], bool] | None,
     seed: int,
@@ -248,12 +253,12 @@ def _beside(
     Args:
         suspect: As parameters of the base model.
         at: Fit of the base model under the noise of the readings.
-        without: Names beside model-form error alone.
+        without, named: What is named beside model-form error alone.
         under: Makes a selection.
         complete: Nothing is left that this noise does not explain; None: that is not asked.
         seed: Of folds and resampling.
     """
-    noise, ends = at.problem.noise, list[_Told]()
+    noise, ends, before = at.problem.noise, list[_Told](), _names(named)
     try:
         if complete is None:
             noise = with_model_form(_with_suspect(suspect, at, without.effects))
@@ -261,7 +266,7 @@ def _beside(
             if complete is None and not noise.form:
                 break
             tried = under(noise, suspect)
-            if noise.form and tried.total + suspect.price > without.total - WORTH:
+            if noise.form and tried.searched + suspect.price > without.searched - WORTH:
                 break
             least = MARGIN if noise.form else -np.inf
             found, said = judged(tried, seed=seed, least=least, unless_exceeding=not noise.form)
@@ -270,14 +275,16 @@ def _beside(
             if noise.form:
                 total = found.total + suspect.price
                 ends.append(_Told(suspect, found, said, total, complete=False))
-                if len(ends) > 1 and _names(ends[-2]) == _names(ends[-1]):
+                if _names(said) == before:
                     break
+                before = _names(said)
             noise = with_model_form(found.final)
             if not noise.form and not at.problem.noise.known:
                 break
     except Refusal:
         return None
-    return min(ends, key=lambda each: (not each.named.findings, each.total), default=None)
+    better = [each for each in ends if each.total < without.total - WORTH]
+    return min(better, key=lambda each: (not each.named.findings, each.total), default=None)
 
 
 def _with_suspect(suspect: Nuisance, at: Fit, effects: Sequence[Effect]) -> Fit:
@@ -287,8 +294,8 @@ def _with_suspect(suspect: Nuisance, at: Fit, effects: Sequence[Effect]) -> Fit:
     return refit(base, effects) if effects else base
 
 
-def _names(told: _Told) -> set[str]:
-    return {finding.effect.id for finding in told.named.findings}
+def _names(named: Named) -> set[str]:
+    return {finding.effect.id for finding in named.findings}
 
 
 def _holds(suspect: Nuisance, effect: Effect, found: Selection) -> bool:

@@ -41,6 +41,7 @@ class Selection:
         outliers: Rows (of the readings given) that were set aside as outliers.
         candidates: All effects considered.
         total: Score of the whole, noise included; those under other zeros compare by it.
+        searched: The same of the set that the search settled on, of which some may have fallen.
         at_base: Sensitivities of all readings at the base model.
     """
 
@@ -51,6 +52,7 @@ class Selection:
     outliers: Index
     candidates: tuple[Effect, ...]
     total: float
+    searched: float
     at_base: Linearised | None = None
 
     @property
@@ -103,6 +105,7 @@ def select(
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     score = score_set(regression, regression.sums(), chosen).score
     numbers = np.log(float(measurements.read.sum()))
+    total = score + whole + numbers * float(measurements.read[outliers].sum())
     return Selection(
         base=base,
         final=final,
@@ -110,7 +113,8 @@ def select(
         chosen=chosen,
         outliers=outliers,
         candidates=tuple(candidates),
-        total=score + whole + numbers * float(measurements.read[outliers].sum()),
+        total=total,
+        searched=total,
         at_base=at_base,
     )
 
