@@ -27,7 +27,7 @@ from sk120stiff.explain.answer.words import (
     set_aside_sentences,
 )
 from sk120stiff.explain.findings import Contender, Finding, likely
-from sk120stiff.identify import unseen_reasons
+from sk120stiff.identify import unseen_reasons, unseen_sentences
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.wording import um, with_error
@@ -131,9 +131,7 @@ def parts(answer: Explanation, out: Path, *, report: object = None) -> list[obje
         lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
         shown.append(f"{lead}: {', '.join(map(_gain, answer.suspects))}.")
     shown += answer.unnamed
-    shown += [
-        f"{name} cannot be seen: {why}." for name, why in unseen_reasons(answer.final).items()
-    ]
+    shown += unseen_sentences(answer.final)
     if answer.findings and answer.adequacy.lacking:
         shown.append("That is not all: more is left than the noise makes.")
     told = [sentence for sentence in answer.remainder.where if sentence not in shown]

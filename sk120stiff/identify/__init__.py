@@ -12,7 +12,7 @@ from sk120stiff.identify.checks.held_out import (
 )
 from sk120stiff.identify.checks.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
 from sk120stiff.identify.checks.null_space import known_together, weak_directions
-from sk120stiff.identify.checks.unseen import unseen_reasons, why_unseen
+from sk120stiff.identify.checks.unseen import unseen_reasons, unseen_sentences, why_unseen
 from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
 from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
@@ -52,6 +52,7 @@ __all__ = [
     "solve",
     "solve_near",
     "unseen_reasons",
+    "unseen_sentences",
     "weak_directions",
     "why_unseen",
     "yardstick",

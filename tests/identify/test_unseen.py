@@ -1,11 +1,14 @@
 """A spring that no such reading can show, and the reason in words."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from sk120stiff import fit, joint_spring_model, load_robot
 from sk120stiff.effects import load_case
-from sk120stiff.identify import unseen_reasons, weak_directions, why_unseen
+from sk120stiff.identify import unseen_reasons, unseen_sentences, weak_directions, why_unseen
+from sk120stiff.identify.checks.unseen import NOT_SHOWN
 from sk120stiff.measurements import Measurements, NoiseModel
 from tests.corpus.robots import example
 
@@ -54,6 +57,25 @@ def test_a_point_off_the_axis_shows_it() -> None:
     assert not unseen_reasons(found)
     load_cases = found.problem.load_cases
     assert all(why_unseen(load_cases, p) is None for p in found.parameters)
+
+
+def test_many_values_of_one_effect_are_told_in_one_sentence(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A gauge along one axis says nothing of the other two of every pose's offset."""
+    effects = ["zero_offset:tracker"] * 5 + ["joint_springs:j1"] * 2
+    names = [f"{effect}.{k}" for k, effect in enumerate(effects)]
+    reasons = dict.fromkeys(names, NOT_SHOWN)
+    monkeypatch.setattr("sk120stiff.identify.checks.unseen.unseen_reasons", lambda _: reasons)
+    shown = SimpleNamespace(name="shown", effect=SimpleNamespace(id="zero_offset:tracker"))
+    hidden = [
+        SimpleNamespace(name=name, effect=SimpleNamespace(id=effect))
+        for name, effect in zip(names, effects, strict=True)
+    ]
+    assert unseen_sentences(SimpleNamespace(parameters=[shown, *hidden])) == [
+        "5 values of zero_offset:tracker cannot be seen: they do not show in these readings.",
+        *(f"{name} cannot be seen: {NOT_SHOWN}." for name in names[5:]),
+    ]
 
 
 def test_hanging_weights_are_parallel_to_a_first_axis_that_stands_upright() -> None:

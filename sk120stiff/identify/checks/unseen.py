@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from sk120stiff.effects import LoadCases
@@ -12,8 +14,14 @@ from sk120stiff.robot.anatomy import arm_length
 
 ON_AXIS = 1e-6  # share of the arm's length below which a lever is rounding of the URDF's numbers
 
+EACH = 3  # parameters of one effect up to which each has a sentence
+
 NOT_SHOWN = "it does not show in these readings"
 SHARED = "these readings tell it together with others only"
+OF_SEVERAL = {
+    NOT_SHOWN: "they do not show in these readings",
+    SHARED: "these readings tell them together with others only",
+}
 
 
 def unseen_reasons(fit: Fit) -> dict[str, str]:
@@ -25,6 +33,19 @@ def unseen_reasons(fit: Fit) -> dict[str, str]:
         for p, shown, shows in zip(fit.parameters, fit.identifiable, alone, strict=True)
         if not shown
     }
+
+
+def unseen_sentences(fit: Fit) -> list[str]:
+    """Each of these parameters in a sentence; many of one effect, on one ground, in one."""
+    reasons = unseen_reasons(fit)
+    grounds = [(p.effect.id, reasons[p.name]) for p in fit.parameters if p.name in reasons]
+    count = Counter(ground for ground in grounds if ground[1] in OF_SEVERAL)
+    said: dict[str, None] = {}  # in order, each once
+    for (effect, why), name in zip(grounds, reasons, strict=True):
+        number = count[effect, why]
+        many = f"{number} values of {effect} cannot be seen: {OF_SEVERAL.get(why)}."
+        said[many if number > EACH else f"{name} cannot be seen: {why}."] = None
+    return list(said)
 
 
 def why_unseen(load_cases: LoadCases, parameter: Parameter) -> str | None:
