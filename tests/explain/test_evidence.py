@@ -282,17 +282,17 @@ def test_a_confirmed_name_is_not_lost_where_sets_lead_to_one_another(monkeypatch
     def judged(tried, *, seed, least):
         names = (finding,) if tried.beside == "springs" else ()
         final = "springs and tilt" if names else "springs"
-        return SimpleNamespace(final=final, scored=SimpleNamespace(score=0.0)), Named(names)
+        return SimpleNamespace(final=final, total=tried.total), Named(names)
 
     def under(noise):
         total = -20.0 if noise == "springs and tilt" else 0.0
-        return SimpleNamespace(beside=noise, total=total, scored=SimpleNamespace(score=0.0))
+        return SimpleNamespace(beside=noise, total=total)
 
     monkeypatch.setattr(beside_form, "with_model_form", lambda fit: fit)
     monkeypatch.setattr(beside_form, "asked_anew", lambda fit, at: fit)
     monkeypatch.setattr(beside_form, "judged", judged)
     names = {tilt.id} if "tilt" in start else set()
-    found, named, _ = beside_form._settled(start, under, names, 0)
+    found, named = beside_form._settled(start, under, names, 0)
     assert named.findings == (finding,)
     assert found.final == "springs and tilt"
 
@@ -307,11 +307,10 @@ def test_where_nothing_is_named_the_search_begins_again_beside_the_nearest(monke
     def under(noise):
         # names that do not stand made the first end the likelier by 20
         unconfirmed = -20.0 if noise == "springs" else 0.0
-        score = SimpleNamespace(score=unconfirmed)
-        return SimpleNamespace(final=noise, total=scores[noise] + unconfirmed, scored=score)
+        return SimpleNamespace(final=noise, total=scores[noise] + unconfirmed)
 
     def judged(tried, *, seed, least):
-        standing = SimpleNamespace(final=tried.final, scored=SimpleNamespace(score=0.0))
+        standing = SimpleNamespace(final=tried.final, total=scores[tried.final])
         return standing, Named((finding,) if tried.final != "springs" else ())
 
     monkeypatch.setattr(beside_form, "with_model_form", lambda fit: fit)
