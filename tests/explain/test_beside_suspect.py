@@ -1,6 +1,7 @@
 """A known cause beside one that the catalogue lacks: both have their place in the model."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,12 @@ from sk120stiff.errors import InputError
 from sk120stiff.explain import explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.attribution import Fallen, Named
-from sk120stiff.explain.judge.beside_suspect import _holds, _with_the_last_fallen, nuisance
+from sk120stiff.explain.judge.beside_suspect import (
+    Account,
+    _holds,
+    _with_the_last_fallen,
+    nuisance,
+)
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseStatement
@@ -125,6 +131,21 @@ def test_a_name_stands_beside_a_cause_without_one(springs):
     assert answer.remainder.rms < 1.05 * np.sqrt(np.mean(without**2))
     for spring, true in zip(answer.final.parameters, sk120().typical.joint.values(), strict=False):
         assert abs(spring.value - true) < 3.0 * spring.std
+
+
+@pytest.mark.parametrize(("left", "said"), [(6e-6, "Most of it goes"), (8e-6, "Part of it goes")])
+def test_most_of_it_is_more_than_half_of_its_squares(left: float, said: str) -> None:
+    def beside(rms: float):
+        form = SimpleNamespace(rms=lambda _: rms)
+        problem = SimpleNamespace(noise=SimpleNamespace(form=form), measurements=None)
+        return SimpleNamespace(problem=problem)
+
+    without = SimpleNamespace(final=beside(1e-5))
+    account = Account(without, Named((), ()), "the moon", beside(left), complete=False)
+    assert account.sentence() == (
+        f"{said} with the moon: with that in the model, {1e6 * left:.3g} µm rms per axis are left "
+        "beyond the noise."
+    )
 
 
 def test_a_name_shows_beside_a_cause_that_takes_most_of_the_rest(springs):

@@ -5,6 +5,10 @@ Where the laws of the catalogue leave something over, what is left may all go wi
 the model it does for the foreign cause what no name can, and if nothing is left then beyond the
 noise, the names that stand beside it were not asked to imitate it. Such an account is complete; it
 takes the place of names that were judged beside an error of unknown form.
+
+On a real arm seldom all goes with one thing. Where names, a suspect and a smaller error of unknown
+form are likelier than names and the larger error, the names that stand beside both take that place
+too: what imitated the part that has a place falls, what hid behind it shows.
 """
 
 from __future__ import annotations
@@ -125,7 +129,7 @@ class Account:
 
     Attributes:
         selection: The names beside model-form error, without the suspect.
-        named: What was said of each name beside the suspect.
+        named: What was said of each name, beside the suspect where that changed which stand.
         suspect: Completes the sentence "The gap goes with ...".
         fit: Of names and suspect together.
         complete: Nothing is left beyond the noise.
@@ -142,11 +146,17 @@ class Account:
         beside = "with that beside the names" if self.named.findings else "with that in the model"
         if self.complete:
             return f"It goes with {self.suspect}: {beside}, nothing is left beyond the noise."
-        form = self.fit.problem.noise.form.rms(self.fit.problem.measurements)
+        left, before = (_form_of(each) for each in (self.fit, self.selection.final))
+        part = "Most" if left**2 < 0.5 * before**2 else "Part"
         return (
-            f"Most of it goes with {self.suspect}: {beside}, {1e6 * form:.3g} µm rms per axis are "
-            "left beyond the noise."
+            f"{part} of it goes with {self.suspect}: {beside}, {1e6 * left:.3g} µm rms per axis "
+            "are left beyond the noise."
         )
+
+
+def _form_of(fit: Fit) -> float:
+    """The model-form error that a fit stands beside, rms per axis [m]."""
+    return fit.problem.noise.form.rms(fit.problem.measurements)
 
 
 @dataclass(frozen=True)
