@@ -231,7 +231,7 @@ FAULTS: tuple[Fault, ...] = (
         spared_twice=("            self.hold(place)\n", ""),
     ),
     *_of(
-        "explain/judge/imitation.py", *_tests("explain", "imitation"),
+        "explain/judge/imitation.py", *_tests("explain", "imitation", "lineup"),
         name_and_suspect_need_no_more_than_one_suspect=("max(beside, better - BETTER)", "max(beside, better)"),
         impostors_never_compared=("needed = 0.0 if certain and 0 in kept else BETTER", "needed = 1e9"),
         what_does_nothing_anyway_falls=("if alone[e] > line.price(e)]", "if True]"),
