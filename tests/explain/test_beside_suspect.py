@@ -141,7 +141,7 @@ def test_most_of_it_is_more_than_half_of_its_squares(left: float, said: str) -> 
         return SimpleNamespace(problem=problem)
 
     without = SimpleNamespace(final=beside(1e-5))
-    account = Account(without, Named((), ()), "the moon", beside(left), complete=False)
+    account = Account(without, Named((), ()), "the moon", beside(left), left)
     assert account.sentence() == (
         f"{said} with the moon: with that in the model, {1e6 * left:.3g} µm rms per axis are left "
         "beyond the noise."

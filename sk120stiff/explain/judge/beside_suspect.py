@@ -132,31 +132,36 @@ class Account:
         named: What was said of each name, beside the suspect where that changed which stand.
         suspect: Completes the sentence "The gap goes with ...".
         fit: Of names and suspect together.
-        complete: Nothing is left beyond the noise.
+        left: Beside it beyond the noise, rms per axis [m]; zero: nothing.
     """
 
     selection: Selection
     named: Named
     suspect: str
     fit: Fit
-    complete: bool = True
+    left: float = 0.0
 
     def sentence(self) -> str:
         """Where the remainder lives."""
         beside = "with that beside the names" if self.named.findings else "with that in the model"
-        if self.complete:
+        if not self.left:
             return f"It goes with {self.suspect}: {beside}, nothing is left beyond the noise."
-        left, before = (_form_of(each) for each in (self.fit, self.selection.final))
-        part = "Most" if left**2 < 0.5 * before**2 else "Part"
+        part = "Most" if self.left**2 < 0.5 * _form_of(self.selection.final) ** 2 else "Part"
         return (
-            f"{part} of it goes with {self.suspect}: {beside}, {1e6 * left:.3g} µm rms per axis "
-            "are left beyond the noise."
+            f"{part} of it goes with {self.suspect}: {beside}, {1e6 * self.left:.3g} µm rms per "
+            "axis are left beyond the noise."
         )
 
 
 def _form_of(fit: Fit) -> float:
     """The model-form error that a fit stands beside, rms per axis [m]."""
     return fit.problem.noise.form.rms(fit.problem.measurements)
+
+
+def _left_by(fit: Fit) -> float:
+    """The same, estimated from what the fit leaves; where that shows no structure, as it stands."""
+    found = with_model_form(fit).form.rms(fit.problem.measurements)
+    return found or _form_of(fit)
 
 
 @dataclass(frozen=True)
@@ -230,8 +235,9 @@ def _accounted(
     suspect = told.suspect.suspect
     try:
         beside_it, said = unless_imitating(told.found, told.named, seed)
+        left = 0.0 if told.complete else _left_by(beside_it.final)
         if not told.complete and _names(said) == _names(named):
-            return Account(without, named, suspect, beside_it.final, complete=False)
+            return Account(without, named, suspect, beside_it.final, left)
         effects = [finding.effect for finding in said.findings]
         beside = under(with_model_form(refit(at, effects)))
     except Refusal:
@@ -242,7 +248,7 @@ def _accounted(
     if named.findings and not findings and not (at.sigma_known and told.complete):
         return None
     fallen = (*_fallen(named, stand, suspect), *said.fallen)
-    return Account(kept, Named(findings, fallen), suspect, beside_it.final, told.complete)
+    return Account(kept, Named(findings, fallen), suspect, beside_it.final, left)
 
 
 def _beside(
