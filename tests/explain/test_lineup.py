@@ -1,5 +1,6 @@
 """Names and suspects side by side, on small arrays: what takes whose place, and what it costs."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -7,13 +8,13 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from sk120stiff import base_model, load_robot
-from sk120stiff.effects import effect
+from sk120stiff.effects import Effect, effect
 from sk120stiff.explain.judge import imitation
-from sk120stiff.explain.judge.imitation import Lineup, instead_of
+from sk120stiff.explain.judge.imitation import Instead, Lineup, instead_of
 from sk120stiff.explain.judge.imitation import _precision as precision
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.explain.select.stepwise import refit
-from sk120stiff.identify import fit
+from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import ModelForm
 from tests.explain.readings import NOISE, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
@@ -25,6 +26,13 @@ TILT = JointTilt("joint_2_l", {"first": 8e-7, "second": 0.0})
 @pytest.fixture(scope="module")
 def springs():
     return base_model(load_robot("motoman_sk120"))
+
+
+def beside(line: Lineup, found: Fit, names: Sequence[Effect]) -> Instead | None:
+    """What would do in the place of names, were this the lineup of a fit."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(imitation, "line_up_with", lambda *_: line)
+        return instead_of(found, names)
 
 
 def tilted(springs):
@@ -51,9 +59,7 @@ def test_the_strongest_name_stands_where_all_do_better_beside_another_suspect(sp
         drawn={},
     )
     assert line.score([0], 0) < line.score([], 1) < line.score([0])
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "line_up_with", lambda *_: line)
-        assert instead_of(found, found.model.effects[-1:]) is None
+    assert beside(line, found, found.model.effects[-1:]) is None
 
 
 def test_name_and_suspect_give_way_to_one_suspect_that_does_as_well_by_itself(springs):
@@ -74,9 +80,7 @@ def test_name_and_suspect_give_way_to_one_suspect_that_does_as_well_by_itself(sp
     )
     apart = line.score([0], 0) - line.score([], 1)
     assert 0.0 < apart < imitation.BETTER < line.score([0]) - line.score([], 1)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "line_up_with", lambda *_: line)
-        other = instead_of(found, found.model.effects[-1:])
+    other = beside(line, found, found.model.effects[-1:])
     assert other is not None and other.name == "m"
 
 
@@ -94,9 +98,7 @@ def test_only_where_something_has_no_name_a_suspect_stands_for_several(springs, 
         unit=10.0,
         drawn={},
     )
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "line_up_with", lambda *_: line)
-        other = instead_of(found, names)
+    other = beside(line, found, names)
     assert (other is not None and len(other.effects) == 2) == fall
 
 
@@ -119,9 +121,7 @@ def test_what_a_name_does_not_do_anyway_no_suspect_takes_from_it(springs, own):
         unit=4.0,
         drawn={},
     )
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(imitation, "line_up_with", lambda *_: line)
-        other = instead_of(found, names)
+    other = beside(line, found, names)
     assert (other is not None and other.effects == (names[1].id,)) == (own > 24.0)
 
 
