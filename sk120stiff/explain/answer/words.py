@@ -45,11 +45,12 @@ def told_next(answer: Explanation, finding: Finding) -> bool:
 def noise_words(answer: Explanation) -> tuple[str, ...]:
     """What was decided about the noise; what has a place is not called noise."""
     statement, left = answer.adequacy.of_the_statement(), answer.adequacy
-    place = accounted(answer)
+    whole = accounted(answer)
+    place, it = (whole, "it") if whole else (mostly_accounted(answer), "most of it")
     if left.whole is None or left.understated is not None or place is None:
         return answer.noise_reasons
     said = (
-        f"What is left is {left.whole.factor:.3g} times the stated uncertainty, and it is no "
+        f"What is left is {left.whole.factor:.3g} times the stated uncertainty, and {it} is no "
         f"noise: it goes with {place}. The standard errors account for it."
     )
     wrong = set(statement) if left.lacking else set()
