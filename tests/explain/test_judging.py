@@ -11,7 +11,7 @@ from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.explain import Options, explain
 from sk120stiff.explain.candidates.regression import regression_at
-from sk120stiff.explain.findings import Confirmation
+from sk120stiff.explain.findings import Confirmation, Evidence, Finding
 from sk120stiff.explain.judge.attribution import Fallen, Named
 from sk120stiff.explain.options import candidates_for
 from sk120stiff.explain.select.outliers import outlying_rows
@@ -331,3 +331,13 @@ def test_who_falls_again_on_the_same_ground_is_told_of_once():
     tilts = [f"joint_tilt:joint_{k} fits, but takes off 2.1 µm; it is not named." for k in (1, 2)]
     fallen[1:1] = [Fallen(said.partition(" ")[0], said) for said in tilts]
     assert Named((), tuple(fallen)).reasons == (*tilts, drift.format("80"))
+
+
+def test_what_is_in_the_set_of_a_name_is_not_said_to_have_fallen(springs):
+    """A set says that either may be at work; that one of them fell would say the opposite."""
+    tilt = effect(springs.robot, "joint_tilt", "joint_2_l")
+    seen = Evidence(9.0, 9.0, None, np.inf, Confirmation(5, 5, 1.0, 0.1, 1.0, 0.0), {})
+    finding = Finding(tilt, ("link_bending:link_2",), (), seen)
+    ids = ("link_bending:link_2", tilt.id, "drift")
+    fallen = tuple(Fallen(name, f"{name} fits; it is not named.") for name in ids)
+    assert Named((finding,), fallen).reasons == ("drift fits; it is not named.",)

@@ -75,10 +75,15 @@ class Named:
     def reasons(self) -> tuple[str, ...]:
         """Why these are not named, in sentences; where one fell on the same ground again, the last.
 
-        Grounds differ by more than their numbers.
+        Grounds differ by more than their numbers. What is in the set of a name is not said to have
+        fallen.
         """
+        told = {each.effect.id for each in self.findings}
+        told |= {name for each in self.findings for name in each.alternatives}
         said: dict[tuple[str, str], str] = {}
         for each in self.fallen:
+            if each.id in told:
+                continue
             ground = each.id, NUMBER.sub("", each.reason)
             said.pop(ground, None)
             said[ground] = each.reason
