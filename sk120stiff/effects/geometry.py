@@ -112,6 +112,6 @@ class LinkLength(Geometric):
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """A rigid slide along the link, at its far end."""
         link = arm_joint(robot, self.where)
-        end, along = np.eye(4), link.directions()[0]
+        end, along = np.eye(4), link.directions[0]
         end[:3, 3] = link.along
         return (VirtualJoint(f"{self.id}.length", link.index, end, along, revolute=False),)

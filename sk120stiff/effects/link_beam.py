@@ -167,7 +167,7 @@ class LinkBending(LinearElastic):
         if found is not None:
             return found
         link = arm_joint(robot, self.where)
-        _, across, third = link.directions()
+        _, across, third = link.directions
         if passed_on(robot, link):
             across, third = _split(link)
         return Member(np.zeros(3), link.along, third, across)
@@ -247,7 +247,7 @@ class LinkTorsion(LinearElastic):
         joint's spring by another name. Any other link twists about its own line.
         """
         link = arm_joint(robot, self.where)
-        axis, placement = link.directions()[0], np.eye(4)
+        axis, placement = link.directions[0], np.eye(4)
         roll = _rolling_axis(robot, link, SHAFT)
         if roll is not None:
             axis, placement[:3, 3] = roll, link.along

@@ -69,7 +69,7 @@ class ThermalGrowth(Imposed):
         """A rigid slide along the link, at its far end."""
         link = arm_joint(robot, self.where)
         end = homogeneous(link.along)
-        axis = link.directions()[0]
+        axis = link.directions[0]
         return (VirtualJoint(f"{self.id}.length", link.index, end, axis, revolute=False),)
 
     def shifts(self, load_cases: LoadCases) -> Array:

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.measurements.whitening import Whitener
 
 
@@ -127,20 +128,24 @@ class FormWhitener:
         columns = [form.proportional * proportional, form.constant * constant]
         own = np.sqrt(form.factors(measurements))[:, None, None]
         white = noise.apply(own * np.concatenate(columns, axis=2))
-        self._poses: list[tuple[Index, Array, Array]] = []
-        self.strengths: list[tuple[Index, Array, Array]] = []
+        self._alike: list[tuple[Index, Array, Array]] = []
+        """Of poses with as many rows: these (m, r), directions (m, r, k) of their random effects,
+        and by how much what lies along each is shortened (m, k)."""
+        rows = rows_of_poses(measurements)
+        directions: list[tuple[Array, Array]] = [(white[:0], white[:0])] * len(rows)
+        logdet = noise.logdet
+        for places in rows_by_label(np.array([len(each) for each in rows])):
+            same = np.stack([rows[k] for k in places])
+            U, singular, _ = np.linalg.svd(white[same], full_matrices=False)
+            self._alike.append((same, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
+            logdet += float(np.log1p(singular**2).sum())
+            for k, own, size in zip(places, U, singular, strict=True):
+                directions[k] = own, size
+        self.strengths = [(r, U, s**2) for r, (U, s) in zip(rows, directions, strict=True)]
         """For each pose its whitened rows (r,), the directions (r, k) of its random effects, and
         their variance (k,) over the noise's."""
-        self._outweighing: list[tuple[Index, Array]] = []
-        logdet, noise_left = noise.logdet, []
-        for rows in rows_of_poses(measurements):
-            U, singular, _ = np.linalg.svd(white[rows], full_matrices=False)
-            self._poses.append((rows, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
-            logdet += float(np.log1p(singular**2).sum())
-            self.strengths.append((rows, U, singular**2))
-            large = singular > 1.0
-            self._outweighing.append((rows, U[:, large]))
-            noise_left.append(1.0 / (1.0 + singular[large] ** 2))
+        self._outweighing = [(r, U[:, s > 1.0]) for r, (U, s) in zip(rows, directions, strict=True)]
+        noise_left = [1.0 / (1.0 + s[s > 1.0] ** 2) for _, s in directions]
         self.logdet = logdet
         """Natural logarithm of det V, over all numbers that were read; V in m²."""
         shares = np.concatenate([*noise_left, np.zeros(0)])
@@ -165,8 +170,9 @@ class FormWhitener:
         """As `Whitener.apply`."""
         white = self._noise.apply(x)
         flat = white.reshape(len(white), -1)
-        for rows, U, shrink in self._poses:
-            flat[rows] -= U @ (shrink[:, None] * (U.T @ flat[rows]))
+        for rows, U, shrink in self._alike:
+            along = np.swapaxes(U, 1, 2) @ flat[rows]
+            flat[rows] -= U @ (shrink[:, :, None] * along)
         return flat.reshape(white.shape)
 
 

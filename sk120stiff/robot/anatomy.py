@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -47,6 +48,7 @@ class ArmJoint:
         """Length of the link it moves [m]."""
         return float(np.linalg.norm(self.along))
 
+    @cached_property
     def directions(self) -> tuple[Array, Array, Array]:
         """Three unit directions in the joint frame: along the link, and two across it.
 

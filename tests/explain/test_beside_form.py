@@ -7,13 +7,13 @@ import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect
-from sk120stiff.explain import Options, explain
+from sk120stiff.explain import Options
 from sk120stiff.explain.judge.beside_form import with_model_form
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.identify import fit, known_model
 from sk120stiff.measurements import Measurements, NoiseModel, read_measurements
 from sk120stiff.model import joint_spring_model
-from tests.explain.readings import SIGMA, base_fit, hidden
+from tests.explain.readings import SIGMA, answered, base_fit, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.real_arms import fanuc
 
@@ -41,7 +41,7 @@ def test_a_strong_cause_is_named_though_no_law_is_exact(springs):
     """Left over are 4 % of every pose's compliance, ten times the noise."""
     tilt = JointTilt("joint_2_l", {"first": 4e-7, "second": 0.0})
     rough = roughened(hidden(tilt), 0.04)
-    answer = explain(springs, rough, options=KINDS)
+    answer = answered(springs, rough, options=KINDS)
     assert answer.verdict in ("named", "ambiguous")
     assert [finding.effect.id for finding in answer.findings] == ["joint_tilt:joint_2_l"]
     left = answer.remainder
@@ -67,7 +67,7 @@ def test_beside_the_names_a_larger_noise_is_no_error_of_the_model(springs):
 
 
 def test_roughness_alone_has_no_name(springs):
-    answer = explain(springs, roughened(hidden(), 0.04), options=KINDS)
+    answer = answered(springs, roughened(hidden(), 0.04), options=KINDS)
     assert answer.verdict == "outside"
     assert not answer.findings
     assert answer.remainder.significant
@@ -75,7 +75,7 @@ def test_roughness_alone_has_no_name(springs):
 
 
 def test_exact_laws_leave_no_remainder(springs):
-    answer = explain(springs, hidden(), options=KINDS)
+    answer = answered(springs, hidden(), options=KINDS)
     assert answer.verdict == "none"
     assert not answer.remainder.significant
     assert answer.remainder.interval[0] == 0.0
@@ -86,8 +86,8 @@ def test_standard_errors_hold_the_roughness(springs):
     """Beside model-form error a spring is known less well than the noise alone would say."""
     tilt = JointTilt("joint_2_l", {"first": 4e-7, "second": 0.0})
     rough = roughened(hidden(tilt, poses=12, loads=4), 0.04)
-    exact = explain(springs, hidden(tilt, poses=12, loads=4), options=KINDS).final
-    found = explain(springs, rough, options=KINDS).final
+    exact = answered(springs, hidden(tilt, poses=12, loads=4), options=KINDS).final
+    found = answered(springs, rough, options=KINDS).final
     ratio = np.array([p.internal_std for p in found.parameters[:3]]) / [
         p.internal_std for p in exact.parameters[:3]
     ]
@@ -104,7 +104,7 @@ if fanuc.FOLDER.is_dir():
         arm = fanuc.robot(tmp_path, 1, 1, 1, 1, 1, 1)
         file = fanuc.SCRIPT["converted"](fanuc.FOLDER, tmp_path)
         data = read_measurements(file).with_joints(arm.actuated)
-        answer = explain(joint_spring_model(arm), data)
+        answer = answered(joint_spring_model(arm), data)
         assert answer.verdict == "ambiguous"
         first = answer.findings[0]
         pair = {"joint_tilt:joint_3", "link_bending:link_3"}

@@ -9,7 +9,6 @@ import pytest
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import InputError
-from sk120stiff.explain import explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.attribution import Fallen, Named
 from sk120stiff.explain.judge.beside_suspect import (
@@ -21,7 +20,7 @@ from sk120stiff.explain.judge.beside_suspect import (
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseStatement
-from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
+from tests.explain.readings import NOISE, SIGMA, answered, base_fit, hidden
 from tests.hidden.generator.causes_elastic import ToolCompliance
 from tests.hidden.generator.causes_foreign import TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
@@ -121,7 +120,7 @@ def test_a_suspect_that_holds_a_name_is_known_by_its_columns(springs):
 
 def test_a_name_stands_beside_a_cause_without_one(springs):
     """Gear 1 stiffens, and a cause is at work that no effect is: one is named, the other told."""
-    answer = explain(springs, hidden(GEAR, STAND))
+    answer = answered(springs, hidden(GEAR, STAND))
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.remainder.significant
     told = "the moment that tips the floor under base and tracker"
@@ -152,7 +151,7 @@ def test_a_name_shows_beside_a_cause_that_takes_most_of_the_rest(springs):
     """Two gears are softer at some angles: beside both the third, which stiffens, is outweighed."""
     waves = PeriodicGear("joint_2_l", {"share": 0.3}, {"count": 1, "phase": 1.0})
     others = PeriodicGear("joint_3_u", {"share": 0.15}, {"count": 2, "phase": 2.0})
-    answer = explain(springs, hidden(GEAR, waves, others, poses=16, loads=3))
+    answer = answered(springs, hidden(GEAR, waves, others, poses=16, loads=3))
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.remainder.where[0].startswith("Most of it goes with the position of joint_2_l")
     left = float(answer.remainder.where[0].partition("names, ")[2].partition(" µm")[0])
@@ -163,7 +162,7 @@ def test_a_name_shows_beside_a_cause_that_takes_most_of_the_rest(springs):
 def test_a_sigma_that_was_stated_too_small_hides_no_account(springs):
     """Less than a third too small: what is left has no structure, and its size is let free."""
     readings = replace(hidden(GEAR, TEETH), noise=NoiseStatement(sigma=0.72 * SIGMA))
-    answer = explain(springs, readings)
+    answer = answered(springs, readings)
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert "the position of joint_2_l" in answer.remainder.where[0]
     assert TOLD in answer.remainder.where[0]
@@ -173,7 +172,7 @@ def test_what_hides_behind_a_name_that_fell_is_looked_for(springs):
     """A gear's teeth outweigh a soft tool, which falls; beside it they show, and it stands."""
     waves = PeriodicGear("joint_2_l", {"share": 0.2}, {"count": 7, "phase": 1.0})
     tool = ToolCompliance("tool0", {"rx": 2e-5, "ry": 2e-5})
-    answer = explain(springs, hidden(tool, waves))
+    answer = answered(springs, hidden(tool, waves))
     assert [finding.effect.id for finding in answer.findings] == ["tool_compliance:tool0"]
     assert "its own stiffness depends in 7 waves a turn" in answer.remainder.where[0]
     assert TOLD in answer.remainder.where[0]

@@ -7,7 +7,6 @@ import pytest
 
 from sk120stiff import InputError, Model, Refusal, ToolkitWarning, base_model, load_robot
 from sk120stiff.effects import CATALOGUE, effect, load_cases_of
-from sk120stiff.explain import explain
 from sk120stiff.explain.advise import consequences
 from sk120stiff.explain.candidates.aliases import exact_aliases
 from sk120stiff.explain.judge import steps
@@ -17,7 +16,7 @@ from sk120stiff.explain.options import Options, candidates_for, with_assumed
 from sk120stiff.explain.select import stepwise
 from sk120stiff.explain.select.stepwise import Selection, refit, select
 from sk120stiff.plan import random_pool
-from tests.explain.readings import NOISE, POINT, base_fit, hidden
+from tests.explain.readings import NOISE, POINT, answered, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, ToolCompliance
 
 
@@ -38,19 +37,19 @@ def test_outliers_are_told_by_their_row_in_the_file_whatever_is_masked(springs):
     use = np.array(readings.use)
     use[0] = False
     with pytest.warns(ToolkitWarning, match="repeat earlier ones"):
-        answer = explain(springs, replace(readings, displacement=moved, use=use))
+        answer = answered(springs, replace(readings, displacement=moved, use=use))
     assert answer.set_aside == (40,)
 
 
 def test_a_plan_is_refused_as_bad_input(springs):
     with pytest.raises(InputError, match="no measured displacements"):
-        explain(springs, replace(hidden(), displacement=None))
+        answered(springs, replace(hidden(), displacement=None))
 
 
 def test_one_pose_is_refused_before_the_search(springs):
     readings = hidden()
     with pytest.raises(InputError, match="one pose alone"):
-        explain(springs, readings.select(readings.rows_of("1")))
+        answered(springs, readings.select(readings.rows_of("1")))
 
 
 def test_a_gain_of_the_force_sensor_is_no_other_name_for_rocking(springs):
@@ -163,7 +162,7 @@ def test_rounding_of_the_first_order_is_no_size(springs, monkeypatch):
 def test_loads_that_the_found_curve_does_not_hold_are_taken_smaller(springs, monkeypatch):
     """What to measure next is asked again at a part of the load; the answer is not lost."""
     rocking = BaseRocking("base_link", {"x": 1 / 4e6, "y": 1 / 4e6})
-    answer = explain(springs, hidden(rocking, poses=10, loads=2))
+    answer = answered(springs, hidden(rocking, poses=10, loads=2))
     (finding,) = answer.findings
     open_question = replace(finding, alternatives=("joint_tilt:joint_1_s",), exact=())
     asked = []
@@ -220,7 +219,7 @@ def test_a_beam_that_ends_before_the_last_joint_is_its_own_name_wherever_the_too
 def test_a_fixture_that_tilts_is_named_as_such(springs, where):
     """Made by the blind benchmark's generator: equally soft about both axes across the flange."""
     readings = hidden(ToolCompliance("tool0", {"rx": 6e-6, "ry": 6e-6}), seed=where)
-    answer = explain(springs, readings)
+    answer = answered(springs, readings)
     assert [(each.effect.id, each.alternatives) for each in answer.findings] == [
         ("tool_compliance:tool0", ())
     ]

@@ -8,7 +8,7 @@ import pytest
 
 from sk120stiff import InputError, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.explain import Options, explain, verdict_document
+from sk120stiff.explain import Options, verdict_document
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.judge.budget import error_budget
@@ -16,7 +16,7 @@ from sk120stiff.explain.judge.gear_curve import STEPS, gear_curves
 from sk120stiff.explain.priors import PRIORS, USUAL, price, priors_from
 from sk120stiff.identify import fit
 from sk120stiff.model.budget import shares as error_shares
-from tests.explain.readings import NOISE, hidden
+from tests.explain.readings import NOISE, answered, hidden
 from tests.hidden.generator.causes_curves import MaxwellSlip, SmoothPlay
 from tests.hidden.generator.sk120 import sk120
 
@@ -36,7 +36,7 @@ PLAY = SmoothPlay("joint_1_s", {"half_width": 1e-4}, {"flank": 40.0, "skew": 0.5
 
 @pytest.fixture(scope="module")
 def skewed(springs):
-    return explain(springs, hidden(PLAY, sigma=4e-6), options=GEARS)
+    return answered(springs, hidden(PLAY, sigma=4e-6), options=GEARS)
 
 
 def test_skewed_play_with_flanks_has_one_name(skewed):
@@ -48,7 +48,7 @@ def test_a_maxwell_slip_gear_is_friction_and_nothing_else(springs):
     gear = MaxwellSlip(
         "joint_1_s", {"half_width": 9e-5}, {"shares": (0.5, 0.3, 0.2), "reach": (2e-5, 8e-5, 2e-4)}
     )
-    answer = explain(springs, hidden(gear, schedule="up_down", sigma=4e-6), options=GEARS)
+    answer = answered(springs, hidden(gear, schedule="up_down", sigma=4e-6), options=GEARS)
     names = [finding.effect.id for finding in answer.findings]
     assert names == ["friction_hysteresis:joint_1_s"]
     (curve,) = gear_curves(answer.final, names)

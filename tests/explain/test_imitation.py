@@ -9,7 +9,7 @@ import pytest
 from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import Refusal
-from sk120stiff.explain import Options, explain
+from sk120stiff.explain import Options
 from sk120stiff.explain.judge import beside_form, imitation
 from sk120stiff.explain.judge.attribution import CURVE, findings_of
 from sk120stiff.explain.judge.attribution import _length as length
@@ -21,7 +21,7 @@ from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.explain.select.stepwise import refit, select
 from sk120stiff.identify import Fit, fit
 from sk120stiff.measurements import Measurements, ModelForm
-from tests.explain.readings import NOISE, hidden
+from tests.explain.readings import NOISE, answered, hidden
 from tests.hidden.generator.causes_elastic import BaseSliding, JointTilt
 from tests.hidden.generator.causes_foreign import QuadraticMount, TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening
@@ -129,7 +129,7 @@ def test_constants_along_the_turn_of_a_joint_are_no_zero_offsets(springs, along)
     offset = np.array([twist[p] * turn[k] if along else moved[p] for k, p in enumerate(clean.pose)])
     readings = replace(clean, displacement=clean.displacement + offset)
     only = Options(only=("zero_offset", "joint_tilt", "base_rocking"))
-    answer = explain(springs, readings, options=only)
+    answer = answered(springs, readings, options=only)
     names = [finding.effect.id for finding in answer.findings]
     assert names == ([] if along else ["zero_offset:tracker"])
 

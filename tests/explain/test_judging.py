@@ -9,7 +9,7 @@ from scipy import stats
 
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.explain import Options, explain
+from sk120stiff.explain import Options
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Confirmation, Evidence, Finding
 from sk120stiff.explain.judge.attribution import Fallen, Named
@@ -17,7 +17,7 @@ from sk120stiff.explain.options import candidates_for
 from sk120stiff.explain.select.outliers import outlying_rows
 from sk120stiff.explain.select.size_prices import price_of_sizes
 from sk120stiff.identify import fit
-from tests.explain.readings import SIGMA, base_fit, hidden
+from tests.explain.readings import SIGMA, answered, base_fit, hidden
 from tests.hidden.generator.causes_detail import WarmUp
 from tests.hidden.generator.causes_elastic import BaseRocking, LinkBending
 from tests.hidden.generator.causes_foreign import QuadraticMount, RubberMount
@@ -52,7 +52,7 @@ def test_strong_parameters_cost_what_the_information_criterion_asks():
 def test_a_floor_that_yields_with_the_square_is_not_called_noise_that_grows(springs):
     mount = QuadraticMount("base_link", {"x": 1.0e-7, "y": 1.4e-7}, {"full": 1500.0})
     unnamed = Options(exclude=("base_rocking",))
-    answer = explain(springs, hidden(mount, poses=12, loads=4), options=unnamed)
+    answer = answered(springs, hidden(mount, poses=12, loads=4), options=unnamed)
     told = "the moment that tips the base, not in proportion to it"
     assert answer.verdict == "outside"
     assert answer.remainder.significant
@@ -75,7 +75,7 @@ def test_a_floor_that_yields_with_the_square_is_not_called_noise_that_grows(spri
     ids=["more and more", "one way", "less and less"],
 )
 def test_what_yields_out_of_proportion_is_named_by_its_law(springs, cause, name, end):
-    answer = explain(springs, hidden(cause))
+    answer = answered(springs, hidden(cause))
     assert answer.verdict == "named"
     (finding,) = answer.findings
     assert finding.effect.name == {"rock": "base_rocking", "tool": "tool_compliance"}[name]
@@ -87,25 +87,25 @@ def test_what_fits_beyond_belief_is_told(springs):
     """A base that tips by 1e-5 rad/(N m) is nobody's base, but it is not hidden."""
     loose = BaseRocking("base_link", {"x": 1e-5, "y": 1e-5})
     names = Options(only=("base_rocking", "base_sliding", "joint_tilt"))
-    answer = explain(springs, hidden(loose, poses=14, loads=3), options=names)
+    answer = answered(springs, hidden(loose, poses=14, loads=3), options=names)
     (told,) = (said for said in answer.unnamed if "--assume base_rocking" in said)
     assert "N*m/rad, softer than what is believed" in told
     sound = BaseRocking("base_link", {"x": 1e-7, "y": 2e-7})
-    answer = explain(springs, hidden(sound, poses=14, loads=3), options=names)
+    answer = answered(springs, hidden(sound, poses=14, loads=3), options=names)
     assert not [said for said in answer.unnamed if "--assume" in said]
 
 
 def test_the_noise_has_one_number_before_and_after(springs):
     """A floor that yields one way bends the readings of a pose; that is no noise of the springs."""
     mount = {"x": 6e-7, "y": 8e-7}, {"full": 1500.0, "gap": True}
-    answer = explain(springs, hidden(QuadraticMount("base_link", *mount), stated=False))
+    answer = answered(springs, hidden(QuadraticMount("base_link", *mount), stated=False))
     assert answer.verdict == "named" and answer.yardstick.source == "scatter"
     assert f"noise alone makes ({1e6 * answer.noise_floor:#.3g} µm" in answer.where[0]
 
 
 def test_a_tracker_that_warms_up_is_named_by_its_course(springs):
     warming = WarmUp("tracker", {"x": 9e-6, "y": -7e-6, "z": 5e-6}, {"time": 25.0})
-    answer = explain(springs, hidden(warming, sigma=4e-6))
+    answer = answered(springs, hidden(warming, sigma=4e-6))
     assert [finding.effect.id for finding in answer.findings] == ["reading_drift:tracker"]
     assert any("_over_" in spec.name for spec in answer.findings[0].effect.parameters)
     assert not answer.remainder.significant
@@ -115,15 +115,15 @@ def test_a_bias_that_the_catalogue_lacks_does_not_hide_behind_zero_offsets(sprin
     bias = ForceBias("sensor", {"x": -18.0, "y": 8.0, "z": 8.0})
     readings = hidden(bias, poses=12, loads=4, stated=False)
     names = Options(only=("force_bias", "zero_offset"))
-    assert explain(springs, readings, options=names).verdict == "named"
-    answer = explain(springs, readings, options=Options(exclude=("force_bias",)))
+    assert answered(springs, readings, options=names).verdict == "named"
+    answer = answered(springs, readings, options=Options(exclude=("force_bias",)))
     assert answer.verdict == "outside"
     assert "a constant error of the load in tool axes" in " ".join(answer.adequacy.tests)
 
 
 def test_a_gear_that_stiffens_in_steps_is_named_by_steps(springs):
     steps = GearHardening("joint_1_s", {"first": 0.6, "second": 0.2}, {"T1": 120.0, "T2": 320.0})
-    answer = explain(springs, hidden(steps, sigma=4e-6))
+    answer = answered(springs, hidden(steps, sigma=4e-6))
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.verdict == "named"
     assert any("extra_below" in name for name in answer.final.model.names)
@@ -133,7 +133,7 @@ def test_a_gear_that_stiffens_in_steps_is_named_by_steps(springs):
 
 def test_a_notebook_shows_the_name_its_size_and_the_gap(springs):
     rocking = hidden(BaseRocking("base_link", {"x": 2e-7, "y": 2e-7}))
-    answer = explain(springs, rocking, options=Options(only=("base_rocking", "joint_tilt")))
+    answer = answered(springs, rocking, options=Options(only=("base_rocking", "joint_tilt")))
     shown = answer._repr_html_()
     page = ET.fromstring(f"<div>{shown}</div>")
     text = " ".join(page.itertext())
@@ -146,7 +146,7 @@ def test_a_notebook_shows_the_name_its_size_and_the_gap(springs):
 
 
 def test_a_gear_that_stiffens_smoothly_is_named_by_its_series(springs):
-    answer = explain(
+    answer = answered(
         springs, hidden(GearHardening("joint_1_s", {"cubic": 0.8}, {"T": 700.0}), sigma=4e-6)
     )
     assert "gear_hardening:joint_1_s.cubic" in answer.final.model.names
@@ -175,14 +175,14 @@ def test_every_law_of_a_part_leads_to_all_others(springs, name, where, least):
 def test_a_gear_of_two_steps_is_no_play_with_wide_flanks(springs):
     """The usual law of data sheets; the softer first step is crossed at every torque but few."""
     law = {"first": 1.2, "second": 0.27}, {"T1": 135.0, "T2": 369.0}
-    answer = explain(springs, hidden(GearHardening("joint_1_s", *law), sigma=15e-6))
+    answer = answered(springs, hidden(GearHardening("joint_1_s", *law), sigma=15e-6))
     assert answer.findings[0].effect.id == "gear_hardening:joint_1_s"
     assert len(answer.findings[0].effect.breaks) == 2
 
 
 def test_a_gear_that_stiffens_at_a_small_torque_is_no_play_beyond_doubt(springs):
     steps = GearHardening("joint_1_s", {"first": 0.5, "second": 0.1}, {"T1": 70.0, "T2": 140.0})
-    answer = explain(springs, hidden(steps, sigma=10e-6))
+    answer = answered(springs, hidden(steps, sigma=10e-6))
     (found,) = answer.findings
     assert "gear_hardening:joint_1_s" in (found.effect.id, *found.alternatives)
 
@@ -198,7 +198,7 @@ def test_a_gear_that_stiffens_needs_a_spring_to_stiffen(springs):
 
 def test_readings_without_a_yardstick_are_not_held_to_be_lacking(springs):
     """Three loads a pose, nobody stated the noise: nothing can tell what is left over."""
-    answer = explain(springs, hidden(loads=3, stated=False, seed=3))
+    answer = answered(springs, hidden(loads=3, stated=False, seed=3))
     assert answer.verdict == "none"
     assert answer.adequacy.probability > 0.01
 
@@ -212,7 +212,7 @@ def test_how_zeros_were_shared_is_found_where_nobody_said(springs, kind):
         displacement = clean.problem.measured - clean.gap
         noise = np.sqrt(2.0) * SIGMA * rng.normal(size=displacement.shape)
         readings = replace(readings, displacement=displacement + noise)
-    answer = explain(springs, replace(readings, zero="unknown"))
+    answer = answered(springs, replace(readings, zero="unknown"))
     assert answer.noise.zero == kind
     assert answer.verdict == "none"
 
@@ -231,7 +231,7 @@ def test_clean_readings_without_a_stated_noise_have_no_outliers(springs):
 
 def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
     """A column that bends looks like torque that moves the other joint, with other springs."""
-    answer = explain(springs, hidden(LinkBending("link_1_s", {"flexibility": 1e-7})))
+    answer = answered(springs, hidden(LinkBending("link_1_s", {"flexibility": 1e-7})))
     (finding,) = answer.findings
     assert answer.verdict == "ambiguous"
     ends = dict(zip(answer.final.parameters, answer.final.intervals(), strict=True))
@@ -252,7 +252,7 @@ def test_springs_hold_their_truth_under_every_name_that_is_possible(springs):
 def test_what_the_law_of_a_beam_leaves_over_is_no_second_cause(springs):
     """Its taper lies between two that are tried."""
     beam = LinkBending("link_2_l", {"flexibility": 8e-7}, {"taper": 0.52})
-    answer = explain(springs, hidden(beam, sigma=4e-6))
+    answer = answered(springs, hidden(beam, sigma=4e-6))
     assert [finding.effect.id for finding in answer.findings] == ["link_bending:link_2_l"]
     assert "the law of link_bending:link_2_l leaves over" in " ".join(answer.unnamed)
 
@@ -279,14 +279,14 @@ def test_a_name_has_to_be_confirmed(improved, gain, frequency, rival, foretells,
 def test_a_bias_beside_a_strong_beam_is_still_named(springs):
     """No taper of a link makes a force sensor read wrong."""
     beam = LinkBending("link_2_l", {"flexibility": 1e-6})
-    answer = explain(springs, hidden(beam, ForceBias("sensor", {"x": 8.0, "y": 4.0, "z": 0.0})))
+    answer = answered(springs, hidden(beam, ForceBias("sensor", {"x": 8.0, "y": 4.0, "z": 0.0})))
     assert {finding.effect.name for finding in answer.findings} == {"link_bending", "force_bias"}
 
 
 def test_another_law_that_the_readings_refute_leaves_no_doubt(springs):
     """Nobody stated the noise, and it is far finer than what a fit starts from."""
     steps = GearHardening("joint_1_s", {"first": 0.6, "second": 0.2}, {"T1": 120.0, "T2": 320.0})
-    answer = explain(springs, hidden(steps, sigma=1e-6, stated=False))
+    answer = answered(springs, hidden(steps, sigma=1e-6, stated=False))
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.final.selection_uncertainty is not None
     spring = answer.final.model.parameter("joint_springs:joint_1_s.stiffness")
@@ -300,7 +300,7 @@ def test_a_beams_stiffness_is_as_uncertain_as_its_taper(springs, flexibility, do
     The larger bend tells its taper, between the two that were looked at first.
     """
     beam = LinkBending("link_2_l", {"flexibility": flexibility}, {"taper": 0.45})
-    answer = explain(springs, hidden(beam, sigma=10e-6))
+    answer = answered(springs, hidden(beam, sigma=10e-6))
     assert [finding.effect.id for finding in answer.findings] == ["link_bending:link_2_l"]
     doubt = answer.final.selection_uncertainty
     assert doubt is not None
@@ -318,7 +318,7 @@ def test_a_beams_stiffness_is_as_uncertain_as_its_taper(springs, flexibility, do
 def test_a_taper_next_to_the_usual_one_is_found_without_a_second_name(springs, flexibility, taper):
     """What the nearest taper leaves over looks like another length of the link."""
     beam = LinkBending("link_2_l", {"flexibility": flexibility}, {"taper": taper})
-    answer = explain(springs, hidden(beam, sigma=4e-6))
+    answer = answered(springs, hidden(beam, sigma=4e-6))
     assert [finding.effect.id for finding in answer.findings] == ["link_bending:link_2_l"]
     (stiffness,) = (p for p in answer.final.parameters if p.effect.name == "link_bending")
     assert stiffness.spec.name in {"EI_taper_45", "EI_taper_15"}

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
-from sk120stiff.explain import Explanation, explain, verdict_document
+from sk120stiff.explain import Explanation, verdict_document
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.measurements import NoiseStatement
 from sk120stiff.show.stories.verdicts import title_of
-from tests.explain.readings import SIGMA, hidden
+from tests.explain.readings import SIGMA, answered, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 from tests.hidden.generator.causes_joint import FrictionHysteresis, Memory
 
@@ -33,11 +33,11 @@ def understated(seed, factor):
 @pytest.fixture(scope="module")
 def halved(springs: Model) -> Explanation:
     """Readings that are twice as noisy as stated."""
-    return explain(springs, understated(101, 2.0))
+    return answered(springs, understated(101, 2.0))
 
 
 def test_a_stated_uncertainty_that_is_a_little_too_small_is_said_to_be(springs):
-    answer = explain(springs, understated(100, 1.35))
+    answer = answered(springs, understated(100, 1.35))
     assert_said_to_be_too_small(answer, 1.35)
 
 
@@ -55,19 +55,19 @@ def assert_said_to_be_too_small(answer, factor):
 
 
 def test_a_statement_that_is_a_wrong_number_is_said_to_be(springs):
-    answer = explain(springs, understated(101, 4.0))
+    answer = answered(springs, understated(101, 4.0))
     assert_said_to_be_too_small(answer, 4.0)
     assert "Correct the stated σ to about" in next_step(answer)
 
 
 def test_a_statement_exceeded_eight_times_is_a_finding(springs):
-    answer = explain(springs, understated(100, 9.0))
+    answer = answered(springs, understated(100, 9.0))
     assert answer.verdict == "outside"
     assert "times the stated uncertainty" in " ".join(answer.noise_reasons)
 
 
 def test_hysteresis_is_named_and_not_taken_for_noise(springs):
-    answer = explain(springs, hidden(DRAG, schedule="up_down", loads=6, poses=8, sigma=5e-6))
+    answer = answered(springs, hidden(DRAG, schedule="up_down", loads=6, poses=8, sigma=5e-6))
     assert [finding.effect.id for finding in answer.findings] == ["friction_hysteresis:joint_2_l"]
     assert answer.noise.sigma == 5e-6
     assert answer.noise_floor == pytest.approx(2**0.5 * 5e-6)
@@ -77,21 +77,21 @@ def test_hysteresis_that_nothing_can_name_is_outside(springs):
     """Neither branch nor order: the effect cannot be named, and is no noise for all that."""
     readings = hidden(DRAG, schedule="up_down", loads=4, poses=5, sigma=5e-6)
     bare = replace(readings, branch=None, order=None, zero_order=None)
-    answer = explain(springs, bare)
+    answer = answered(springs, bare)
     assert answer.verdict == "outside"
     assert answer.noise.sigma == 5e-6
 
 
 def test_a_foreign_memory_is_not_called_noise(springs):
     cause = Memory("joint_2_l", {"share": 0.4}, {"play": 150.0})
-    answer = explain(springs, hidden(cause, schedule="up_down", loads=3, poses=6, sigma=5e-6))
+    answer = answered(springs, hidden(cause, schedule="up_down", loads=3, poses=6, sigma=5e-6))
     assert answer.verdict != "none"
 
 
 def test_one_question_has_one_number(springs):
     """The same p and the same floor from the fit, the answer, and its file."""
     readings = hidden(seed=100, stated=False)
-    answer = explain(springs, readings)
+    answer = answered(springs, readings)
     found = fit(springs, readings)
     document = verdict_document(answer, readings)
     test = lack_of_fit(found)
@@ -107,7 +107,7 @@ def test_an_unknown_noise_has_no_floor(springs):
     """One load per pose, nobody stated σ: the gap is no yardstick of the gap."""
     cause = BaseRocking("base_link", {"x": 2e-7, "y": 2e-7})
     readings = hidden(cause, loads=1, poses=40, stated=False)
-    answer = explain(springs, readings)
+    answer = answered(springs, readings)
     document = verdict_document(answer, readings)
     assert document["gap"]["noise_floor"] is None
     assert document["gap"]["p"] is None
@@ -127,7 +127,7 @@ def test_a_gap_of_rounding_is_nothing(springs):
     """Computed readings: a floor as stiff as this moves the point by picometres."""
     floor = BaseRocking("base_link", {"x": 2e-15, "y": 2e-15})
     readings = hidden(floor, sigma=1e-16, stated=False)
-    answer = explain(springs, readings)
+    answer = answered(springs, readings)
     assert answer.base.rms < 1e-10
     assert answer.verdict == "none" and not answer.findings
     document = verdict_document(answer, readings)

@@ -7,10 +7,9 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff import Model, base_model, load_robot
-from sk120stiff.explain import explain
 from sk120stiff.explain.candidates.aliases import exact_aliases
 from sk120stiff.measurements import Measurements, NoiseStatement
-from tests.explain.readings import hidden
+from tests.explain.readings import answered, hidden
 from tests.hidden.generator.causes_sensor import ForceBias
 from tests.hidden.generator.world import Cause
 
@@ -43,7 +42,7 @@ def with_offsets(*causes: Cause, factor: float = 1.0, loads: int = 6) -> Measure
 @pytest.mark.parametrize("factor", [1.0, 1.4])
 def test_offsets_are_named_whatever_was_stated(springs: Model, factor: float) -> None:
     """Model-form error that is constant at single poses is what offsets are; a name comes first."""
-    answer = explain(springs, with_offsets(factor=factor))
+    answer = answered(springs, with_offsets(factor=factor))
     assert answer.verdict == "named"
     assert [finding.effect.id for finding in answer.findings] == ["zero_offset:tracker"]
     assert not answer.remainder.significant
@@ -52,7 +51,7 @@ def test_offsets_are_named_whatever_was_stated(springs: Model, factor: float) ->
 
 
 def test_what_offsets_have_in_common_is_the_sensors(springs: Model) -> None:
-    answer = explain(springs, with_offsets(ForceBias("sensor", BIAS)))
+    answer = answered(springs, with_offsets(ForceBias("sensor", BIAS)))
     names = {finding.effect.id for finding in answer.findings}
     assert names == {"zero_offset:tracker", "force_bias:sensor"}
     told = {p.spec.name: p for p in answer.final.parameters if p.effect.name == "force_bias"}

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects.reading_drift import ReadingDrift, warm_ups
-from sk120stiff.explain import explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
 from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
 from sk120stiff.measurements import Measurements, NoiseModel
-from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
+from tests.explain.readings import NOISE, SIGMA, answered, base_fit, hidden
 
 WAY = np.array([0.6, -0.5, 0.62])
 
@@ -112,7 +111,7 @@ def test_a_crowd_that_does_not_stand_apart_is_a_cause_that_is_missing():
 def test_the_slip_that_would_explain_a_reading_is_told():
     readings = with_slips()
     model = base_fit(readings).model
-    answer = explain(model, readings, options=Options(only=("joint_tilt",)))
+    answer = answered(model, readings, options=Options(only=("joint_tilt",)))
     assert answer.slips == {
         7: "exchanged with the reading of pose 9 both would fit",
         25: "dz would fit with the other sign",
@@ -136,7 +135,7 @@ def test_a_drift_may_die_away_at_once_where_the_series_is_long():
 
 def test_a_tracker_that_warms_up_over_two_poses_of_many_is_named():
     readings = warming(hidden(poses=36), 6.0, 40 * SIGMA)
-    answer = explain(base_fit(readings).model, readings)
+    answer = answered(base_fit(readings).model, readings)
     assert [finding.effect.id for finding in answer.findings] == ["reading_drift:tracker"]
     assert answer.set_aside == ()
 

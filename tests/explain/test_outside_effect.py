@@ -10,13 +10,13 @@ import pytest
 
 from sk120stiff.effects import CATALOGUE, load_cases_of
 from sk120stiff.errors import InputError
-from sk120stiff.explain import Explanation, Options, explain
+from sk120stiff.explain import Explanation, Options
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model, read_model, write_model
 from sk120stiff.robot import load_robot
 from sk120stiff.show.stories import explain_report
 from tests.effects.outside import EVERYTHING, JointCreep, LinkStretch
-from tests.explain.readings import POINT, hidden
+from tests.explain.readings import POINT, answered, hidden
 from tests.hidden.generator.causes_foreign import AxialLink
 from tests.hidden.generator.rows import Rows
 from tests.hidden.generator.sk120 import sk120
@@ -45,7 +45,7 @@ def named(answer: Explanation) -> list[str]:
 
 @pytest.fixture(scope="module")
 def answer(model: Model, stretched: Measurements) -> Explanation:
-    return explain(model, stretched, catalogue=EVERYTHING)
+    return answered(model, stretched, catalogue=EVERYTHING)
 
 
 def test_it_is_found_by_name_with_its_value(answer: Explanation) -> None:
@@ -58,7 +58,7 @@ def test_it_is_found_by_name_with_its_value(answer: Explanation) -> None:
 
 def test_without_it_the_catalogue_has_no_such_name(model: Model, stretched: Measurements) -> None:
     with pytest.raises(InputError, match="there is no effect 'link_stretch'"):
-        explain(model, stretched, options=Options(only=("link_stretch",)))
+        answered(model, stretched, options=Options(only=("link_stretch",)))
 
 
 def test_the_report_speaks_of_it(answer: Explanation, stretched: Measurements) -> None:
@@ -137,7 +137,7 @@ def test_a_movement_that_no_load_makes_is_simulated_as_elsewhere(model: Model) -
 
 
 def test_a_movement_that_no_load_makes_is_found(model: Model) -> None:
-    found = explain(
+    found = answered(
         model, crept(RATE), catalogue=CATALOGUE + JointCreep, options=Options(max_effects=2)
     )
     assert found.verdict == "named" and named(found) == ["joint_creep:joint_2_l"]

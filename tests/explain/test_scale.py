@@ -7,10 +7,11 @@ import pytest
 
 from sk120stiff import load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.explain import Options, explain
+from sk120stiff.explain import Options
 from sk120stiff.measurements import Measurements, NoiseStatement
 from sk120stiff.model import joint_spring_model
 from tests.corpus.robots import example
+from tests.explain.readings import answered
 
 SIGMA = 10e-6
 STIFFNESS = (5.5e5, 5.5e5, 2.75e5, 5.5e4, 5.5e4, 5.5e4)  # N·m/rad
@@ -57,7 +58,7 @@ def test_an_arm_a_hundred_times_softer_has_the_same_name(ur10, softer, bearing, 
     assert np.linalg.norm(moved, axis=1).max() == pytest.approx(largest, rel=0.5)
     noise = np.sqrt(2.0) * SIGMA * rng.normal(size=moved.shape)
     readings = replace(plan, displacement=moved + noise)
-    answer = explain(joint_spring_model(ur10), readings, options=KINDS)
+    answer = answered(joint_spring_model(ur10), readings, options=KINDS)
     assert answer.verdict == "named"
     assert [finding.effect.id for finding in answer.findings] == [tilt.id]
     assert answer.yardstick.sigma == SIGMA

@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff import base_model, load_robot
-from sk120stiff.explain import explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.localise.suspects import TO_AND_FRO
-from tests.explain.readings import hidden
+from tests.explain.readings import answered, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 
 
@@ -21,7 +20,9 @@ def test_a_cause_beside_air_conditioning() -> None:
         pace = 2.0 * np.pi / period
         drift += size * (np.sin(pace * order + phase) - np.sin(pace * zero + phase))
     moved = readings.displacement + drift[:, None] * np.array([0.0, 0.0, 1.0])
-    answer = explain(base_model(load_robot("motoman_sk120")), replace(readings, displacement=moved))
+    answer = answered(
+        base_model(load_robot("motoman_sk120")), replace(readings, displacement=moved)
+    )
     assert [finding.effect.id for finding in answer.findings] == ["base_rocking:base_link"]
     assert any(f"{TO_AND_FRO}2" in said for said in answer.remainder.where)
     assert "read the zero again before every load" in next_step(answer)

@@ -287,7 +287,7 @@ def _rotation(load_cases: LoadCases, joint: ArmJoint) -> Array:
 
 def _frames(load_cases: LoadCases, joint: ArmJoint) -> Array:
     """(N, 3, 3) along the link and two directions across it, as columns, base axes."""
-    along, across, other = joint.directions()
+    along, across, other = joint.directions
     return _rotation(load_cases, joint) @ np.stack([along, across, other], axis=-1)
 
 

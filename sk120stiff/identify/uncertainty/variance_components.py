@@ -194,7 +194,8 @@ class Deviance:
         inner = drawn + np.eye(len(size)) * (1.0 + ROUNDING * largest)
         factor = np.linalg.cholesky(inner)
         half = np.linalg.solve(factor, self.zx * size[:, None])
-        left = self.xx - np.einsum("gqi,gqj->ij", half, half)
+        taken = half.reshape(-1, half.shape[2])
+        left = self.xx - taken.T @ taken
         logdet = 2.0 * np.log(np.diagonal(factor, axis1=1, axis2=2)).sum()
         square, information = _projected(left)
         return float(logdet), information, square
