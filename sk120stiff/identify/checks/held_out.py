@@ -22,7 +22,7 @@ from sk120stiff.model import Model
 
 FOLDS = 10  # parts in which poses are left out, as is usual
 FEWER = 5  # of many poses, as usual: a fifth of them is little missed
-MANY = 100  # poses from which on there are fewer parts, in half the time
+MANY = 30  # poses from which on there are fewer parts, in half the time
 SAME = 9  # decimals to which joint values of one and the same posture agree [rad or m]
 
 #: From readings to fits: of one model, or of several that were learned together.
