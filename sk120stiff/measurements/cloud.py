@@ -32,19 +32,19 @@ class Cloud:
     marker: NDArray[np.str_]
     group: Index
 
-    def placed(self, *, fit_marker: bool) -> tuple[Registration, Mask]:
-        """The best placing, and the rows that it rests on (N,)."""
+    def placed(self, *, fit_marker: bool, until: float = 0.0) -> tuple[Registration, Mask]:
+        """The best placing, and the rows that it rests on (N,); `until`: see `register`."""
         screws = self.robot.screws(self.a)
         flange, rotation = screws.frame_position, screws.rotation
         kept = np.ones(len(self.x), dtype=bool)
         for _ in range(ROUNDS):
             found = register(
                 self.x[kept], flange[kept], rotation[kept], self.point[kept],
-                fit_marker=fit_marker, group=self.group[kept],
+                fit_marker=fit_marker, group=self.group[kept], until=until,
             )  # fmt: skip
             if found is None:
                 raise InputError("fewer than three positions", remedy="Measure more poses.")
-            left = self.left(found)
+            left = self._off(found, flange, rotation)
             best = found
             again = left <= max(FAR * float(np.median(left)), LEAST)
             if (again == kept).all() or again.mean() < 1.0 - WILD:
@@ -55,9 +55,11 @@ class Cloud:
     def left(self, found: Registration) -> Array:
         """(N,) distance of every position from where the placed robot has the marker [m]."""
         screws = self.robot.screws(self.a)
-        at = screws.frame_position + np.einsum(
-            "nij,nj->ni", screws.rotation, self.point + found.marker + found.apart[self.group]
-        )
+        return self._off(found, screws.frame_position, screws.rotation)
+
+    def _off(self, found: Registration, flange: Array, rotation: Array) -> Array:
+        places = self.point + found.marker + found.apart[self.group]
+        at = flange + np.einsum("nij,nj->ni", rotation, places)
         return np.asarray(np.linalg.norm(self.x - at @ found.turn.T - found.shift, axis=1))
 
     def some(self, most: int = LOOKED_AT) -> Cloud:

@@ -17,6 +17,7 @@ BETTERED = 0.9  # of what is left, that one change of a convention must fall bel
 WHOLE = 2  # joints of whose ways all are kept, since the wrist tells little of them
 KEPT = 32  # of the ways of the joints so far that are followed
 SLACK = 0.02  # rad or m; a joint may go so far beyond what its URDF states
+NEARLY = 1e-3  # of what is left, by which a marker may still move where ways are compared
 TIMES = (1.0, -1.0, 2.0, -2.0)  # another joint's share in a sum, and in one of the wrong sign
 
 
@@ -25,7 +26,7 @@ def slips(cloud: Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, 
     turning = ~np.array(cloud.robot.prismatic)
 
     def left(a: Array = cloud.a, x: Array = cloud.x) -> float:
-        return replace(cloud, a=a, x=x).placed(fit_marker=True)[0].rms
+        return replace(cloud, a=a, x=x).placed(fit_marker=True, until=NEARLY)[0].rms
 
     for factor, was, unit in (
         (np.pi / 180.0, "degrees, not radians", "deg"),
@@ -78,7 +79,7 @@ def markers(cloud: Cloud) -> Iterator[tuple[float, float, str, str]]:
         point = cloud.point.copy()
         for k in moved:
             point[cloud.marker == kinds[k]] = place[way[k]]
-        rms = replace(cloud, point=point).placed(fit_marker=True)[0].rms
+        rms = replace(cloud, point=point).placed(fit_marker=True, until=NEARLY)[0].rms
         yield (
             rms,
             rms,
@@ -162,7 +163,7 @@ def signs_and_turns(cloud: Cloud) -> Convention:
 def _left(cloud: Cloud, share: Array, zero: Array) -> float:
     """What is left with joints that are shares of the columns, and zeros of their own [m]."""
     moved = replace(cloud, a=cloud.a @ share.T + zero)
-    return moved.placed(fit_marker=True)[0].rms
+    return moved.placed(fit_marker=True, until=NEARLY)[0].rms
 
 
 def oddness(cloud: Cloud, signs: Array, zero: Array) -> tuple[int, int]:

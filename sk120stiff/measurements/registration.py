@@ -13,6 +13,7 @@ _TOLD = 1e-6  # the least singular value, of columns of length one, that determi
 
 MARKER_POSES = 5  # from here on the marker's place is fitted too
 _STEPS = 100  # of Gauss and Newton
+_STILL = 1e-10  # m; a marker that moves by less is found
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +65,7 @@ def register(
     *,
     fit_marker: bool = True,
     group: Index | None = None,
+    until: float = 0.0,
 ) -> Registration | None:
     """Fit x = R (p + Q m) + t to positions: the tracker's frame R, t and the marker m.
 
@@ -78,6 +80,7 @@ def register(
         fit_marker: False leaves the marker where it is said to be.
         group: (P,) number of the marker that was read, from 0 on, where several have places of
             their own; None: one.
+        until: The marker is found where it moves by less than this share of what is left.
 
     Returns:
         None with fewer than three poses: two positions fit any robot nearly.
@@ -107,7 +110,7 @@ def register(
         marker = marker + step[6:].reshape(-1, 3)
         # The best turn and shift for that marker: no step of theirs can then lead astray.
         turn, shift = kabsch(reached(), measured)
-        if np.abs(step[6:]).max() < 1e-10:
+        if np.abs(step[6:]).max() < max(_STILL, until * float(np.sqrt(np.mean(left**2)))):
             break
     left = measured - reached() @ turn.T - shift
     distance = np.linalg.norm(left, axis=1)
