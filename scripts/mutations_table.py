@@ -201,6 +201,10 @@ FAULTS: tuple[Fault, ...] = (
                       "corrected = [suspicion.probability for suspicion, _ in found]"),
     ),
     *_of(
+        "explain/judge/attribution.py", *_tests("explain", "judging"),
+        said_to_have_fallen_beside_its_set=("if each.id in told:", "if False:"),
+    ),
+    *_of(
         "explain/judge/adequacy.py", *_tests("explain", "evidence"),
         adequacy_without_Bonferroni=("min(1.0, len(tests) * min(", "min(1.0, min("),
         named_effects_explain_what_the_base_does=("signature - base @ (base.T @ signature)", "signature"),
