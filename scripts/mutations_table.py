@@ -300,7 +300,11 @@ FAULTS: tuple[Fault, ...] = (
     *_of(
         "explain/judge/beside_suspect.py", *_tests("explain", "beside_suspect"),
         only_what_leaves_noise_alone_is_an_account=("if each.total < without.total - WORTH]", "if each.total < -1e9]"),
+    ),
+    *_of(
+        "explain/judge/nuisance.py", *_tests("explain", "nuisance"),
         suspects_alike=("return self is other", "return type(self) is type(other)"),
+        other_columns_in_a_part=("if load_cases is not self.fitted:", "if False:"),
     ),
     *_of(
         "data_checks/sheet.py", *_tests("data_checks", "false_alarms"),

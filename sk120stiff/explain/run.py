@@ -33,7 +33,7 @@ from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
-from sk120stiff.explain.judge.steps import gap_steps
+from sk120stiff.explain.judge.steps import foretold_beside, gap_steps
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
@@ -144,13 +144,17 @@ def explain_displacements(
     )
     remainder = remainder.unless([part.probability for part in together])
     effects = [finding.effect for finding in findings]
-    beside = None if account is None else account.fit
+    beside = None if account is None else account.beside.final
     final = with_selection_uncertainty(found, findings, beside)
     verdict = _verdict(findings, left)
+    steps = gap_steps(found, effects, holdout, seed=options.seed)
     if remainder.significant:
         lives = where_sentences(localise(held_against(noise, found.final)))
         if account is not None:  # of another suspect in its place no more need be said
             lives = (*lives[:1], account.sentence())
+        if account is not None and holdout is None:
+            without, count = steps[-1].heldout_rms, len(effects)
+            lives += foretold_beside(account.beside, count, without, seed=options.seed)
         remainder = replace(remainder, where=(*lives[1 : 1 + TOLD], *left.of_time))
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
@@ -160,7 +164,7 @@ def explain_displacements(
         findings=findings,
         base=base,
         final=_as_written(final, noise),
-        steps=gap_steps(found, effects, holdout, seed=options.seed),
+        steps=steps,
         noise=noise,
         noise_reasons=(*decided(noise, used), *left.of_the_statement()),
         set_aside=tuple(rows[found.outliers].tolist()),

@@ -7,20 +7,18 @@ import numpy as np
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
-from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.errors import InputError
+from sk120stiff.effects import effect
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.attribution import Fallen, Named
 from sk120stiff.explain.judge.beside_suspect import (
     Account,
     _holds,
     _with_the_last_fallen,
-    nuisance,
 )
+from sk120stiff.explain.judge.nuisance import nuisance
 from sk120stiff.explain.select.stepwise import select
-from sk120stiff.identify import fit
 from sk120stiff.measurements import NoiseStatement
-from tests.explain.readings import NOISE, SIGMA, answered, base_fit, hidden
+from tests.explain.readings import NOISE, SIGMA, answered, hidden
 from tests.hidden.generator.causes_elastic import ToolCompliance
 from tests.hidden.generator.causes_foreign import TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
@@ -39,47 +37,6 @@ def springs() -> Model:
     return model
 
 
-def test_free_factors_are_the_columns_of_the_suspect():
-    """Whatever a suspect can do to the readings, its parameters do, and nothing else."""
-    base = base_fit(hidden(TEETH, poses=8, loads=4))
-    load_cases = base.problem.load_cases
-    free = nuisance("the load in axes of the base", base)
-    force = load_cases.wrench[:, :3]
-    columns = np.einsum("ij,nk->nijk", np.eye(3), force).reshape(-1, 9)
-    made = free.offsets(load_cases).reshape(len(columns), -1)
-    assert np.allclose(np.sqrt((made**2).mean(axis=0)), 1.0)
-    assert np.allclose(made.T @ made / len(made), np.eye(9), atol=1e-9)
-    left = columns - made @ (made.T @ columns) / len(made)
-    assert np.abs(left).max() < 1e-9 * np.abs(columns).max()
-
-
-def test_two_suspects_are_two_effects():
-    """What is remembered of a model by its effects is never another suspect's."""
-    base = base_fit(hidden(TEETH, poses=8, loads=4))
-    gear = "the position of joint_2_l, on which a drive's stiffness may depend"
-    loads = "the load in axes of the base"
-    first, second, third = nuisance(gear, base), nuisance(loads, base), nuisance(gear, base)
-    assert len({first, second, third}) == 3 and first == first and first != third
-    values = np.append(base.model.values, 1e-5)
-    cases = base.problem.load_cases
-    moved = [
-        (base.model + each).predict(cases, np.append(values, np.zeros(each.factors.shape[1] - 1)))
-        for each in (first, second)
-    ]
-    assert np.abs(moved[0] - moved[1]).max() > 1e-6
-
-
-def test_what_other_readings_do_not_tell_moves_nothing_there():
-    """One stays with the readings it was found in: an order, branches, a joint that moved."""
-    readings = hidden(TEETH, poses=8, loads=4)
-    free = nuisance("the order of the readings", base_fit(readings))
-    robot = base_fit(readings).model.robot
-    unordered = load_cases_of(robot, replace(readings, order=None, zero_order=None))
-    assert not free.offsets(unordered).any()
-    with pytest.raises(InputError, match="do not tell of the moon"):
-        nuisance("the moon", base_fit(readings))
-
-
 def test_a_name_that_fell_and_came_back_is_not_added_twice(springs: Model):
     ways = [effect(springs.robot, "gear_hardening", f"joint_{k}") for k in ("1_s", "2_l")]
     found = select(springs, hidden(GEAR), NOISE, ways, max_effects=1, alpha=0.01)
@@ -90,17 +47,6 @@ def test_a_name_that_fell_and_came_back_is_not_added_twice(springs: Model):
         assert [len({p.effect.id for p in fit.parameters} & {each.id for each in ways})
                 for fit in beside] == fits  # fmt: skip
     assert _with_the_last_fallen(found, Named((), ())) == []
-
-
-def test_a_suspect_takes_from_a_fit_what_it_stands_for():
-    """A gear that is softer at some angles: the fit beside the suspect holds to the noise."""
-    readings = hidden(TEETH)
-    base = base_fit(readings)
-    angle = "the position of joint_2_l, on which a drive's stiffness may depend"
-    beside = fit(base.model + nuisance(angle, base), readings, noise=NOISE)
-    assert base.exceeds and not beside.exceeds
-    cases = load_cases_of(base.model.robot, readings)
-    assert beside.model.predict(cases).shape == readings.displacement.shape
 
 
 def test_a_suspect_that_holds_a_name_is_known_by_its_columns(springs):

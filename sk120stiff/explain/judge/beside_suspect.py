@@ -14,17 +14,12 @@ too: what imitated the part that has a place falls, what hid behind it shows.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import ClassVar
+from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect, LoadCases
-from sk120stiff.effects.base import ReadingError
-from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.errors import InputError, Refusal
+from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.judge.attribution import (
     MARGIN,
@@ -34,15 +29,14 @@ from sk120stiff.explain.judge.attribution import (
     with_the_strongest,
 )
 from sk120stiff.explain.judge.beside_form import unless_imitating, with_model_form
+from sk120stiff.explain.judge.nuisance import Nuisance, nuisance
 from sk120stiff.explain.localise.places import line_up, look_at, ranked
-from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.best_selection import Try
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit, fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.measurements import NoiseModel
-from sk120stiff.model import Model
 
 ROUNDS = 3  # of estimating what is left beside a suspect, searching and judging
 WORTH = 6.0  # evidence (BIC) by which a suspect that leaves something has to win
@@ -50,77 +44,6 @@ TRIED = 1  # suspects, of those that come nearest to the gap of the springs and 
 NARROW = 4  # models kept by the search that tells which suspect is worth a whole one
 LEFT = 2.5  # times the noise's variance: what names may leave, before any law is exact
 INSIDE = 0.3  # share of its length below which an effect is part of a suspect
-WIDEST = 0.1  # m; no factor moves a reading by more
-SMALLEST = 1e-6  # of the largest singular value: what columns have of their own
-
-
-@dataclass(frozen=True, eq=False)
-class Nuisance(ReadingError):
-    """A suspect's free factors as parameters: orthogonal combinations of its columns.
-
-    Attributes:
-        suspect: Its name.
-        model: The base model, whose predictions the suspect may go with.
-        factors: (k, P) combinations of its k columns, each 1 m rms long in the readings fitted.
-        price: What which of several alike it is costs, in -2 ln L.
-    """
-
-    suspect: str = field(kw_only=True)
-    model: Model = field(kw_only=True)
-    factors: Array = field(kw_only=True)
-    price: float = field(kw_only=True, default=0.0)
-    name: ClassVar[str] = "nuisance"
-    says: ClassVar[str] = "Something without a name is at work."
-
-    def __eq__(self, other: object) -> bool:
-        """Only with itself: that of another suspect, or of another fit, has other columns."""
-        return self is other
-
-    __hash__ = object.__hash__
-
-    @property
-    def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Size of every combination, rms of the readings fitted."""
-        return tuple(
-            ParameterSpec(f"factor_{k}", "m", "m", plausible=WIDEST, typical=1e-5)
-            for k in range(self.factors.shape[1])
-        )
-
-    @cached_property
-    def generators(self) -> Array:
-        """It does not depend on the displacement."""
-        return np.zeros((self.factors.shape[1], 3, 3))
-
-    @cached_property
-    def _known(self) -> dict[int, tuple[LoadCases, Array]]:
-        return {}
-
-    def offsets(self, load_cases: LoadCases) -> Array:
-        """The suspect's columns at these readings, base axes; zero where they do not tell it."""
-        if id(load_cases) not in self._known:
-            suspect = suspect_named(self.suspect, self.model, load_cases)
-            nothing = np.zeros((load_cases.count, 3, len(self.factors)))
-            columns = nothing if suspect is None else suspect.columns
-            self._known[id(load_cases)] = load_cases, columns @ self.factors
-        return self._known[id(load_cases)][1]
-
-
-def nuisance(name: str, base: Fit) -> Nuisance:
-    """A suspect as parameters of the model of a fit.
-
-    Raises:
-        InputError: The readings of the fit do not tell of it.
-    """
-    suspect = suspect_named(name, base.model, base.problem.load_cases)
-    if suspect is None:
-        raise InputError(f"these readings do not tell of {name}")
-    columns = suspect.columns
-    flat = columns.reshape(-1, columns.shape[2]) / np.sqrt(columns[..., 0].size)
-    _, size, right = np.linalg.svd(flat, full_matrices=False)
-    seen = size > SMALLEST * size[0]
-    factors = right[seen].T / size[seen]
-    price = suspect.price_of_choice
-    return Nuisance("", suspect=name, model=base.model, factors=factors, price=price)
 
 
 @dataclass(frozen=True)
@@ -131,14 +54,14 @@ class Account:
         selection: The names beside model-form error, without the suspect.
         named: What was said of each name, beside the suspect where that changed which stand.
         suspect: Completes the sentence "The gap goes with ...".
-        fit: Of names and suspect together.
+        beside: The names with the suspect in the model.
         left: Beside it beyond the noise, rms per axis [m]; zero: nothing.
     """
 
     selection: Selection
     named: Named
     suspect: str
-    fit: Fit
+    beside: Selection
     left: float = 0.0
 
     def sentence(self) -> str:
@@ -237,7 +160,7 @@ def _accounted(
         beside_it, said = unless_imitating(told.found, told.named, seed)
         left = 0.0 if told.complete else _left_by(beside_it.final)
         if not told.complete and _names(said) == _names(named):
-            return Account(without, named, suspect, beside_it.final, left)
+            return Account(without, named, suspect, beside_it, left)
         effects = [finding.effect for finding in said.findings]
         beside = under(with_model_form(refit(at, effects)))
     except Refusal:
@@ -248,7 +171,7 @@ def _accounted(
     if named.findings and not findings and not (at.sigma_known and told.complete):
         return None
     fallen = (*_fallen(named, stand, suspect), *said.fallen)
-    return Account(kept, Named(findings, fallen), suspect, beside_it.final, left)
+    return Account(kept, Named(findings, fallen), suspect, beside_it, left)
 
 
 def _beside(

@@ -61,6 +61,23 @@ def gap_steps(
     )
 
 
+def foretold_beside(beside: Selection, count: int, without: float, *, seed: int) -> tuple[str, ...]:
+    """What poses left out of the fit say of a suspect; nothing where they do not hold the model.
+
+    Args:
+        beside: Names beside the suspect.
+        count: How many names there are.
+        without: Gap on these poses with the names alone, rms per axis [m].
+        seed: Of the parts in which poses are left out.
+    """
+    (gap,) = _on_poses_left_out(beside, [count], seed)
+    if not np.isfinite([gap, without]).all():
+        return ()
+    both = f"to {1e6 * gap:.3g} µm rms per axis with it and to {1e6 * without:.3g} without"
+    but = "" if gap < without else ": that is where it shows, but how it goes on there is not known"
+    return (f"Poses that are left out are foretold {both}{but}.",)
+
+
 def nested(found: Selection, counts: Sequence[int]) -> Learn:
     """Learning as `explain` learns: noise, effects and values from the readings at hand alone.
 
