@@ -38,7 +38,7 @@ def test_held_out_error_is_what_new_poses_show(springs) -> None:
     """About the noise of a displacement and a little for the springs' own error."""
     readings = readings_of(springs, poses=30, seed=6)
     (error,) = held_out(readings, refitted(springs, noise=NOISE))
-    assert error.folds == 10
+    assert error.folds == 5
     assert abs(error.rms - np.sqrt(2.0) * 10e-6) < 4 * error.std + 0.5e-6
 
 

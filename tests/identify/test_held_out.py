@@ -69,9 +69,9 @@ def test_a_part_that_is_not_predicted_is_an_error(springs, readings) -> None:
 
 
 def test_of_many_poses_a_fifth_is_left_out_at_once(springs) -> None:
-    many = readings_of(springs, poses=100, seed=4)
+    many = readings_of(springs, poses=30, seed=4)
     (error,) = held_out(many, refitted(springs, noise=NOISE))
     assert error.folds == 5
-    (fewer,) = held_out(many.select(many.pose_index < 99), refitted(springs, noise=NOISE))
+    (fewer,) = held_out(many.select(many.pose_index < 29), refitted(springs, noise=NOISE))
     assert fewer.folds == 10
     assert fewer.rms == pytest.approx(error.rms, rel=0.1)
