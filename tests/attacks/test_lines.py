@@ -17,10 +17,10 @@ Line = Callable[[Path], Iterator[Verdict]]
 BOUNDED: dict[str, tuple[Line, int]] = {  # line → a part of it, attacks at most
     "mutated robots": (lambda folder: robots.mutated_robots(folder, 60, 5000), 60),
     "hostile robots": (robots.hostile_robots, 19),
-    "options": (lambda folder: options.options(folder, 10, 7), 10),
+    "options": (lambda folder: options.options(folder, 15, 7), 15),
     "variables": (environments.variables, 2),
     "limits": (environments.limits, 2),
-    "damaged maps": (lambda folder: maps.damage(folder, every=67), 4),
+    "damaged maps": (lambda folder: maps.damage(folder, every=67), 9),
     "full disk": (lambda folder: disks.full_disk(folder, sizes=(80,)), 1),
     "garbage": (lambda folder: readings.garbage(folder, only=1), 12),
     "slips of the pen": (lambda folder: readings.slips(folder, seeds=(3,), every=40), 9),

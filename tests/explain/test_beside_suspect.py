@@ -8,6 +8,7 @@ import pytest
 
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.effects import effect
+from sk120stiff.explain import explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.attribution import Fallen, Named
 from sk120stiff.explain.judge.beside_suspect import (
@@ -66,12 +67,18 @@ def test_a_suspect_that_holds_a_name_is_known_by_its_columns(springs):
 
 def test_a_name_stands_beside_a_cause_without_one(springs):
     """Gear 1 stiffens, and a cause is at work that no effect is: one is named, the other told."""
-    answer = answered(springs, hidden(GEAR, STAND))
+    answer = explain(springs, hidden(GEAR, STAND))  # as users ask, poses left out and all
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.remainder.significant
     told = "the moment that tips the floor under base and tracker"
     assert told in answer.remainder.where[0]
     assert TOLD in answer.remainder.where[0]
+    foretold = answer.remainder.where[1]
+    assert foretold.startswith("Poses that are left out are foretold to ")
+    beside, alone = (float(part.split()[-1]) for part in (
+        foretold.partition(" µm")[0], foretold.partition(" without")[0]))  # fmt: skip
+    assert alone == pytest.approx(1e6 * answer.steps[-1].heldout_rms, rel=5e-3)
+    assert beside < alone
     without = hidden(GEAR).displacement - hidden(GEAR, STAND).displacement
     assert answer.remainder.rms < 1.05 * np.sqrt(np.mean(without**2))
     for spring, true in zip(answer.final.parameters, sk120().typical.joint.values(), strict=False):
