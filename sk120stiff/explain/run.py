@@ -172,7 +172,7 @@ def explain_displacements(
         adequacy=left,
         remainder=remainder,
         unnamed=(
-            *named.reasons,
+            *replace(named, findings=findings).reasons,
             *(part.sentence() for part in together if part.probability > WORTH_A_SENTENCE),
             *([] if beyond is None else [beyond.sentence]),
             *held_rigid(final),

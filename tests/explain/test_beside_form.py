@@ -109,6 +109,8 @@ if fanuc.FOLDER.is_dir():
         first = answer.findings[0]
         pair = {"joint_tilt:joint_3", "link_bending:link_3"}
         assert {first.effect.id, *first.alternatives} == pair
+        fallen = {said.partition(" ")[0] for said in answer.unnamed}  # none that stands in the set
+        assert fallen and not fallen & pair
         assert all(np.isfinite(p.value) for p in answer.final.parameters[:3])
 
 
