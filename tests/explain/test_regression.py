@@ -11,7 +11,8 @@ from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
 from sk120stiff.explain.candidates.sums import Sums, solve_columns
-from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, gains, in_its_place
+from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, in_its_place
+from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import (
     _deviance,
     price_of_looking,
@@ -110,7 +111,7 @@ def test_gains_are_the_fall_of_the_misfit():
     found = regression()
     sums = found.sums()
     base = solve_columns(sums, found.base, found.lower, found.plausible)
-    promised = gains(found, sums, base)
+    promised = promises(found, sums, base).most
     for own, promise in zip(found.columns, promised, strict=True):
         grown = np.concatenate([found.base, own])
         rss = np.linalg.lstsq(found.X[:, grown], found.y, rcond=None)[1][0]

@@ -96,6 +96,17 @@ class Regression:
         )
 
     @cached_property
+    def every_variant(self) -> tuple[Array, Array]:
+        """(V,) number of parameters and (V,) price of every variant, see `prices_of_choice`."""
+        counts = [len(part) for parts in self.variants for part in parts]
+        return np.array(counts), np.concatenate([*self.prices_of_choice, np.zeros(0)])
+
+    @cached_property
+    def first_variants(self) -> Index:
+        """(candidates + 1,) place of each candidate's first variant among all V; V comes last."""
+        return np.append(0, np.cumsum([len(parts) for parts in self.variants])).astype(np.intp)
+
+    @cached_property
     def in_base(self) -> Mask:
         """(P,) which columns belong to the base model."""
         out = np.zeros(self.X.shape[1], dtype=bool)
@@ -141,14 +152,14 @@ class Regression:
 
     @cached_property
     def variants_by_size(self) -> tuple[tuple[Index, Index], ...]:
-        """Pairs of candidate and variant (m, 2) and their columns (m, k), for every k there is."""
-        by_size: dict[int, list[tuple[int, int]]] = {}
-        for e, parts in enumerate(self.variants):
-            for k, part in enumerate(parts):
-                by_size.setdefault(len(part), []).append((e, k))
+        """Places (m,) among all variants and their columns (m, k), for every k there is."""
+        by_size: dict[int, list[int]] = {}
+        every = [part for parts in self.variants for part in parts]
+        for place, part in enumerate(every):
+            by_size.setdefault(len(part), []).append(place)
         return tuple(
-            (np.array(pairs), np.array([self.variants[e][k] for e, k in pairs]))
-            for size, pairs in by_size.items()
+            (np.array(places), np.array([every[place] for place in places]))
+            for size, places in by_size.items()
             if size
         )
 

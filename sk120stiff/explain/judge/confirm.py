@@ -12,7 +12,7 @@ from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import Sums
 from sk120stiff.explain.findings import Confirmation
-from sk120stiff.explain.select.beam import largest, likeliest, promises
+from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import Scored, score_set, score_sets
 from sk120stiff.identify import drawn_parts
 
@@ -84,7 +84,7 @@ def _in_question(
     rest = tuple(e for e in model.effects if e != effect)
     sums = regression.sums()
     beside = score_set(regression, sums, rest, start=model.by_variant, only=())
-    order = np.argsort(-largest(promises(regression, sums, beside.solved))).tolist()
+    order = np.argsort(-promises(regression, sums, beside.solved).most).tolist()
     likely = {*same, *model.effects, *[e for e in order if e not in rest][:LIKELY]}
     parts = [part for e in likely for part in regression.variants[e]]
     return np.unique(np.concatenate([regression.base, *parts]))
@@ -141,11 +141,9 @@ def _winner(
     start = model.by_variant
     beside = score_set(regression, sums, rest, start=start, only=())
     promised = promises(regression, sums, beside.solved)
-    order = [int(e) for e in np.argsort(-largest(promised)) if int(e) not in rest][:RIVALS]
+    order = [int(e) for e in np.argsort(-promised.most) if int(e) not in rest][:RIVALS]
     contenders = {*same, *(e for e in order if not regression.candidates[e].random_effects)}
-    likely = [
-        beside.by_variant | {e: likeliest(regression, sums, e, promised[e])} for e in contenders
-    ]
+    likely = [beside.by_variant | {e: promised.likeliest(e)} for e in contenders]
     sets = [dict(sorted(variants.items())) for variants in likely]
     scored = dict(zip(contenders, score_sets(regression, sums, sets), strict=True))
     for e, laws in zip(contenders, sets, strict=True):

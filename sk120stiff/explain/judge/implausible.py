@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.explain.candidates.regression import Regression
-from sk120stiff.explain.select.beam import likeliest, promises
+from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.explain.select.stepwise import Selection
 
@@ -33,8 +33,8 @@ def implausible(found: Selection) -> Implausible | None:
     promised = promises(regression, sums, now.solved)
     tried: dict[int, Scored] = {}
     for e in set(range(len(regression.candidates))) - set(now.effects):
-        if not regression.candidates[e].random_effects and len(promised[e]):
-            law = now.by_variant | {e: likeliest(regression, sums, e, promised[e])}
+        if not regression.candidates[e].random_effects:
+            law = now.by_variant | {e: promised.likeliest(e)}
             tried[e] = score_set(regression, sums, law, untied=e, start=law, only=())
     beyond = [e for e, model in tried.items() if not model.plausible]
     if not beyond or not now.plausible:

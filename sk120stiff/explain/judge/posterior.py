@@ -15,7 +15,7 @@ import numpy as np
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import NAMED, Finding
 from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
-from sk120stiff.explain.select.beam import gains
+from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import score_set
 
 LISTED = 0.01  # probability from which on a candidate is worth a line
@@ -79,8 +79,8 @@ def one_more(regression: Regression, model: tuple[int, ...]) -> dict[str, float]
     """Probability of every candidate as one effect more, above a hundredth, and of `NONE`."""
     sums = regression.sums()
     base = score_set(regression, sums, model)
-    promise = gains(regression, sums, base.solved)
-    order = [int(e) for e in np.argsort(-promise) if int(e) not in model][:LOOKED_AT]
+    most = promises(regression, sums, base.solved).most
+    order = [int(e) for e in np.argsort(-most) if int(e) not in model][:LOOKED_AT]
     start = base.by_variant
     scored = {e: score_set(regression, sums, (*model, e), start=start, only=(e,)) for e in order}
     fair = {regression.candidates[e].id: m.score for e, m in scored.items() if m.plausible}

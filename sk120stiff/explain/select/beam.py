@@ -8,57 +8,17 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression
-from sk120stiff.explain.candidates.sums import Solved, Sums
+from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import Scored, score_set, score_sets
-from sk120stiff.explain.select.size_prices import price_of_sizes
 
 BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
-HOPELESS = 40.0  # score by which larger models lose that have no future
+HOPELESS = 20.0  # score by which larger models lose that have no future: twice decisive
+SLACK = 6.0  # score by which prices of the other effects fall where one more joins
 CONTENDERS = 24  # candidates that are tried in the place of an effect
 NEAR = 40.0  # difference of scores within which their neighbours may take other laws
 FIRST = 4  # of them whose neighbours may anyway: a strong beam by another taper hides much
 WORTH = 4.0  # fall of the misfit that a gear's curve promises, to join in with all others
-
-
-def promises(regression: Regression, sums: Sums, model: Solved) -> list[Array]:
-    """For each candidate, what each of its variants could take away from the misfit of a model.
-
-    One projection serves all: with S the columns of one variant and M projecting out the model, it
-    is ‖orth(M S)ᵀ r‖², no bound of a parameter kept but that of one alone.
-    """
-    inside = model.columns
-    gram_in = sums.gram[np.ix_(inside, inside)] + np.diag(regression.plausible[inside] ** -2.0)
-    scale = np.sqrt(np.maximum(np.diag(gram_in), 1e-300))
-    cross = sums.gram[inside] / scale[:, None]
-    solved = np.linalg.solve(gram_in / np.outer(scale, scale), cross)
-    residual = sums.moment - solved.T @ (sums.moment[inside] / scale)
-    out = [np.zeros(len(parts)) for parts in regression.variants]
-    size = np.sqrt(np.maximum(np.diag(sums.gram), 1e-300))
-    for pairs, columns in regression.variants_by_size:
-        blocks = sums.gram[columns[:, :, None], columns[:, None, :]]
-        blocks = blocks - cross.T[columns] @ np.swapaxes(solved.T[columns], 1, 2)
-        scales = size[columns]
-        right = residual[columns] / scales
-        values, vectors = np.linalg.eigh(blocks / (scales[:, :, None] * scales[:, None, :]))
-        along = np.einsum("mki,mk->mi", vectors, right)
-        seen = values > 1e-9
-        found = np.where(seen, along**2 / np.where(seen, values, 1.0), 0.0).sum(axis=1)
-        if columns.shape[1] == 1:
-            found[(right[:, 0] < 0.0) & (regression.lower[columns[:, 0]] == 0.0)] = 0.0
-        for (e, k), gain in zip(pairs, found, strict=True):
-            out[e][k] = gain
-    return out
-
-
-def gains(regression: Regression, sums: Sums, model: Solved) -> Array:
-    """(candidates,) upper bound on the misfit that each candidate could take away from a model."""
-    return largest(promises(regression, sums, model))
-
-
-def largest(promised: list[Array]) -> Array:
-    """(candidates,) the most that any variant promises."""
-    return np.array([float(each.max(initial=0.0)) for each in promised])
 
 
 def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int = 4) -> list[Scored]:
@@ -86,21 +46,38 @@ def beam_search(regression: Regression, *, width: int = BEAM, max_effects: int =
         seen[model.effects] = score_set(regression, total, model.effects, start=model.by_variant)
         return seen[model.effects]
 
+    def leading(hope: Mapping[tuple[int, ...], float]) -> dict[tuple[int, ...], Scored]:
+        """Those children that may be among the best of their size, the most hopeful first."""
+        grown: dict[tuple[int, ...], Scored] = {}
+        order = sorted(hope, key=lambda effects: hope[effects])
+        for begin in range(0, len(order), 2 * width):
+            part = order[begin : begin + 2 * width]
+            best = sorted(m.score for m in grown.values() if m.plausible)
+            if len(best) >= width and hope[part[0]] > best[width - 1] + SLACK:
+                break
+            grown |= {m.effects: m for m in scored(children[effects] for effects in part)}
+        return grown
+
     front = [score_set(regression, total, ())]
     seen[()] = front[0]
     for _ in range(max_effects):
-        children: list[dict[int, int]] = []
+        children: dict[tuple[int, ...], dict[int, int]] = {}
+        hope: dict[tuple[int, ...], float] = {}
         for model in front:
             promised = promises(regression, total, model.solved)
-            promise = largest(promised)
-            order = [int(e) for e in np.argsort(-promise) if int(e) not in model.effects]
+            hopes = promised.hopes(model)
+            order = [int(e) for e in np.argsort(-promised.most) if int(e) not in model.effects]
             room = len(model.effects) < max_effects  # gears that joined together took more
             steps: list[tuple[int, ...]] = [(e,) for e in order[: 2 * width]] if room else []
-            steps += _all_gears(regression, model, promise, max_effects)
+            steps += _all_gears(regression, model, promised.most, max_effects)
             for step in steps:
-                likely = {e: likeliest(regression, total, e, promised[e]) for e in step}
-                children.append(model.by_variant | likely)
-        grown = {child.effects: child for child in scored(children)}
+                effects = tuple(sorted((*model.effects, *step)))
+                likely = {e: promised.likeliest(e) for e in step}
+                children.setdefault(effects, model.by_variant | likely)
+                together = len(step) > 1  # what they do jointly no promise tells
+                own = -np.inf if together else float(hopes[step[0]])
+                hope[effects] = min(hope.get(effects, np.inf), own)
+        grown = leading(hope)
         least = min((m.score for m in grown.values() if m.plausible), default=np.inf)
         beyond = (m for m in grown.values() if not m.plausible and m.score < least)
         for model in sorted(beyond, key=lambda m: m.score)[:width]:  # by another law they may be
@@ -165,22 +142,20 @@ def in_its_place(
         effect: The one whose place it is.
     """
     sums, rest, start = regression.sums(), without.effects, model.by_variant
-    promise = gains(regression, sums, without.solved)
-    order = [int(e) for e in np.argsort(-promise) if int(e) not in (*rest, effect)][:CONTENDERS]
-    found = [(e, score_set(regression, sums, (*rest, e), start=start, only=(e,))) for e in order]
-    near = max([model.score + NEAR, *sorted(m.score for _, m in found)[:FIRST]])
+    promised = promises(regression, sums, without.solved)
+    order = [int(e) for e in np.argsort(-promised.most) if int(e) not in (*rest, effect)]
+    hopes, near = promised.hopes(without), model.score + NEAR
+    found: list[tuple[int, Scored]] = []
+    for e in sorted(order[:CONTENDERS], key=lambda e: hopes[e]):
+        if len(found) >= FIRST and hopes[e] > near + SLACK:
+            break
+        found.append((e, score_set(regression, sums, (*rest, e), start=start, only=(e,))))
+        near = max([model.score + NEAR, *sorted(m.score for _, m in found)[:FIRST]])
     settled = [
         (e, score_set(regression, sums, m.effects, start=m.by_variant) if m.score <= near else m)
         for e, m in found
     ]
     return [(e, m) for e, m in settled if m.plausible]
-
-
-def likeliest(regression: Regression, sums: Sums, effect: int, promised: Array) -> int:
-    """The variant that promises the best score."""
-    counts = np.array([len(part) for part in regression.variants[effect]])
-    sizes = price_of_sizes(promised, counts, max(sums.count, 2.0))
-    return int(np.argmax(promised - sizes - regression.prices_of_choice[effect]))
 
 
 def _all_gears(

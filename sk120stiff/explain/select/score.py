@@ -160,12 +160,31 @@ def _deviance(regression: Regression, sums: Sums, solved: Solved | Solutions) ->
     own = np.zeros(np.shape(rss))
     if regression.form is not None and sums.form is not None and sums.form.count:
         left, count = np.maximum(sums.form.left_by(solved), 0.0), sums.form.count
-        size = np.maximum(left / count, regression.form.noise_share)
-        own = count * np.log(size) + left / size
+        own = _form_deviance(left, count, regression.form.noise_share)
         rss, n = np.maximum(rss - left, 0.0), n - count
     if regression.sigma_known or n < 1.0:
         return own + rss
     return np.asarray(own + n * np.log(np.maximum(rss, 1e-300) / n) + n)
+
+
+def _form_deviance(left: Array, count: float, least: float) -> Array:
+    """-2 ln L of rows that leave so much, at the likeliest size of their model-form error."""
+    size = np.maximum(left / count, least)
+    return np.asarray(count * np.log(size) + left / size)
+
+
+def fall_of_form(regression: Regression, sums: Sums, model: Solved, falls: Array) -> Array:
+    """By how much -2 ln L falls at most where the misfit of a model falls so much.
+
+    Beside model-form error every model has a size of that error of its own, and the logarithm of a
+    size may fall faster than the misfit.
+    """
+    if regression.form is None or sums.form is None or not sums.form.count:
+        return falls
+    left = np.maximum(sums.form.left_by(model), 0.0)
+    own = (sums.form.count, regression.form.noise_share)
+    fallen = _form_deviance(left, *own) - _form_deviance(np.maximum(left - falls, 0.0), *own)
+    return np.maximum(falls, fallen)
 
 
 def _with_draws(

@@ -13,11 +13,11 @@ the misfit grows by less than the price falls, which includes the choice among a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import comb
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression
@@ -56,11 +56,16 @@ def prices_of_sizes(
     gains, counts = gains / variance, mine.sum(axis=1)
     prices = price_of_sizes(gains, counts, n)
     if regression.form is None:  # else rows of two kinds count by two sizes
-        bounded = mine & (regression.lower[own] == 0.0)[:, :, None]
-        rows = np.flatnonzero((bounded.any(axis=1) & (counts > 1)).any(axis=1))
-        for row, scatter in zip(rows, _scatters(regression, sums, solved, rows), strict=True):
+        bounded = mine & ((regression.lower[own] == 0.0)[:, :, None] & (counts > 1)[:, None])
+        rows = np.flatnonzero(bounded.any(axis=(1, 2)))
+        scatters = _scatters(regression, sums, solved, rows)
+        spread = np.diagonal(scatters, axis1=1, axis2=2) * variance[rows]
+        growth = (solved.values[rows] ** 2 / spread)[:, len(base) :, None]
+        least = np.where(bounded[rows], growth, np.inf).min(axis=1, initial=np.inf)
+        worth = least < prices[rows]  # else the misfit grows by more than the whole price
+        for row, scatter, effects in zip(rows, scatters, worth, strict=True):
             ways = _Held(scatter, solved.values[row], float(variance[row, 0]))
-            for effect in np.flatnonzero(bounded[row].any(axis=0) & (counts[row] > 1)):
+            for effect in np.flatnonzero(effects):
                 places = (len(base) + np.flatnonzero(bounded[row, :, effect])).tolist()
                 price = float(prices[row, effect])
                 prices[row, effect] = ways.cheaper(
@@ -110,9 +115,11 @@ class _Held:
         while left and held + 1 < count:
             place = min(left, key=self.growth)
             more = spent + self.growth(place)
+            if more >= price:
+                break
             fewer = more + float(
                 price_of_sizes(max(gain - more, 0.0), count - held - 1, rows)
-                + 2.0 * np.log(comb(len(places), held + 1))
+                + 2.0 * math.log(math.comb(len(places), held + 1))
             )
             if fewer >= price:
                 break
