@@ -243,6 +243,10 @@ class Elastic(Effect):
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """Law e(τ) for torques (N, k) [N·m or N] and internal parameter values (P,)."""
 
+    def by_parameter(self, torques: Array, load_cases: LoadCases, values: Array) -> Array:
+        """(N, k, P) derivative of `elongation` by the internal parameters."""
+        return self.elongation(torques, load_cases, values).by_parameter
+
 
 class LinearElastic(Elastic):
     """Elongation linear in torque and in parameters: e = Σ_p values[p] · pattern_p τ.
@@ -258,14 +262,24 @@ class LinearElastic(Elastic):
     def patterns(self, load_cases: LoadCases) -> Array:
         """(P, k, k) or (P, N, k, k) symmetric compliance per unit of each parameter."""
 
+    def patterns_at(self, load_cases: LoadCases) -> Array:
+        """`patterns` of these readings, worked out once."""
+        known = load_cases.patterns
+        if self not in known:
+            known[self] = self.patterns(load_cases)
+        return known[self]
+
+    def by_parameter(self, torques: Array, load_cases: LoadCases, values: Array) -> Array:
+        """See `Elastic.by_parameter`: it does not go with the values."""
+        del values
+        patterns = self.patterns_at(load_cases)
+        indices = "pij,nj->nip" if patterns.ndim == 3 else "pnij,nj->nip"
+        return np.asarray(np.einsum(indices, patterns, torques))
+
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""
-        patterns = self.patterns(load_cases)
-        if patterns.ndim == 3:
-            by_parameter = np.einsum("pij,nj->nip", patterns, torques)
-        else:
-            by_parameter = np.einsum("pnij,nj->nip", patterns, torques)
-        C = np.tensordot(values, patterns, axes=1)
+        by_parameter = self.by_parameter(torques, load_cases, values)
+        C = np.tensordot(values, self.patterns_at(load_cases), axes=1)
         return Elongation(
             value=by_parameter @ values,
             by_torque=np.broadcast_to(C, (*torques.shape, torques.shape[-1])),
@@ -299,6 +313,10 @@ class Geometric(Effect):
     def coordinates(self, robot: Robot) -> tuple[str, ...]:
         """Names of the k coordinates that are shifted."""
         return tuple(joint.name for joint in self.virtual_joints(robot))
+
+    def marks(self, load_cases: LoadCases) -> bool:
+        """Does it move the marker of these readings, and nothing of the arm?"""
+        return self.of_marker and load_cases.absolute
 
     def shifts(self, load_cases: LoadCases) -> Array:
         """(N, k, P) shift of the coordinates per unit of a parameter.

@@ -29,11 +29,12 @@ class Latest:
         """(N, 3) and (N, 3, P) of these effects at these values (P,), if they are still known."""
         return self.known.get((effects, values.tobytes()))
 
-    def keep(self, effects: Hashable, values: Array, found: Prediction) -> None:
-        """Keep a prediction in the place of the oldest."""
+    def keep(self, effects: Hashable, values: Array, found: Prediction) -> bool:
+        """Keep a prediction in the place of the oldest, unless it takes too much room."""
         if found[1].size > LARGEST:
-            return
+            return False
         with self.lock:
             self.known[effects, values.tobytes()] = found
             while len(self.known) > KEPT:
                 del self.known[next(iter(self.known))]
+        return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -163,6 +164,11 @@ class LoadCases:
     def latest(self) -> Latest:
         """What was predicted of them last."""
         return Latest()
+
+    @cached_property
+    def patterns(self) -> dict[Hashable, Array]:
+        """Compliance per unit of each parameter, of the linear effects that were asked of it."""
+        return {}
 
     @cached_property
     def nominal(self) -> Screws:

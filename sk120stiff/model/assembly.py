@@ -1,4 +1,4 @@
-"""A robot with effects as one mechanism: prediction and its exact derivatives.
+"""A robot with effects as one mechanism, and what it predicts.
 
 Coordinates are z = [a; v], actuated and virtual. A reading is made in five steps:
 
@@ -9,8 +9,7 @@ Coordinates are z = [a; v], actuated and virtual. A reading is made in five step
 4. the displacement is x(z) − x(z₀);
 5. the reading errors turn it into what the instrument says.
 
-Derivatives follow from one adjoint solve per reading: with N = I − C K_C at the equilibrium,
-∂x/∂p = (J N⁻¹) ∂(s + e)/∂p.
+Its exact derivatives are in `sensitivities.py`.
 """
 
 from __future__ import annotations
@@ -77,7 +76,8 @@ class Assembly:
         return {name: k for k, name in enumerate(names)}
 
     @cached_property
-    def _elastic(self) -> tuple[tuple[Elastic, slice, Index], ...]:
+    def elastic(self) -> tuple[tuple[Elastic, slice, Index], ...]:
+        """What yields, each with its part of the values and the indices of its coordinates."""
         return tuple(
             (effect, part, self._indices(effect.coordinates(self.robot)))
             for effect, part in zip(self.effects, self.slices, strict=True)
@@ -85,7 +85,8 @@ class Assembly:
         )
 
     @cached_property
-    def _geometric(self) -> tuple[tuple[Geometric, slice, Index], ...]:
+    def geometric(self) -> tuple[tuple[Geometric, slice, Index], ...]:
+        """What shifts the unloaded coordinates, likewise."""
         return tuple(
             (effect, part, self._indices(effect.coordinates(self.robot)))
             for effect, part in zip(self.effects, self.slices, strict=True)
@@ -93,7 +94,8 @@ class Assembly:
         )
 
     @cached_property
-    def _imposed(self) -> tuple[tuple[Imposed, slice, Index], ...]:
+    def imposed(self) -> tuple[tuple[Imposed, slice, Index], ...]:
+        """What moves coordinates between zero and reading, likewise."""
         return tuple(
             (effect, part, self._indices(effect.coordinates(self.robot)))
             for effect, part in zip(self.effects, self.slices, strict=True)
@@ -107,17 +109,17 @@ class Assembly:
         """(N, n_z) unloaded coordinates z₀ [rad or m]."""
         z_0 = np.zeros((load_cases.count, self.mechanism.n))
         z_0[:, : self.robot.n] = load_cases.a
-        for effect, part, index in self._geometric:
-            if values[part].any() and not _marks(effect, load_cases):
+        for effect, part, index in self.geometric:
+            if values[part].any() and not effect.marks(load_cases):
                 z_0[:, index] += effect.shifts(load_cases) @ values[part]
         return z_0
 
     def _moved(self, z_0: Array, load_cases: LoadCases, values: Array) -> Array:
         """(N, n_z) where the coordinates have gone by themselves since the zero reading."""
-        if not self._imposed:
+        if not self.imposed:
             return z_0
         moved = z_0.copy()
-        for effect, part, index in self._imposed:
+        for effect, part, index in self.imposed:
             moved[:, index] += effect.shifts(load_cases) @ values[part]
         return moved
 
@@ -182,12 +184,13 @@ class Assembly:
         z_0 = self.start(load_cases, values)
         if load_cases.zero_a is not None:  # encoders read a little otherwise without load
             z_0[:, : self.robot.n] += load_cases.zero_a - load_cases.a
-        unloaded = self._sagging(z_0, load_cases, stood.rest.weight, self.soft(values), bare)
-        displacement = stood.rest.screws.position - unloaded.screws.position
+        unloaded, begin = self._sagging(z_0, load_cases, stood.rest.weight, self.soft(values), bare)
+        displacement = stood.rest.screws.position - unloaded.screws.position[begin]
         readings = misread(self.of(ReadingError), load_cases, values, displacement)
         return Solution(
-            load_cases, stood.wrench, stood.loads, stood.onset, stood.rest, unloaded, readings
-        )
+            load_cases, stood.wrench, stood.loads, stood.onset, stood.rest,
+            unloaded=unloaded, begin=begin, readings=readings,
+        )  # fmt: skip
 
     def _found_by_few(
         self, load_cases: LoadCases, values: Array
@@ -202,14 +205,14 @@ class Assembly:
         few, chosen, index = part
         found = few.solve(load_cases, values[chosen])
         loaded, bare = (np.zeros((load_cases.count, self.mechanism.n)) for _ in range(2))
-        loaded[:, index], bare[:, index] = found.rest.z, found.unloaded.z
+        loaded[:, index], bare[:, index] = found.rest.z, found.unloaded.z[found.begin]
         return loaded, bare
 
     def _marker(self, load_cases: LoadCases, values: Array) -> Array:
         """(3,) or (N, 3) measured point in the tool frame [m]."""
         point = load_cases.point
-        for effect, part, _ in self._geometric:
-            if _marks(effect, load_cases) and values[part].any():
+        for effect, part, _ in self.geometric:
+            if effect.marks(load_cases) and values[part].any():
                 point = point + effect.shifts(load_cases) @ values[part]
         return point
 
@@ -220,13 +223,14 @@ class Assembly:
         return Weight(self.heavier(values) * self.robot.gravity_in_base, springs)
 
     @cached_property
-    def _weighing(self) -> Index:
+    def weighing(self) -> Index:
+        """Places of the parameters that change the arm's own weight, among the values."""
         own = [isinstance(e, Weighing) for e in self.effects for _ in e.parameters]
         return np.flatnonzero(own)
 
     def heavier(self, values: Array) -> float:
         """True over stated weight of the arm's links."""
-        return 1.0 + float(values[self._weighing].sum())
+        return 1.0 + float(values[self.weighing].sum())
 
     def _sagging(
         self,
@@ -235,29 +239,30 @@ class Assembly:
         weight: Weight | None,
         soft: Index,
         near: Array | None,
-    ) -> Equilibrium:
-        """The arm before the load comes, bent by its own weight only.
+    ) -> tuple[Equilibrium, Index | slice]:
+        """The arm before the load comes, bent by its own weight only; see `Solution.begin`.
 
-        Under one load after the other it begins alike: where it rests is sought once.
+        Under one load after the other it begins alike: where it rests is worked out once.
         """
         points = load_cases.point
-
-        def hanging(rows: slice | Mask, near: Array | None) -> Equilibrium:
-            return equilibrium(
-                self.mechanism,
-                z_0[rows],
-                np.zeros((len(z_0[rows]), 6)),
-                lambda torques: (np.zeros_like(torques), np.zeros((z_0.shape[1],) * 2)),
-                point=points if points.ndim == 1 else points[rows],
-                soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
-                weight=weight,
-                near=near,
-            )
-
-        fresh = np.append(True, (z_0[1:] != z_0[:-1]).any(axis=1))
-        if weight is not None and near is None and weight.compliance.ndim == 2 and not fresh.all():
-            near = hanging(fresh, None).z[np.cumsum(fresh) - 1]
-        return hanging(slice(None), near)
+        apart = z_0 if points.ndim == 1 else np.hstack([z_0, points])
+        fresh = np.append(True, (apart[1:] != apart[:-1]).any(axis=1))
+        rows: Mask | slice = slice(None)
+        begin: Index | slice = slice(None)
+        if not fresh.all() and (weight is None or weight.compliance.ndim == 2):
+            rows, begin = fresh, np.cumsum(fresh) - 1
+        start = z_0[rows]
+        rest = equilibrium(
+            self.mechanism,
+            start,
+            np.zeros((len(start), 6)),
+            lambda torques: (np.zeros_like(torques), np.zeros((start.shape[1],) * 2)),
+            point=points if points.ndim == 1 else points[rows],
+            soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
+            weight=weight,
+            near=None if near is None else near[rows],
+        )
+        return rest, begin
 
     def of(self, kind: type[LoadError] | type[ReadingError]) -> list[tuple[Misreading, slice]]:
         """The misreadings of a kind, each with its part of the vector of values."""
@@ -266,7 +271,7 @@ class Assembly:
 
     def soft(self, values: Array) -> Index:
         """Coordinates that yield at all: the equilibrium is sought in these alone."""
-        found = [index for _, part, index in self._elastic if values[part].any()]
+        found = [index for _, part, index in self.elastic if values[part].any()]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.intp)
 
     def law(self, load_cases: LoadCases, values: Array, onset: Array) -> tuple[ElasticLaw, Array]:
@@ -279,7 +284,7 @@ class Assembly:
         varying: Array | None = None
         jumps = np.zeros((load_cases.count, n))
         nonlinear: list[tuple[Elastic, slice, Index]] = []
-        for effect, part, index in self._elastic:
+        for effect, part, index in self.elastic:
             if not values[part].any():
                 continue
             if isinstance(effect, Switching):
@@ -289,7 +294,7 @@ class Assembly:
             if not isinstance(effect, LinearElastic):
                 nonlinear.append((effect, part, index))
                 continue
-            patterns = effect.patterns(load_cases)
+            patterns = effect.patterns_at(load_cases)
             block = np.tensordot(values[part], patterns, axes=1)
             if patterns.ndim == 3:
                 constant[np.ix_(index, index)] += block
@@ -311,87 +316,3 @@ class Assembly:
             return elongation, tangent
 
         return law, linear
-
-    def standing_sensitivities(self, solution: Solution, values: Array) -> Array:
-        """(N, 3, P) exact derivative of where the loaded point stands, base axes.
-
-        By the parameters of the arm itself: those of load and reading errors have no part in it.
-        """
-        rest = solution.rest
-        adjoint = rest.adjoint(rest.screws.linear_jacobian, self.soft(values))
-        return self._standing(solution, values, adjoint)
-
-    def _standing(self, solution: Standing, values: Array, adjoint: Array) -> Array:
-        load_cases, rest = solution.load_cases, solution.rest
-        P = int(self.slices[-1].stop) if self.slices else 0
-        out = np.zeros((load_cases.count, adjoint.shape[1], P))
-        for effect, part, index in self._elastic:
-            torques = solution.onset if isinstance(effect, Switching) else rest.torques
-            if isinstance(effect, LinearElastic):
-                torques = torques + rest.weights
-            found = effect.elongation(torques[:, index], load_cases, values[part])
-            out[:, :, part] += adjoint[:, :, index] @ found.by_parameter
-        for shifted, part, index in self._geometric:
-            if _marks(shifted, load_cases):
-                out[:, :3, part] += rest.screws.rotation @ shifted.shifts(load_cases)
-                continue
-            out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(load_cases)
-        for moving, part, index in self._imposed:
-            out[:, :, part] += adjoint[:, :, index] @ moving.shifts(load_cases)
-        if len(self._weighing):
-            out[:, :, self._weighing] += self._by_weight(rest, adjoint)
-        return out
-
-    def pose_sensitivities(self, stood: Standing, values: Array) -> Array:
-        """(N, 6, P) exact derivative of where the point stands and how it is turned, base axes."""
-        adjoint = stood.rest.adjoint(stood.rest.screws.jacobian, self.soft(values))
-        out = self._standing(stood, values, adjoint)
-        self._add_loads(out, stood, adjoint)
-        return out
-
-    def sensitivities(self, solution: Solution, values: Array) -> Array:
-        """(N, 3, P) exact derivative of the readings by the internal parameter values."""
-        load_cases, rest, before = solution.load_cases, solution.rest, solution.unloaded
-        soft = self.soft(values)
-        adjoint = rest.adjoint(rest.screws.linear_jacobian, soft)  # (N, 3, n_z)
-        weighs = self.mechanism.chain.weighs
-        J_0 = before.screws.linear_jacobian
-        adjoint_0 = before.adjoint(J_0, soft) if weighs else J_0
-        out = self._standing(solution, values, adjoint)
-        for effect, part, index in self._elastic:
-            if isinstance(effect, LinearElastic) and weighs:
-                found = effect.elongation(before.weights[:, index], load_cases, values[part])
-                out[:, :, part] -= adjoint_0[:, :, index] @ found.by_parameter
-        for shifted, part, index in self._geometric:
-            out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
-        if len(self._weighing):
-            out[:, :, self._weighing] -= self._by_weight(before, adjoint_0)
-        self._add_loads(out, solution, adjoint)
-        out = solution.readings.matrix @ out
-        for part, columns in solution.readings.columns:
-            out[:, :, part] += columns
-        return np.swapaxes(load_cases.reading_axes, -1, -2) @ out
-
-    def _by_weight(self, rest: Equilibrium, adjoint: Array) -> Array:
-        """(N, k, 1) derivative by the arm's true weight over the stated one."""
-        if rest.weight is None:
-            return np.zeros((*adjoint.shape[:-1], 1))
-        stated = rest.screws.gravity_torques(self.robot.gravity_in_base)
-        return np.asarray(adjoint @ (rest.weight.compliance @ stated[..., None]))
-
-    def _add_loads(self, out: Array, solution: Standing, adjoint: Array) -> None:
-        """Add the derivatives (N, k, P) by the parameters of the load errors."""
-        load_cases, rest = solution.load_cases, solution.rest
-        if not solution.loads.columns:
-            return
-        loaded = rest.screws.at(load_cases.force_point)
-        per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, k, 6)
-        for part, columns in solution.loads.columns:
-            halves = columns.reshape(len(columns), 2, 3, -1)  # forces, moments
-            turned = np.einsum("nij,nhjp->nhip", load_cases.rotation, halves).reshape(columns.shape)
-            out[:, :, part] += per_wrench @ turned
-
-
-def _marks(effect: Geometric, load_cases: LoadCases) -> bool:
-    """Does it move the marker, and nothing of the arm?"""
-    return effect.of_marker and load_cases.absolute

@@ -23,6 +23,7 @@ from sk120stiff.effects import (
 from sk120stiff.errors import InputError, MissingPart
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.parameter import Parameter, parameter_frame
+from sk120stiff.model.sensitivities import reading_sensitivities
 from sk120stiff.model.standing import Solution
 from sk120stiff.model.uncertainty import Uncertainty
 from sk120stiff.robot import Robot
@@ -303,9 +304,10 @@ class Model:
             for part in self._blocks(load_cases):
                 solution = self.assembly.solve(part, given)
                 displacement.append(solution.displacement)
-                derivative.append(self.assembly.sensitivities(solution, given))
+                derivative.append(reading_sensitivities(self.assembly, solution, given))
             known = np.concatenate(displacement), np.concatenate(derivative)
-            load_cases.latest.keep(self.effects, given, known)
+            if not load_cases.latest.keep(self.effects, given, known):
+                return known
         return known[0].copy(), known[1].copy()
 
     def _blocks(self, load_cases: LoadCases) -> tuple[LoadCases, ...]:

@@ -16,6 +16,7 @@ from sk120stiff.effects import LoadCases, ReadingError, Viewpoint
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.misread import misread
 from sk120stiff.model.model import Model
+from sk120stiff.model.sensitivities import pose_sensitivities
 
 BLOCK = 512  # readings solved together; memory stays linear in their number
 BUDGET = 2_000_000  # numbers in one (block, n, n) array
@@ -82,7 +83,7 @@ def _read(
     columns = np.zeros((load_cases.count, 6, P))
     turning = columns[:, :0]
     if derivative:
-        body = assembly.pose_sensitivities(stood, values)
+        body = pose_sensitivities(assembly, stood, values)
         turning = body[:, 3:]
         columns[:, :3], columns[:, 3:] = R @ body[:, :3], R @ body[:, 3:]
         for effect, part in views:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import LoadCases
 from sk120stiff.model.misread import Misread
 from sk120stiff.stiffness import Equilibrium
@@ -37,11 +37,13 @@ class Solution(Standing):
     """A solved set of displacements; what sensitivities build on.
 
     Attributes:
-        unloaded: Equilibrium before the load, under the arm's own weight.
+        unloaded: Equilibrium before the load, under the arm's own weight, of U of the readings.
+        begin: (N,) which of these each reading begins with, or a slice over all.
         readings: What the instrument made of the displacement.
     """
 
     unloaded: Equilibrium
+    begin: Index | slice
     readings: Misread
 
     @property

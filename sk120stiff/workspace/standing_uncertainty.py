@@ -25,6 +25,7 @@ from sk120stiff.model import (
     without_marker,
 )
 from sk120stiff.model.predicted import blamed
+from sk120stiff.model.sensitivities import standing_sensitivities
 from sk120stiff.model.uncertainty import spread
 
 BLOCK = 1024  # points solved together
@@ -150,4 +151,4 @@ def _derivatives(
                 continue
             rows, load_cases = rows[held], load_cases.rows(held)
             solution = physical.solve(load_cases)
-        yield rows, physical.assembly.standing_sensitivities(solution, physical.values)
+        yield rows, standing_sensitivities(physical.assembly, solution, physical.values)

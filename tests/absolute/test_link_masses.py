@@ -9,6 +9,7 @@ import sk120stiff as sk
 from sk120stiff.effects import load_case, load_cases_of
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.model import joint_spring_model, loaded_stiffness
+from sk120stiff.model.sensitivities import pose_sensitivities, reading_sensitivities
 from tests.absolute.arm import MASSES, errors, poses, tracked, write
 from tests.absolute.test_forms import _with
 
@@ -124,11 +125,11 @@ def test_its_derivative_is_exact_beside_a_gear_that_hardens(tmp_path: Path, scal
     def moves(values: np.ndarray) -> np.ndarray:
         return model.assembly.solve(cases, values).displacement
 
-    stood = model.assembly.stand(cases, values)
+    stood, moved = model.assembly.stand(cases, values), model.assembly.solve(cases, values)
     step = np.array([*np.zeros(8), 0.02])  # both are nearly straight; positions round at 1e-16 m
     for predicted, exact in (
-        (stands, model.assembly.pose_sensitivities(stood, values)[:, :3, -1]),
-        (moves, model.assembly.sensitivities(model.assembly.solve(cases, values), values)[..., -1]),
+        (stands, pose_sensitivities(model.assembly, stood, values)[:, :3, -1]),
+        (moves, reading_sensitivities(model.assembly, moved, values)[..., -1]),
     ):
         near, far = (predicted(values + s * step) - predicted(values - s * step) for s in (1, 2))
         slope = (8.0 * near - far) / (12.0 * 0.02)

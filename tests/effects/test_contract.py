@@ -196,7 +196,7 @@ def test_work_of_the_load_is_the_energy_in_the_springs(name):
     )
     solution = model.solve(load_cases, values)
     energy = np.zeros(load_cases.count)
-    for law, part, index in model.assembly._elastic:
+    for law, part, index in model.assembly.elastic:
         torque = solution.rest.torques[:, index]
         energy += 0.5 * (torque * law.elongation(torque, load_cases, values[part]).value).sum(-1)
     force = load_cases.wrench[:, :3]

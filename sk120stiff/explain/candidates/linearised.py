@@ -85,6 +85,5 @@ def linearised_at(
         return replace(near, model=full, candidates=tuple(chosen))
     typical = np.array([parameter.spec.typical for parameter in full.parameters])
     predicted, derivative = full.predict_with_sensitivities(problem.load_cases)
-    return Linearised(
-        problem.measurements, full, tuple(chosen), laws, predicted, derivative * typical
-    )
+    derivative *= typical
+    return Linearised(problem.measurements, full, tuple(chosen), laws, predicted, derivative)

@@ -1,0 +1,106 @@
+"""Exact derivatives of where a loaded arm stands, and of what is read of it.
+
+One adjoint solve per reading gives them all: with N = I − C K_C at the equilibrium,
+∂x/∂p = (J N⁻¹) ∂(s + e)/∂p, s what moves by itself and e what yields.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import LinearElastic
+from sk120stiff.effects.base import Switching
+from sk120stiff.model.assembly import Assembly
+from sk120stiff.model.standing import Solution, Standing
+from sk120stiff.stiffness import Equilibrium
+
+
+def standing_sensitivities(assembly: Assembly, solution: Solution, values: Array) -> Array:
+    """(N, 3, P) exact derivative of where the loaded point stands, base axes.
+
+    By the parameters of the arm itself: those of load and reading errors have no part in it.
+    """
+    rest = solution.rest
+    adjoint = rest.adjoint(rest.screws.linear_jacobian, assembly.soft(values))
+    return _standing(assembly, solution, values, adjoint)
+
+
+def _standing(assembly: Assembly, solution: Standing, values: Array, adjoint: Array) -> Array:
+    load_cases, rest = solution.load_cases, solution.rest
+    P = int(assembly.slices[-1].stop) if assembly.slices else 0
+    out = np.zeros((load_cases.count, adjoint.shape[1], P))
+    hung = rest.torques + rest.weights
+    for effect, part, index in assembly.elastic:
+        torques = solution.onset if isinstance(effect, Switching) else rest.torques
+        if isinstance(effect, LinearElastic):
+            torques = hung
+        found = effect.by_parameter(torques[:, index], load_cases, values[part])
+        out[:, :, part] += adjoint[:, :, index] @ found
+    for shifted, part, index in assembly.geometric:
+        if shifted.marks(load_cases):
+            out[:, :3, part] += rest.screws.rotation @ shifted.shifts(load_cases)
+            continue
+        out[:, :, part] += adjoint[:, :, index] @ shifted.shifts(load_cases)
+    for moving, part, index in assembly.imposed:
+        out[:, :, part] += adjoint[:, :, index] @ moving.shifts(load_cases)
+    if len(assembly.weighing):
+        out[:, :, assembly.weighing] += _by_weight(assembly, rest, adjoint)
+    return out
+
+
+def pose_sensitivities(assembly: Assembly, stood: Standing, values: Array) -> Array:
+    """(N, 6, P) exact derivative of where the point stands and how it is turned, base axes."""
+    adjoint = stood.rest.adjoint(stood.rest.screws.jacobian, assembly.soft(values))
+    out = _standing(assembly, stood, values, adjoint)
+    _add_loads(out, stood, adjoint)
+    return out
+
+
+def reading_sensitivities(assembly: Assembly, solution: Solution, values: Array) -> Array:
+    """(N, 3, P) exact derivative of the readings by the internal parameter values."""
+    load_cases, rest, before = solution.load_cases, solution.rest, solution.unloaded
+    soft = assembly.soft(values)
+    adjoint = rest.adjoint(rest.screws.linear_jacobian, soft)  # (N, 3, n_z)
+    weighs = assembly.mechanism.chain.weighs
+    begin, J_0 = solution.begin, before.screws.linear_jacobian
+    bare = before.adjoint(J_0, soft) if weighs else J_0
+    adjoint_0, weights = bare[begin], before.weights[begin]
+    out = _standing(assembly, solution, values, adjoint)
+    for effect, part, index in assembly.elastic:
+        if isinstance(effect, LinearElastic) and weighs:
+            found = effect.by_parameter(weights[:, index], load_cases, values[part])
+            out[:, :, part] -= adjoint_0[:, :, index] @ found
+    for shifted, part, index in assembly.geometric:
+        out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
+    if len(assembly.weighing):
+        out[:, :, assembly.weighing] -= _by_weight(assembly, before, bare)[begin]
+    _add_loads(out, solution, adjoint)
+    axes = np.swapaxes(load_cases.reading_axes, -1, -2)
+    turn = axes @ solution.readings.matrix
+    if (turn != np.eye(3)).any():
+        out = turn @ out
+    for part, columns in solution.readings.columns:
+        out[:, :, part] += axes @ columns
+    return out
+
+
+def _by_weight(assembly: Assembly, rest: Equilibrium, adjoint: Array) -> Array:
+    """(N, k, 1) derivative by the arm's true weight over the stated one."""
+    if rest.weight is None:
+        return np.zeros((*adjoint.shape[:-1], 1))
+    stated = rest.screws.gravity_torques(assembly.robot.gravity_in_base)
+    return np.asarray(adjoint @ (rest.weight.compliance @ stated[..., None]))
+
+
+def _add_loads(out: Array, solution: Standing, adjoint: Array) -> None:
+    """Add the derivatives (N, k, P) by the parameters of the load errors."""
+    load_cases, rest = solution.load_cases, solution.rest
+    if not solution.loads.columns:
+        return
+    loaded = rest.screws.at(load_cases.force_point)
+    per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, k, 6)
+    for part, columns in solution.loads.columns:
+        halves = columns.reshape(len(columns), 2, 3, -1)  # forces, moments
+        turned = np.einsum("nij,nhjp->nhip", load_cases.rotation, halves).reshape(columns.shape)
+        out[:, :, part] += per_wrench @ turned
