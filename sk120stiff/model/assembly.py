@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -38,6 +38,8 @@ from sk120stiff.model.misread import misread, rotate, to_sensor
 from sk120stiff.model.standing import Solution, Standing
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
+
+KEPT = 32  # sets of effects that stay put together
 
 
 @dataclass(frozen=True, eq=False)
@@ -316,3 +318,12 @@ class Assembly:
             return elongation, tangent
 
         return law, linear
+
+
+@lru_cache(maxsize=KEPT)
+def assembled(robot: Robot, effects: tuple[Effect, ...]) -> Assembly:
+    """These effects put together on a robot; the last few sets of them are still put together.
+
+    A search linearises and fits the same sets again and again, at other values.
+    """
+    return Assembly(robot, effects)

@@ -21,7 +21,7 @@ from sk120stiff.effects import (
     load_case,
 )
 from sk120stiff.errors import InputError, MissingPart
-from sk120stiff.model.assembly import Assembly
+from sk120stiff.model.assembly import Assembly, assembled
 from sk120stiff.model.parameter import Parameter, parameter_frame
 from sk120stiff.model.sensitivities import reading_sensitivities
 from sk120stiff.model.standing import Solution
@@ -91,7 +91,7 @@ class Model:
     @cached_property
     def assembly(self) -> Assembly:
         """The mechanism that the effects make of the robot."""
-        return Assembly(self.robot, self.effects)
+        return assembled(self.robot, self.effects)
 
     @cached_property
     def names(self) -> tuple[str, ...]:

@@ -70,9 +70,8 @@ def linearised_at(
     """
     full, problem = fit.model, fit.problem
     present = {effect.id for effect in full.effects}
-    for effect in candidates:
-        if effect.id not in present:
-            full = full + effect
+    joining = [effect for effect in candidates if effect.id not in present]
+    full = full + [Parameter(e, spec) for e in joining for spec in e.parameters]
     chosen = [effect for effect in full.effects if effect.id not in base_effects]
     others = [effect.other_laws(problem.load_cases) for effect in chosen]
     if not problem.noise.form:  # beside model-form error no law is right in detail
