@@ -135,14 +135,16 @@ FAULTS: tuple[Fault, ...] = (
         adjoint_not_transposed=("np.linalg.solve(np.swapaxes(newton, -1, -2), right)", "np.linalg.solve(newton, right)"),
     ),
     *_of(
-        "model/assembly.py", *_tests("model", "model"), *_tests("effects", "contract"),
-        sensitivity_of_geometry_without_the_unloaded_arm=(
-            "out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)",
-            "out[:, :, part] -= 0.0 * adjoint_0[:, :, index] @ shifted.shifts(load_cases)"),
-        tangent_of_a_nonlinear_law_forgotten=("+= found.by_torque", "+= 0.0 * found.by_torque"),
-        reading_axes_the_wrong_way=("return np.swapaxes(load_cases.reading_axes, -1, -2) @ out", "return load_cases.reading_axes @ out"),
+        "model/sensitivities.py", *_tests("model", "model"), *_tests("effects", "contract"),
+        sensitivity_of_geometry_without_the_unloaded_arm=("-= adjoint_0[:, :, index] @ shifted", "-= 0.0 * adjoint_0[:, :, index] @ shifted"),
+        reading_axes_the_wrong_way=("axes = np.swapaxes(load_cases.reading_axes, -1, -2)", "axes = load_cases.reading_axes"),
         load_errors_without_compliance=("per_wrench = adjoint @ rest.compliance @", "per_wrench = adjoint @"),
-        standing_without_its_weight=("torques = torques + rest.weights", "torques = torques"),
+        standing_without_its_weight=("torques = hung", "torques = rest.torques"),
+    ),
+    *_of(
+        "model/assembly.py", *_tests("model", "model"), *_tests("effects", "contract"),
+        tangent_of_a_nonlinear_law_forgotten=("+= found.by_torque", "+= 0.0 * found.by_torque"),
+        every_pose_begins_as_the_first=("np.cumsum(fresh) - 1", "0 * np.cumsum(fresh)"),
     ),
     *_of(
         "effects/closure.py", *_tests("effects", "laws", "contract", "recovery"),
@@ -228,9 +230,14 @@ FAULTS: tuple[Fault, ...] = (
         looking_for_nothing=("score += price_of_looking(regression, n) *", "score += 0.0 *"),
     ),
     *_of(
+        "explain/select/promises.py", *_tests("explain", "promises"),
+        hopes_without_what_they_gain=("- self._best(self._worth) - more", "- more"),
+        hopes_by_the_misfit_alone=("self._best(self._worth) - more)", "self._best(self._worth))"),
+    ),
+    *_of(
         "explain/select/size_prices.py", *_tests("explain", "regression", "size_prices"),
         sizes_for_nothing=("np.asarray(prices.sum(axis=1))", "np.asarray(0.0 * prices.sum(axis=1))"),
-        rigid_axes_for_nothing=("+ 2.0 * np.log(comb(len(places), held + 1))", "+ 0.0"),
+        rigid_axes_for_nothing=("+ 2.0 * math.log(math.comb(len(places), held + 1))", "+ 0.0"),
         held_alone=("        self._values -= along * self._values[place]\n", ""),
         spared_twice=("            self.hold(place)\n", ""),
     ),
@@ -343,7 +350,10 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *_of(
         "model/assembly.py", *_tests("absolute", "link_masses"), *_tests("absolute", "sensitivities"),
-        masses_that_weigh_as_stated=("return 1.0 + float(values[self._weighing].sum())", "return 1.0"),
+        masses_that_weigh_as_stated=("return 1.0 + float(values[self.weighing].sum())", "return 1.0"),
+    ),
+    *_of(
+        "model/sensitivities.py", *_tests("absolute", "link_masses"), *_tests("absolute", "sensitivities"),
         masses_that_show_twice=("adjoint @ (rest.weight.compliance @ stated", "2.0 * adjoint @ (rest.weight.compliance @ stated"),
         masses_that_hang_on_a_gears_curve=("adjoint @ (rest.weight.compliance @ stated", "adjoint @ (rest.compliance @ stated"),
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -101,6 +103,26 @@ def test_blocks_are_seamless(robot, model):
     assert np.allclose(predicted[BLOCK - 3 :], tail, rtol=0, atol=1e-15)
     assert np.allclose(slope[BLOCK - 3 :], tail_slope, rtol=1e-9)
     assert model.predict(load_cases.rows(slice(0, 0))).shape == (0, 3)
+
+
+@pytest.mark.parametrize("per_marker", [False, True])
+def test_loads_of_one_pose_begin_from_one_arm_at_rest(per_marker):
+    """The arm before the load is worked out once a pose; each reading alone says the same."""
+    robot = load_robot("ur5e")  # it has masses, so it sags
+    model = joint_spring_model(robot, np.full(robot.n, 3e4)) + effect(robot, "base_rocking")
+    rng = np.random.default_rng(5)
+    poses = np.repeat(rng.uniform(-1, 1, (4, robot.n)), 3, axis=0)
+    wrench = 100 * rng.normal(size=(12, 6)) * [1, 1, 1, 0.1, 0.1, 0.1]
+    points = np.tile(rng.normal(size=(3, 3)) * 0.1, (4, 1))  # three markers, each at every pose
+    every = load_case(robot, poses, wrench)
+    every = replace(every, point=points if per_marker else points[0])
+    begin = model.solve(every).begin
+    assert len(np.unique(np.arange(12)[begin])) == (12 if per_marker else 4)
+    predicted, slope = model.predict_with_sensitivities(every)
+    for k in range(12):
+        alone, own = model.predict_with_sensitivities(every.rows(slice(k, k + 1)))
+        assert np.allclose(alone[0], predicted[k], rtol=0, atol=1e-14)
+        assert np.allclose(own[0], slope[k], rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["motoman_sk120", "ur5e"])
