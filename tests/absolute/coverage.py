@@ -31,7 +31,11 @@ class Outcome:
 
 def campaigns(count: int, arms: int, seed: int) -> list[Outcome]:
     """`count` campaigns spread over `arms` arms, each with its own poses and errors of geometry."""
-    folder = Path(tempfile.mkdtemp())
+    with tempfile.TemporaryDirectory() as folder:
+        return _campaigns(Path(folder), count, arms, seed)
+
+
+def _campaigns(folder: Path, count: int, arms: int, seed: int) -> list[Outcome]:
     out: list[Outcome] = []
     for number in range(arms):
         arm, a = errors(1000 * seed + number), poses(50, 77 + 1000 * seed + number)

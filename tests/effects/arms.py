@@ -63,8 +63,8 @@ def arm(name: str) -> Robot:
         with warnings.catch_warnings(action="ignore", category=ToolkitWarning):
             return load_robot(six_axis_arm(5), base="base", tool="tool")  # axes of any length
     if name in ("loop", "four_bar"):
-        folder = Path(tempfile.mkdtemp(prefix="sk120stiff_"))
-        return sk120_loop(folder) if name == "loop" else four_bar(folder)
+        with tempfile.TemporaryDirectory() as folder:
+            return (sk120_loop if name == "loop" else four_bar)(Path(folder))
     if name == "telescope":
         return load_robot(FOLDER / "telescope.urdf", base="floor", tool="plate")
     return load_robot(scara(), base="base", tool="tool")
