@@ -55,7 +55,7 @@ FAULTS: tuple[Fault, ...] = (
         "explain/select/outliers.py", *_tests("explain", "outliers"),
         a_second_outlier_beside_the_first_shift=("left[each.readings] -= (each", "left[each.readings] -= 0.0 * (each"),
         a_shift_that_takes_nothing_of_the_readings=("residual = residual - new.T @ (new @ y)", "residual = residual + 0.0"),
-        a_shift_counted_with_what_the_fit_has=("free = -half.T @ shared", "free = half.T @ shared"),
+        a_shift_counted_with_what_the_fit_has=("free = -(self.first.T @ near)", "free = (self.first.T @ near)"),
     ),
     *_of(
         "explain/candidates/linearised.py", *_tests("explain", "linearised"),

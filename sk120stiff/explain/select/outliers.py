@@ -125,9 +125,9 @@ class _Shifts(NamedTuple):
     """What a shift of one reading alone does to the whitened rows of its pose.
 
     Attributes:
-        readings: (n,) of the pose.
-        rows: (r,) of the pose; whitening mixes no others.
-        columns: (r, n, 3) shift of each reading along x, y, z; zero where that was not read.
+        readings: (g, n) of g poses that have as many.
+        rows: (g, r) of these poses; whitening mixes no others.
+        columns: (g, r, n, 3) shift of each reading along x, y, z; zero where that was not read.
     """
 
     readings: Index
@@ -135,8 +135,10 @@ class _Shifts(NamedTuple):
     columns: Array
 
     def along(self, rows: Array) -> Array:
-        """(k, n, 3) scalar products of the shifts with some rows (k, R)."""
-        return np.tensordot(rows[:, self.rows], self.columns, axes=1)
+        """(k, g, n, 3) scalar products of the shifts with some rows (k, R)."""
+        g, r, n, axes = self.columns.shape
+        some = np.moveaxis(rows[:, self.rows], 0, 1) @ self.columns.reshape(g, r, n * axes)
+        return np.moveaxis(some, 0, 1).reshape(len(rows), g, n, axes)
 
 
 def _one_by_one(
@@ -183,7 +185,7 @@ def _as_many(
     peeled: Iterable[_Peeled], shifts: Sequence[_Shifts], most: float
 ) -> Iterator[_Peeled]:
     """While no more than a share of the readings was taken out."""
-    count = sum(len(each.readings) for each in shifts)
+    count = sum(each.readings.size for each in shifts)
     return takewhile(lambda state: len(state.rows) <= most * count, peeled)
 
 
@@ -202,13 +204,13 @@ def _peeled(
     """
     out: list[int] = []
     count = 1 + max((int(each.readings.max()) for each in shifts), default=-1)
-    half = _half(X, prior)
-    residual = y - half.T @ (half @ y)
-    leverage = (half**2).sum(0)
+    half = _Half(_half(X, prior))
+    residual = y - half.first.T @ (half.first @ y)
+    leverage = (half.first**2).sum(0)
     total, left, score = (np.zeros((count, 3)) for _ in range(3))
     for each in shifts:
-        total[each.readings] = (each.columns**2).sum(0)
-        left[each.readings] = total[each.readings] - (each.along(half) ** 2).sum(0)
+        total[each.readings] = (each.columns**2).sum(1)
+        left[each.readings] = total[each.readings] - (each.along(half.first) ** 2).sum(0)
     while True:
         size = noise
         if size is None:
@@ -222,27 +224,42 @@ def _peeled(
         rows = np.array(sorted(out), dtype=np.intp)
         yield _Peeled(rows, float(y @ residual) / size**2, size, float(score[worst].max()))
         out.append(worst)
-        new = _beyond(half, next(each for each in shifts if worst in each.readings), worst)
-        half = np.vstack([half, new])
+        new = half.join(shifts, worst)
         residual = residual - new.T @ (new @ y)
         leverage += (new**2).sum(0)
         for each in shifts:
             left[each.readings] -= (each.along(new) ** 2).sum(0)
 
 
-def _beyond(half: Array, shifts: _Shifts, reading: int) -> Array:
-    """(k, R) rows that join `half` (P, R) when a shift of one reading is free, drawn to nothing."""
-    own = shifts.columns[:, int(np.flatnonzero(shifts.readings == reading)[0])]
-    shared = half[:, shifts.rows] @ own
-    free = -half.T @ shared
-    free[shifts.rows] += own
-    values, vectors = np.linalg.eigh(own.T @ own - shared.T @ shared)
-    seen = values > ROUNDING * values.max()
-    return np.asarray((free @ (vectors[:, seen] / np.sqrt(values[seen]))).T)
+class _Half:
+    """Rows (P, R) with which halfᵀ half is a fit, and those that join it one after the other."""
+
+    def __init__(self, first: Array) -> None:
+        self.first = first
+        self._more = np.empty((0, first.shape[1]))
+        self._joined = 0
+
+    def join(self, shifts: Sequence[_Shifts], reading: int) -> Array:
+        """(k, R) rows that join when a shift of one reading is free, drawn to nothing."""
+        group = next(each for each in shifts if reading in each.readings)
+        pose, place = np.argwhere(group.readings == reading)[0]
+        rows, own = group.rows[pose], group.columns[pose, :, place]
+        more = self._more[: self._joined]
+        near, far = self.first[:, rows] @ own, more[:, rows] @ own
+        free = -(self.first.T @ near) - more.T @ far
+        free[rows] += own
+        values, vectors = np.linalg.eigh(own.T @ own - near.T @ near - far.T @ far)
+        seen = values > ROUNDING * values.max()
+        new = np.asarray((free @ (vectors[:, seen] / np.sqrt(values[seen]))).T)
+        if self._joined + len(new) > len(self._more):  # room for twice as many
+            self._more = np.vstack([self._more, new, np.empty_like(self._more)])
+        self._more[self._joined : self._joined + len(new)] = new
+        self._joined += len(new)
+        return new
 
 
 def _shift_columns(whitener: Whitener | FormWhitener, pose: Index) -> list[_Shifts]:
-    """The shifts of all readings, pose by pose. Whitening mixes rows of one pose (R,) only."""
+    """The shifts of all readings. Whitening mixes rows of one pose (R,) only."""
     count, reading = whitener.n_readings, whitener.reading
     numbers = rows_by_label(pose)  # of each pose
     members = [np.unique(reading[rows]) for rows in numbers]
@@ -253,9 +270,16 @@ def _shift_columns(whitener: Whitener | FormWhitener, pose: Index) -> list[_Shif
     unit = np.zeros((count, 3, width, 3))
     unit[np.arange(count), :, position, :] = np.eye(3)
     white = whitener.apply(unit.reshape(count, 3, -1)).reshape(len(reading), width, 3)
+    alike: dict[tuple[int, int], list[int]] = {}
+    for k, (own, rows) in enumerate(zip(members, numbers, strict=True)):
+        alike.setdefault((len(own), len(rows)), []).append(k)
     return [
-        _Shifts(own, rows, white[rows][:, : len(own)])
-        for own, rows in zip(members, numbers, strict=True)
+        _Shifts(
+            np.array([members[k] for k in poses]),
+            np.array([numbers[k] for k in poses]),
+            np.array([white[numbers[k]][:, :n] for k in poses]),
+        )
+        for (n, _), poses in alike.items()
     ]
 
 
