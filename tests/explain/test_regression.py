@@ -14,7 +14,7 @@ from sk120stiff.explain.candidates.sums import Sums, solve_columns
 from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, in_its_place
 from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import (
-    _deviance,
+    _Left,
     price_of_looking,
     score_set,
 )
@@ -306,7 +306,7 @@ def test_every_model_has_its_own_size_of_model_form_error(pick):
         for size in np.mean(rest[own] ** 2) * np.linspace(0.9, 1.1, 201)
     )
     expected = likeliest + (rest[~own] ** 2).sum()
-    assert _deviance(found, sums, solved) == pytest.approx(expected, rel=1e-6)
+    assert _Left.by(found, sums, solved).deviance(found) == pytest.approx(expected, rel=1e-6)
 
 
 def test_no_model_leaves_less_than_the_noise():
@@ -316,4 +316,4 @@ def test_no_model_leaves_less_than_the_noise():
     rows = len(found.form.y)
     left = found.sums().form.left_by(solved)
     expected = solved.rss - left + left / 1e6 + rows * np.log(1e6)
-    assert _deviance(found, found.sums(), solved) == pytest.approx(expected)
+    assert _Left.by(found, found.sums(), solved).deviance(found) == pytest.approx(expected)

@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import Solved, Sums
-from sk120stiff.explain.select.score import Scored, fall_of_form, price_of_looking
+from sk120stiff.explain.select.score import Scored, most_fallen, price_of_looking
 from sk120stiff.explain.select.size_prices import price_of_sizes
 
 SEEN = 1e-9  # of the largest: what a variant shows less of beside a model, it does not show
@@ -53,7 +53,7 @@ class Promises:
         other effects fall does it get better than that.
         """
         looking = price_of_looking(self.regression, max(self.sums.count, 2.0))
-        more = fall_of_form(self.regression, self.sums, model.solved, self.most) - self.most
+        more = most_fallen(self.regression, self.sums, model.solved, self.most) - self.most
         return np.asarray(model.score + looking - self._best(self._worth) - more)
 
     def _best(self, of_variants: Array) -> Array:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -148,43 +149,59 @@ def _with_parts(
     solved = solve_sets(sums, sets, regression.lower, regression.plausible)
     n = max(sums.count, 2.0)
     # A spring of the base model is there whether it moves or not: none is cheaper for being rigid.
-    score = _deviance(regression, sums, solved) + len(base) * np.log(n)
+    score = _Left.by(regression, sums, solved).deviance(regression) + len(base) * np.log(n)
     score += price_of_looking(regression, n) * np.array([len(parts) for parts in several])
     score += prices_of_sizes(regression, sums, solved, several)
     return list(zip(solved.each(), score.tolist(), strict=True))
 
 
-def _deviance(regression: Regression, sums: Sums, solved: Solved | Solutions) -> Array:
-    """-2 ln L up to a constant, at the likeliest variances of what nobody stated."""
-    rss, n = solved.rss, max(sums.count, 2.0)
-    own = np.zeros(np.shape(rss))
-    if regression.form is not None and sums.form is not None and sums.form.count:
-        left, count = np.maximum(sums.form.left_by(solved), 0.0), sums.form.count
-        own = _form_deviance(left, count, regression.form.noise_share)
-        rss, n = np.maximum(rss - left, 0.0), n - count
-    if regression.sigma_known or n < 1.0:
-        return own + rss
-    return np.asarray(own + n * np.log(np.maximum(rss, 1e-300) / n) + n)
+class _Left(NamedTuple):
+    """What solutions leave of the rows whose noise counts, and of those of model-form error.
 
-
-def _form_deviance(left: Array, count: float, least: float) -> Array:
-    """-2 ln L of rows that leave so much, at the likeliest size of their model-form error."""
-    size = np.maximum(left / count, least)
-    return np.asarray(count * np.log(size) + left / size)
-
-
-def fall_of_form(regression: Regression, sums: Sums, model: Solved, falls: Array) -> Array:
-    """By how much -2 ln L falls at most where the misfit of a model falls so much.
-
-    Beside model-form error every model has a size of that error of its own, and the logarithm of a
-    size may fall faster than the misfit.
+    Attributes:
+        rss, rows: Misfit of the first, and how many they are.
+        form, form_rows: The same of the others; no rows where there is no such error.
     """
-    if regression.form is None or sums.form is None or not sums.form.count:
-        return falls
-    left = np.maximum(sums.form.left_by(model), 0.0)
-    own = (sums.form.count, regression.form.noise_share)
-    fallen = _form_deviance(left, *own) - _form_deviance(np.maximum(left - falls, 0.0), *own)
-    return np.maximum(falls, fallen)
+
+    rss: Array
+    rows: float
+    form: Array
+    form_rows: float
+
+    @classmethod
+    def by(cls, regression: Regression, sums: Sums, solved: Solved | Solutions) -> _Left:
+        """By one solution, or by each of several."""
+        rss, rows = np.asarray(solved.rss), max(sums.count, 2.0)
+        if regression.form is None or sums.form is None or not sums.form.count:
+            return cls(rss, rows, np.zeros(rss.shape), 0.0)
+        form = np.maximum(sums.form.left_by(solved), 0.0)
+        return cls(np.maximum(rss - form, 0.0), rows - sums.form.count, form, sums.form.count)
+
+    def deviance(self, regression: Regression) -> Array:
+        """-2 ln L up to a constant, at the likeliest variances of what nobody stated."""
+        own = np.zeros(np.shape(self.form))
+        if regression.form is not None and self.form_rows:
+            size = np.maximum(self.form / self.form_rows, regression.form.noise_share)
+            own = self.form_rows * np.log(size) + self.form / size
+        if regression.sigma_known or self.rows < 1.0:
+            return own + self.rss
+        n = self.rows
+        return np.asarray(own + n * np.log(np.maximum(self.rss, 1e-300) / n) + n)
+
+
+def most_fallen(regression: Regression, sums: Sums, model: Solved, falls: Array) -> Array:
+    """By how much -2 ln L of a model falls at most where its misfit falls so much (k,).
+
+    Where a size is estimated by every model for itself, of the noise or of model-form error, its
+    logarithm may fall faster than the misfit: fastest where one kind of rows has the whole fall.
+    """
+    left = _Left.by(regression, sums, model)
+    both = [
+        left._replace(rss=np.maximum(left.rss - falls, 0.0)),
+        left._replace(form=np.maximum(left.form - falls, 0.0)),
+    ]
+    fallen = [left.deviance(regression) - each.deviance(regression) for each in both]
+    return np.maximum(*fallen)
 
 
 def _with_draws(
