@@ -8,7 +8,6 @@ from sk120stiff.effects.base import (
     Imposed,
     LinearElastic,
     LoadError,
-    Options,
     ReadingError,
     Switching,
     Viewpoint,
@@ -16,6 +15,7 @@ from sk120stiff.effects.base import (
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.words import catalogue_words, comment_lines, words_of
 

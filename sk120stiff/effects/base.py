@@ -32,33 +32,11 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
 from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_length
-
-
-@dataclass(frozen=True)
-class Options:
-    """What an effect may be told beside its place.
-
-    Attributes:
-        poses: Poses of the experiment, for `zero_offset`.
-        timed: The experiment has times, for `reading_drift`.
-        breaks: Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
-        series: Series of the experiment, for `marker_shift`.
-        thermal: The experiment has temperatures, for `thermal_growth`.
-        shape: Names of the parameters of the law that is meant, for effects that know more than
-            one.
-    """
-
-    poses: tuple[str, ...] = ()
-    timed: bool = False
-    breaks: tuple[float, ...] = ()
-    series: tuple[str, ...] = ()
-    thermal: bool = False
-    shape: tuple[str, ...] = ()
-
 
 SPRINGS = "joint_springs"
 

@@ -20,7 +20,7 @@ from importlib.metadata import EntryPoint, entry_points
 from types import MethodType
 
 from sk120stiff.effects.approach_side import ApproachSide
-from sk120stiff.effects.base import Effect, Options
+from sk120stiff.effects.base import Effect
 from sk120stiff.effects.closure import ClosureCoupling, ClosureRod
 from sk120stiff.effects.force_sensor import (
     ForceBias,
@@ -40,6 +40,7 @@ from sk120stiff.effects.joint_tilt import JointTilt
 from sk120stiff.effects.link_beam import LinkBending, LinkTorsion
 from sk120stiff.effects.link_masses import LinkMasses
 from sk120stiff.effects.marker_shift import MarkerShift
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.payload import Payload
 from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.effects.reading_drift import ReadingDrift

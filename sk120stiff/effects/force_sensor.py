@@ -17,8 +17,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import LoadError, Options, scale_of
+from sk120stiff.effects.base import LoadError, scale_of
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import crossed

@@ -8,9 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Effect, LinearElastic, Options
+from sk120stiff.effects.base import Effect, LinearElastic
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.rotations import homogeneous

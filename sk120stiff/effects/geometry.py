@@ -7,7 +7,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.effects.base import Geometric, Options, scale_of
+from sk120stiff.effects.base import Geometric, scale_of
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint

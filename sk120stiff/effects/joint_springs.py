@@ -8,8 +8,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import LinearElastic, Options, scale_of
+from sk120stiff.effects.base import LinearElastic, scale_of
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot
 

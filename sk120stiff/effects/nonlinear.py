@@ -28,10 +28,10 @@ from sk120stiff.effects.base import (
     Elastic,
     Elongation,
     LinearElastic,
-    Options,
     scale_of,
 )
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, VirtualJoint

@@ -10,8 +10,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Options, ReadingError, scale_of
+from sk120stiff.effects.base import ReadingError, scale_of
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot

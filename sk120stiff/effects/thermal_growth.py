@@ -9,8 +9,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Imposed, Options, scale_of
+from sk120stiff.effects.base import Imposed, scale_of
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint

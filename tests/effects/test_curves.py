@@ -5,11 +5,11 @@ import pytest
 
 from sk120stiff import load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.effects.base import Options
 from sk120stiff.effects.foundation import BaseRocking, NonlinearRocking
 from sk120stiff.effects.gear import FrictionHysteresis, LostMotion
 from sk120stiff.effects.joint_tilt import NonlinearTilt
 from sk120stiff.effects.link_beam import LinkBending
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.reading_drift import ReadingDrift
 from sk120stiff.effects.tool_compliance import NonlinearTool
 from sk120stiff.measurements import Measurements

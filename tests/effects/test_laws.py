@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import CATALOGUE, effect, load_case
-from sk120stiff.effects.base import Options
 from sk120stiff.effects.gear import GearHardening
 from sk120stiff.effects.link_beam import STATIONS, TAPER, shares
+from sk120stiff.effects.options import Options
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.robot import load_robot

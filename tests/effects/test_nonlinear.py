@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import CATALOGUE, load_case
-from sk120stiff.effects.base import Options
+from sk120stiff.effects.options import Options
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from tests.effects.test_laws import NOTHING, boom, close

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import CATALOGUE, all_effects, catalogue_words, effect, words_of
-from sk120stiff.effects.base import Options
+from sk120stiff.effects.options import Options
 from sk120stiff.identify import fit
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import joint_spring_model

@@ -8,7 +8,7 @@ import pinocchio as pin
 import pytest
 
 from sk120stiff.effects import CATALOGUE, effect, load_case
-from sk120stiff.effects.base import Options
+from sk120stiff.effects.options import Options
 from sk120stiff.errors import InputError
 from sk120stiff.exports import export
 from sk120stiff.model import Model, base_model, joint_spring_model

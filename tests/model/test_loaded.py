@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import CATALOGUE, effect
-from sk120stiff.effects.base import Options
+from sk120stiff.effects.options import Options
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import Model, joint_spring_model, loaded_stiffness, model_compliance
 from sk120stiff.robot import load_robot

@@ -11,13 +11,13 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import (
     Elongation,
-    Options,
     Switching,
     scale_of,
 )
 from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
 from sk120stiff.effects.gear.lost_motion import LostMotion
 from sk120stiff.effects.load_cases import IDLE, LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot
 

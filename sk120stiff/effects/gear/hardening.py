@@ -10,9 +10,10 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Elongation, Options, scale_of
+from sk120stiff.effects.base import Elongation, scale_of
 from sk120stiff.effects.gear.law import GearEffect, torques_told
 from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot
 

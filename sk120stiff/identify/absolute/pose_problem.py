@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects.base import Options
 from sk120stiff.effects.geometry import JointOffset, ToolOffset
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.marker_shift import MarkerShift
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.pose_errors import PoseWhitening

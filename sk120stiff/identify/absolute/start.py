@@ -6,7 +6,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Elastic
-from sk120stiff.effects.base import Options
+from sk120stiff.effects.options import Options
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing import Placing
 from sk120stiff.model import Model, Parameter

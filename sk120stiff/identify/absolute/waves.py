@@ -15,7 +15,7 @@ from scipy.special import logsumexp
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Catalogue, Effect
-from sk120stiff.effects.base import Options
+from sk120stiff.effects.options import Options
 from sk120stiff.identify.absolute.left_out import COUNTED, posterior
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit

@@ -1,0 +1,27 @@
+"""What an effect may be told beside its place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Options:
+    """What an effect may be told beside its place.
+
+    Attributes:
+        poses: Poses of the experiment, for `zero_offset`.
+        timed: The experiment has times, for `reading_drift`.
+        breaks: Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
+        series: Series of the experiment, for `marker_shift`.
+        thermal: The experiment has temperatures, for `thermal_growth`.
+        shape: Names of the parameters of the law that is meant, for effects that know more than
+            one.
+    """
+
+    poses: tuple[str, ...] = ()
+    timed: bool = False
+    breaks: tuple[float, ...] = ()
+    series: tuple[str, ...] = ()
+    thermal: bool = False
+    shape: tuple[str, ...] = ()
