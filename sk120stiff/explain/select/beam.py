@@ -14,7 +14,7 @@ from sk120stiff.explain.select.score import Scored, score_set, score_sets
 BEAM = 12  # models kept at each size of the search
 SETTLED = 2  # of them whose effects all try their variants
 HOPELESS = 20.0  # score by which larger models lose that have no future: twice decisive
-SLACK = 6.0  # score by which prices of the other effects fall where one more joins
+SLACK = 6.0  # score by which a set may come out better than hoped; few do by more
 CONTENDERS = 24  # candidates that are tried in the place of an effect
 NEAR = 40.0  # difference of scores within which their neighbours may take other laws
 FIRST = 4  # of them whose neighbours may anyway: a strong beam by another taper hides much

@@ -18,7 +18,7 @@ SEEN = 1e-9  # of the largest: what a variant shows less of beside a model, it d
 
 @dataclass(frozen=True, eq=False)
 class Promises:
-    """Upper bounds on what candidates explain of what one model leaves.
+    """What candidates may explain of what one model leaves.
 
     Attributes:
         regression, sums: Linearised readings, and the poses of them that count.
@@ -49,8 +49,9 @@ class Promises:
     def hopes(self, model: Scored) -> Array:
         """(candidates,) the score to which the model may come with one of them.
 
-        What is promised need not come true, which makes a score worse; only where the prices of
-        other effects fall does it get better than that.
+        What is promised need not come true, which makes a score worse. It gets better than that
+        where the prices of other effects fall, or a value that lay on its bound moves again: an
+        estimate, no bound.
         """
         looking = price_of_looking(self.regression, max(self.sums.count, 2.0))
         more = most_fallen(self.regression, self.sums, model.solved, self.most) - self.most
