@@ -152,9 +152,10 @@ def explain_displacements(
         lives = where_sentences(localise(held_against(noise, found.final)))
         if account is not None:  # of another suspect in its place no more need be said
             lives = (*lives[:1], account.sentence())
-        if account is not None and holdout is None:
-            without, count = steps[-1].heldout_rms, len(effects)
-            lives += foretold_beside(account.beside, count, without, seed=options.seed)
+        if account is not None:
+            without = None if holdout is not None else steps[-1].heldout_rms
+            count = len(effects)
+            lives += foretold_beside(account.beside, found, count, without, seed=options.seed)
         remainder = replace(remainder, where=(*lives[1 : 1 + TOLD], *left.of_time))
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))

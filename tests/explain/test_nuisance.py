@@ -91,10 +91,12 @@ def test_a_cause_without_a_name_is_shown_on_poses_left_out():
     readings = hidden(TEETH)
     base = base_fit(readings)
     (plain,) = held_out(readings, refitted(base.model, noise=NOISE))
+    alone = select(base.model, readings, NOISE, (), max_effects=0, alpha=0.01)
     for name, helps in ((ANGLE, True), ("a constant that no load changes", False)):
         model = base.model + nuisance(name, base)
         beside = select(model, readings, NOISE, (), max_effects=0, alpha=0.01)
-        (said,) = foretold_beside(beside, 0, plain.rms, seed=0)
+        (said,) = foretold_beside(beside, alone, 0, plain.rms, seed=0)
+        assert foretold_beside(beside, alone, 0, None, seed=0) == (said,)
         gap = float(said.partition("foretold to ")[2].partition(" µm")[0])
         expected = np.sqrt(2.0) * SIGMA if helps else plain.rms  # noise of a reading and its zero
         assert 1e-6 * gap == pytest.approx(expected, rel=0.1)

@@ -61,16 +61,24 @@ def gap_steps(
     )
 
 
-def foretold_beside(beside: Selection, count: int, without: float, *, seed: int) -> tuple[str, ...]:
+def foretold_beside(
+    beside: Selection, alone: Selection, count: int, without: float | None, *, seed: int
+) -> tuple[str, ...]:
     """What poses left out of the fit say of a suspect; nothing where they do not hold the model.
+
+    Also where a hold-out file was given: that may be of another hour, and of another range of
+    loads, by which a suspect's columns are scaled.
 
     Args:
         beside: Names beside the suspect.
+        alone: Names without it.
         count: How many names there are.
-        without: Gap on these poses with the names alone, rms per axis [m].
+        without: Gap on these poses with the names alone, rms per axis [m]; None: not known yet.
         seed: Of the parts in which poses are left out.
     """
     (gap,) = _on_poses_left_out(beside, [count], seed)
+    if without is None:
+        (without,) = _on_poses_left_out(alone, [count], seed)
     if not np.isfinite([gap, without]).all():
         return ()
     both = f"to {1e6 * gap:.3g} µm rms per axis with it and to {1e6 * without:.3g} without"
