@@ -60,10 +60,25 @@ def document_of(found: Imported, out: Path | None, *, written: bool) -> dict[str
         "identifiable": identifiable(found),
         "assumed": list(found.said),
         "doubts": list(found.doubts),
+        "orientation": orientation_of(found),
         "registration": registration_of(found),
         "registered": found.registered,
         "largest_load_N": float(np.linalg.norm(readings.wrench[:, :3], axis=1).max()),
         "out": out if written else None,
+    }
+
+
+def orientation_of(found: Imported) -> dict[str, object] | None:
+    """How orientations beside positions were understood, in numbers."""
+    read = found.orientation
+    if read is None:
+        return None
+    return {
+        "columns": list(read.columns),
+        "way": read.way,
+        "off_deg": float(np.degrees(read.off)),
+        "next_deg": float(np.degrees(read.next)),
+        "turned_deg": float(np.degrees(read.turned)),
     }
 
 

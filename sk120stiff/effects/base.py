@@ -1,6 +1,6 @@
 """The contract of an effect: one physical cause with a name, a place, parameters and a law.
 
-An effect enters in one of seven ways, and each way is one base class:
+An effect enters in one of eight ways, and each way is one base class:
 
 =============  ==========================================================  ======================
 class          what it changes                                             example
@@ -13,6 +13,7 @@ class          what it changes                                             examp
 `LoadError`    the load, W_true = W + (S·p) W + o·p in sensor axes         force bias
 `ReadingError` the displacement read, d_read = d + (S·p) d + o·p           tracker misalignment
 `Viewpoint`    the axes in which positions are stated, x = R(p) X + t(p)   tracker's frame
+`Mounting`     the axes of the target on the tool, R_read = R_tool R(p)     a turned target
 =============  ==========================================================  ======================
 
 So a misread force can never pose as a spring. Adding an effect is one new file and one line in
@@ -23,7 +24,7 @@ program has to know of an effect beyond its law is a trait of it here, with a de
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Self
@@ -385,11 +386,14 @@ class Viewpoint(Effect):
         """
 
 
+class Mounting(Effect):
+    """The target has axes of its own on the tool, R_read = R_tool R(p); positions show nothing."""
+
+    @abstractmethod
+    def turned(self, load_cases: LoadCases, values: Array) -> tuple[Array, Array]:
+        """(N, 3, 3) axes of the target in those of the tool, and (N, 3, P) how they turn there."""
+
+
 def scale_of(robot: Robot) -> float:
     """Length of a robot's arm over `REFERENCE_LENGTH`; 1 for what has no length."""
     return arm_length(robot) / REFERENCE_LENGTH or 1.0
-
-
-def unit_vectors(dimension: int, picks: Sequence[int]) -> Array:
-    """(len(picks), dimension) rows of the identity."""
-    return np.eye(dimension)[list(picks)]

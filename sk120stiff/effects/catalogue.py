@@ -44,6 +44,7 @@ from sk120stiff.effects.options import Options
 from sk120stiff.effects.payload import Payload
 from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.effects.reading_drift import ReadingDrift
+from sk120stiff.effects.target_rotation import TargetRotation
 from sk120stiff.effects.thermal_growth import ThermalGrowth
 from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingRotation, ReadingScale, ZeroOffset
@@ -90,6 +91,7 @@ OWN: tuple[type[Effect], ...] = (
     LinkMasses,
     ApproachSide,
     MarkerShift,
+    TargetRotation,
     ThermalGrowth,
 )
 
@@ -275,7 +277,7 @@ def _checked(kinds: Sequence[type[Effect]]) -> None:
             raise InputError(
                 f"{kind!r} is no effect",
                 remedy="Give a class derived from Elastic, Geometric, Imposed, Weighing, "
-                "LoadError, ReadingError or Viewpoint of sk120stiff.effects.",
+                "LoadError, ReadingError, Viewpoint or Mounting of sk120stiff.effects.",
             )
         missing = _missing(kind)
         if missing:
@@ -352,7 +354,7 @@ def all_effects(
 
     Those that positions alone show are left out unless readings are `absolute`.
     """
-    told = Options(tuple(poses), timed, series=tuple(series), thermal=thermal)
+    told = Options(tuple(poses), timed, series=tuple(series), thermal=thermal, rotations=absolute)
     return tuple(
         kind.at(robot, where, told)
         for kind in catalogue

@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import unit_vectors
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
@@ -72,7 +71,7 @@ class JointTilt(StraightPart):
 
     def patterns(self, load_cases: LoadCases) -> Array:
         """Each axis has a compliance of its own."""
-        return np.array([np.diag(row) for row in unit_vectors(2, (0, 1))])
+        return np.array([np.diag(row) for row in np.eye(2)])
 
 
 class NonlinearTilt(Nonlinear):

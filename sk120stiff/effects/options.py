@@ -13,8 +13,9 @@ class Options:
         poses: Poses of the experiment, for `zero_offset`.
         timed: The experiment has times, for `reading_drift`.
         breaks: Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
-        series: Series of the experiment, for `marker_shift`.
+        series: Series of the experiment, for `marker_shift` and `target_rotation`.
         thermal: The experiment has temperatures, for `thermal_growth`.
+        rotations: Rotations of the tool were read, for `target_rotation`.
         shape: Names of the parameters of the law that is meant, for effects that know more than
             one.
     """
@@ -24,4 +25,5 @@ class Options:
     breaks: tuple[float, ...] = ()
     series: tuple[str, ...] = ()
     thermal: bool = False
+    rotations: bool = False
     shape: tuple[str, ...] = ()

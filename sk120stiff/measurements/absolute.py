@@ -43,6 +43,8 @@ class Absolute:
         frame: ``"base"``, or ``"unknown"``: the instrument's own axes, registered by the fit.
         point: (N, 3) marker of each row in the tool frame as stated [m].
         fit_point: The marker's place is known only roughly.
+        fit_axes: The axes whose rotation is read are those of a target, and how it is turned on the
+            tool is not known.
         markers: N names of markers.
         payload, payload_point, fit_payload: (N,) mass [kg] on the tool, (3,) where it hangs in the
             tool frame [m], and whether mass and centre are in doubt.
@@ -60,6 +62,7 @@ class Absolute:
     fit_payload: bool = False
     temperature: Array | None = None
     series: tuple[str, ...] | None = None
+    fit_axes: bool = False
 
     def select(self, index: Index) -> Absolute:
         """Some of the rows."""
@@ -147,6 +150,7 @@ def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
         fit_payload=settings.payload is not None and settings.payload.fit,
         temperature=_temperature(table) if "temperature" in roles.has else None,
         series=table.cells["series"] if "series" in roles.has else None,
+        fit_axes=fit_point if settings.rotation is None else settings.rotation.axes == "target",
     )
 
 

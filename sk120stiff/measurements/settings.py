@@ -53,6 +53,16 @@ class PositionEntry(Strict):
     frame: Literal["base", "unknown"] = "base"
 
 
+class RotationEntry(Strict):
+    """Axes whose rotation is read: the tool's, or a target's, turned on the tool as the fit finds.
+
+    Without the section they are the tool's where the point is known, and a target's where it is
+    not: `fit: true` says that nobody knows how the target sits.
+    """
+
+    axes: Literal["tool", "target"]
+
+
 class RegisteredEntry(Strict):
     """A record of how positions came into base axes: where the tracker had the base.
 
@@ -121,6 +131,7 @@ class Settings(Strict):
     force: ForceEntry = ForceEntry(frame="base")
     displacement: DisplacementEntry = DisplacementEntry()
     position: PositionEntry | None = None
+    rotation: RotationEntry | None = None
     registered: RegisteredEntry | None = None
     points: dict[str, PointEntry] = Field(default_factory=dict)
     payload: PayloadEntry | None = None
@@ -135,6 +146,7 @@ _EXAMPLES = {
     "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
     "displacement": "displacement: {frame: base, zero: shared}",
     "position": "position: {frame: unknown}",
+    "rotation": "rotation: {axes: target}",
     "registered": "registered: {xyz: [0, 0, 0], unit: mm, rotation: [0, 0, 0], rotation_unit: rad, "
     "std_xyz: [0, 0, 0], std_rotation: [0, 0, 0], rms: 0, poses: 3}",
     "points": "points: {A: {xyz: [0, 0, 100], unit: mm}, B: {xyz: [50, 0, 100], unit: mm}}",

@@ -84,6 +84,8 @@ def _channels(read: Channels, length: str) -> Written:
 def settings_of_positions(m: Measurements, said: Absolute, length: str) -> dict[str, Any]:
     """Keys of the YAML file beside frames, source and gravity."""
     settings: dict[str, Any] = {"position": {"frame": said.frame}}
+    if said.channels.rotation is not None:
+        settings["rotation"] = {"axes": "target" if said.fit_axes else "tool"}
     fit = {"fit": True} if said.fit_point else {}
     places = {name: said.point[said.markers.index(name)] for name in dict.fromkeys(said.markers)}
     same = bool((said.point == said.point[0]).all())

@@ -1,7 +1,8 @@
 """Where a marker stands and how the tool is turned, as an instrument with axes of its own sees it.
 
 x = S(R(p) X(z) + t), with X the marker in base axes at the equilibrium z under weight, payload and
-load, R and t the instrument's frame (`Viewpoint`), and S what it misreads (`ReadingError`).
+load, R and t the instrument's frame (`Viewpoint`), and S what it misreads (`ReadingError`). Axes
+that are read are those of a target, which may be turned on the tool (`Mounting`).
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import LoadCases, ReadingError, Viewpoint
+from sk120stiff.effects import LoadCases, Mounting, ReadingError, Viewpoint
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.misread import misread
 from sk120stiff.model.model import Model
@@ -27,7 +28,8 @@ class PoseReading:
     """Poses as read.
 
     Attributes:
-        position, rotation: (N, 3) marker [m] and (N, 3, 3) tool axes, axes of the instrument.
+        position, rotation: (N, 3) marker [m] and (N, 3, 3) axes of the target, axes of the
+            instrument.
         columns: (N, 6, P) derivative of position and orientation by the internal parameter values,
             in axes of the instrument; no parameters where nobody asked.
         standing, turning: (N, 3, 3) tool axes and (N, 3, P) how they turn, base axes.
@@ -69,11 +71,8 @@ def _read(
     stood = assembly.stand(load_cases, values)
     screws = stood.rest.screws
     R, t = np.eye(3), np.zeros(3)
-    views = [
-        (effect, part)
-        for effect, part in zip(assembly.effects, assembly.slices, strict=True)
-        if isinstance(effect, Viewpoint)
-    ]
+    effects = list(zip(assembly.effects, assembly.slices, strict=True))
+    views = [(effect, part) for effect, part in effects if isinstance(effect, Viewpoint)]
     for effect, part in views:
         own, shift = effect.frame(values[part])
         R, t = own @ R, own @ t + shift
@@ -91,4 +90,11 @@ def _read(
         columns[:, :3] = said.matrix @ columns[:, :3]
         for part, own in said.columns:
             columns[:, :3, part] += own
-    return PoseReading(said.value, R @ screws.rotation, columns, screws.rotation, turning)
+    rotation = R @ screws.rotation
+    for target, part in effects:
+        if isinstance(target, Mounting):
+            turn, own = target.turned(load_cases, values[part])
+            if derivative:
+                columns[:, 3:, part] = rotation @ own
+            rotation = rotation @ turn
+    return PoseReading(said.value, rotation, columns, screws.rotation, turning)

@@ -96,7 +96,7 @@ SCALAR_FIRST = np.roll(TOOL.as_quat(), 1, axis=1)
         (
             VECTOR % (("rad",) * 3),
             (TOOL * Rotation.from_rotvec([0.3, 0.2, 0])).as_rotvec(),
-            "same 20.7 deg against the tool.*tool_frame",
+            r"same 20.7 deg against the tool.*rotation: \{axes: target\}",
         ),
         (VECTOR % (("rad",) * 3), TOOL.as_rotvec()[::-1], "not those of the placed robot"),
     ],
@@ -104,8 +104,14 @@ SCALAR_FIRST = np.roll(TOOL.as_quat(), 1, axis=1)
 def test_turns_of_the_tool_that_are_not_the_robots(
     header: str, cells: np.ndarray, said: str, tmp_path: Path
 ) -> None:
-    path = write(tmp_path, A, READ, FIT + NOISE, more=header, cells=rows(cells))
+    tool = "rotation: {axes: tool}\n"
+    path = write(tmp_path, A, READ, FIT + NOISE + tool, more=header, cells=rows(cells))
     with pytest.raises(InputError, match=f"(?s){said}"):
+        calibrated(path)
+    if "deg against the tool" in said:
+        return
+    path = write(tmp_path, A, READ, FIT + NOISE, more=header, cells=rows(cells))
+    with pytest.raises(InputError, match=f"(?s){said}"):  # of a target, too
         calibrated(path)
 
 

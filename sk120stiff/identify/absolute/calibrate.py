@@ -34,7 +34,7 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.measurements.placing_distances import EACH
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
-from sk120stiff.measurements.turned import refuse_other_turns
+from sk120stiff.measurements.turned import targets_on_tool
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import arm_length
 
@@ -158,13 +158,18 @@ def calibrate(
     model = model.under(readings.gravity)
     sizes = doubtful_sizes(model.robot, readings)
     placed = place(model.robot, readings)
+    mounted, turns = None, tuple[str, ...]()
     if placed is not None or said.frame == "base":
         turn = np.zeros(3) if placed is None or said.frame == "base" else placed.turn
-        refuse_other_turns(model.robot, readings, Rotation.from_rotvec(turn).as_matrix())
+        mounted, turns = targets_on_tool(
+            model.robot, readings, Rotation.from_rotvec(turn).as_matrix()
+        )
     if placed is None and said.frame == "unknown" and set(said.channels.present) != {"inclination"}:
         raise _nowhere(readings)
     wild = np.zeros(readings.n_readings, dtype=bool) if placed is None else placed.wild
-    start = started(model, readings, placed, geometry=geometry, catalogue=catalogue)
+    start = started(
+        model, readings, placed, geometry=geometry, mounted=mounted, catalogue=catalogue
+    )
     start, unloaded = loaded(start, readings)
     kept_back = set(freedom)
     start = replace(
@@ -187,7 +192,7 @@ def calibrate(
         name for name, reach in zip(readings.joint_names, np.ptp(a, axis=0), strict=True)
         if reach < 1e-6
     )  # fmt: skip
-    notes = [*sizes, *(placed.notes if placed is not None else ()), *unloaded]
+    notes = [*sizes, *(placed.notes if placed is not None else ()), *turns, *unloaded]
     found = doubted(found, catalogue)
     found = beside_waves(found, catalogue) if waves else found
     return Calibration.of(
@@ -319,14 +324,12 @@ def _rigid_columns(problem: PoseProblem, start: Model) -> Array:
 
 
 def _refuse_too_few(problem: PoseProblem) -> None:
-    frame = [
-        k for k in problem.free
-        if problem.model.parameters[k].effect.name in ("tracker_frame", "tool_offset")
-    ]  # fmt: skip
+    placing = ("tracker_frame", "tool_offset", "target_rotation")
+    frame = [k for k in problem.free if problem.model.parameters[k].effect.name in placing]
     if len(problem.rows) <= len(frame):
         raise InputError(
             f"{len(problem.rows)} numbers cannot tell the {len(frame)} of the tracker's frame and "
-            "the marker's place",
+            "of how the marker sits",
             where=str(problem.measurements.path or "measurements"),
             remedy="Measure more poses.",
         )

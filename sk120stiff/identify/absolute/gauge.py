@@ -95,9 +95,10 @@ def least_set(model: Model, jacobian: Array, span: Array) -> tuple[Model, tuple[
 
 
 def _moves_geometry(model: Model, index: int) -> bool:
-    from sk120stiff.effects import Geometric, Imposed, Viewpoint
+    from sk120stiff.effects import Geometric, Imposed, Mounting, Viewpoint
 
-    return isinstance(model.parameters[index].effect, Geometric | Imposed | Viewpoint)
+    effect = model.parameters[index].effect
+    return isinstance(effect, Geometric | Imposed | Mounting | Viewpoint)
 
 
 def _inside(model: Model, jacobian: Array, kept: Sequence[int], k: int) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy import linalg
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Catalogue, Effect, Viewpoint
+from sk120stiff.effects import Catalogue, Effect, Mounting, Viewpoint
 from sk120stiff.effects.geometry import JointOffset, LinkLength, ToolOffset
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
@@ -24,7 +24,7 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.written import with_values
 from sk120stiff.model import Model, Parameter
 
-COUNTED = (JointFrame, JointOffset, LinkLength, ToolOffset, Viewpoint)
+COUNTED = (JointFrame, JointOffset, LinkLength, Mounting, ToolOffset, Viewpoint)
 NORMAL = 0.6745  # median of |x| of a standard normal x
 
 

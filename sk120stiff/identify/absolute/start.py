@@ -23,6 +23,7 @@ def options_of(readings: Measurements) -> Options:
         timed=readings.time is not None,
         series=labels,
         thermal=said is not None and said.temperature is not None,
+        rotations=said is not None and said.channels.rotation is not None,
     )
 
 
@@ -32,9 +33,13 @@ def started(
     placed: Placing | None,
     *,
     geometry: bool,
+    mounted: Array | None = None,
     catalogue: Catalogue = CATALOGUE,
 ) -> Model:
-    """The model with frame, marker, payload and geometry beside what it has."""
+    """The model with frame, marker, payload and geometry beside what it has.
+
+    `mounted`: (G, 3) rotation vectors of targets on the tool; None: their axes are the tool's.
+    """
     said, robot, told = readings.absolute, model.robot, options_of(readings)
     if said is None:
         return model
@@ -61,6 +66,8 @@ def started(
             model = joined(model, "marker_shift", robot.tool_frame, apart)
     elif said.series is not None and len(set(said.series)) > 1:
         model = joined(model, "marker_shift", robot.tool_frame)
+    if mounted is not None:
+        model = joined(model, "target_rotation", robot.tool_frame, mounted.ravel())
     if said.fit_payload:
         model = joined(model, "payload", robot.tool_frame)
     if geometry:

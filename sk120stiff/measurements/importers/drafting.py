@@ -11,10 +11,12 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE
+from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.clock import EITHER_WAY, since_first
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
 from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
+from sk120stiff.measurements.importers.orientation_columns import orientation_columns
 from sk120stiff.measurements.importers.told import (
     Told,
     numbers,
@@ -107,6 +109,7 @@ def drafted(
         if label is not names:
             other.append(("name", names.cells))
     taken += [c for c in sheet.columns if c.meaning in ("use", "pose")]
+    taken += orientation_columns(sheet)  # what is made of them is for the placed robot to tell
     left = [c for c in (*sheet.columns, *sheet.spare) if not any(c is t for t in taken)]
     refuse_other_joints(sheet, left, actuated)
     unused = [f"column {c.header}{reasons.get(id(c), _why_unused(c))}" for c in left]
@@ -131,10 +134,8 @@ _WHOLE = re.compile(r"\bu ?95\b|sigma|uncertainty", re.IGNORECASE)
 
 
 def _why_unused(column: Column) -> str:
-    if column.meaning.startswith("orientation"):
-        return ": in which order and about which axes it turns is not stated"
-    if column.meaning in ("qw", "qx", "qy", "qz"):
-        return ": the axes of a marker are not those of the tool"
+    if column.meaning.startswith("orientation") or column.meaning in QUATERNION:
+        return ": one of several numbers of an orientation, and the others are missing"
     if _WHOLE.search(column.header):
         return ": of the whole point, and how much of it is along x, y and z is not stated"
     if column.meaning.startswith(("nominal", "deviation")):

@@ -50,13 +50,17 @@ class Figaroh:
                 remedy="Import each marker into a file of its own, which names its place: "
                 f"--marker {numbers[0]}.",
             )
-        sheets = {number: self._of(source, number, set(found)) for number in chosen}
+        turns = {turn for name in _headers(source) if (turn := _turn_of(name))}
+        turned = {(number, axis) for number in chosen for axis in POSITION} <= turns
+        sheets = {number: self._of(source, number, set(found), turned=turned) for number in chosen}
         if source.marker is not None or len(sheets) == 1:
             return replace(next(iter(sheets.values())), marker=source.marker)
         return _stacked(sheets)
 
-    def _of(self, source: Source, number: int, found: set[tuple[int, str]]) -> Sheet:
-        """The readings of one marker."""
+    def _of(
+        self, source: Source, number: int, found: set[tuple[int, str]], *, turned: bool
+    ) -> Sheet:
+        """The readings of one marker; `turned`: with its orientation, phix1 and so on."""
         kind = "d" if (number, "dx") in found else ""
         for axis in POSITION:
             if (number, kind + axis) not in found:
@@ -69,6 +73,9 @@ class Figaroh:
 
         def meaning(name: str, actuated: tuple[str, ...]) -> tuple[str, float] | None:
             if name not in actuated and _MARKER.fullmatch(name):
+                turn = _turn_of(name) if turned else None
+                if turn and turn[0] == number:
+                    return f"orientation {turn[1]}", 1.0
                 marker = _axis_of(name)
                 return (marker[1], 1.0) if marker and marker[0] == number else None
             return meaning_of(name, actuated)
@@ -147,6 +154,14 @@ def _axis_of(name: str) -> tuple[int, str] | None:
     number = found["number"] or found["number_before"]
     axis = found["axis"] or found["axis_behind"]
     return int(number), f"{found['what'] or found['what_before'] or ''}{axis}".lower()
+
+
+def _turn_of(name: str) -> tuple[int, str] | None:
+    """Number of the marker and axis of an angle, ``phix1``."""
+    found = _MARKER.fullmatch(name)
+    if found is None or found["what"] is None or found["what"].lower() != "phi":
+        return None
+    return int(found["number"]), found["axis"].lower()
 
 
 def _headers(source: Source) -> list[str]:

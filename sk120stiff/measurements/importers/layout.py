@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet, Source
 from sk120stiff.measurements.importers.grid import is_number
+from sk120stiff.measurements.importers.orientation_columns import with_quaternions
 from sk120stiff.measurements.importers.words import (
     file_units,
     is_unit,
@@ -117,12 +118,11 @@ def _laid_out(
     above = [
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
-    meanings = _measured(
-        [meaning(name, source.actuated) if name else None for name, _ in named],
-    )
+    known = [meaning(name, source.actuated) if name else None for name, _ in named]
+    meanings = _measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
-    for k, known in enumerate(meanings):
-        kind = kind_of(known[0]) if known else None
+    for k, each in enumerate(meanings):
+        kind = kind_of(each[0]) if each else None
         if kind in said and units[k] is None:
             units[k], places[k] = said[kind], ABOVE
     return Layout(headers, meanings, tuple(units), tuple(places), first, tuple(above))

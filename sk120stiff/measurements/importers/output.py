@@ -10,6 +10,7 @@ import yaml
 
 from sk120stiff import files, units
 from sk120stiff.arrays import Array
+from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.drafting import Draft, Written
 from sk120stiff.measurements.importers.frames import points_of
 from sk120stiff.measurements.importers.told import Mode, Told
@@ -77,6 +78,8 @@ def settings_for(
         settings["force"] = {"frame": "base"}
     if mode == "positions":
         settings["position"] = {"frame": "base" if registered else "unknown"}
+        if any(header in QUATERNION for header, _ in draft.other):
+            settings["rotation"] = {"axes": "target"}
         if draft.loads.payload is not None:
             settings["payload"] = {"point": _point_entry(xyz)}
     else:

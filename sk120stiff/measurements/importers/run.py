@@ -24,6 +24,12 @@ from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
+from sk120stiff.measurements.importers.orientation import (
+    Orientation,
+    understood,
+    with_orientation,
+)
+from sk120stiff.measurements.importers.orientation_columns import named
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
 from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
 from sk120stiff.measurements.importers.told import Mode, Told
@@ -50,6 +56,7 @@ class Imported:
         registered: Are positions written in base axes because of it?
         turned: Angle between the axes of the positions and those of the base [rad], or None.
         reversed_rms: What remains if deviations had the other sign [m], or None.
+        orientation: How orientations beside positions were understood, or None.
         differences, useful_poses: Rows with a load other than the lightest of their pose, and the
             poses that have such rows.
         doubts, said: What speaks against it, and what was decided, in sentences.
@@ -67,6 +74,7 @@ class Imported:
     registered: bool
     turned: float | None
     reversed_rms: float | None
+    orientation: Orientation | None
     differences: int
     useful_poses: int
     doubts: tuple[str, ...]
@@ -134,6 +142,8 @@ def import_readings(
         refuse_several_points(draft)
     laid = placed(draft, mode, robot, told)
     turned, registered, doubts = axes(laid.fitted, mode, into_base, told)
+    read = understood(draft, robot, told, mode, laid.fitted, laid.rows)
+    draft = with_orientation(draft, read, laid.fitted, registered=registered)
     settings, point = settings_for(draft, mode, robot, told, laid.fitted, registered=registered)
     written = columns_for(draft, mode, differences, laid.fitted, registered=registered)
     readings = _assembled(draft, written, settings, robot, prismatic)
@@ -157,6 +167,7 @@ def import_readings(
         registered=registered,
         turned=turned,
         reversed_rms=laid.reversed_rms,
+        orientation=read if isinstance(read, Orientation) else None,
         differences=int(paired_rows.sum()),
         useful_poses=len({draft.pose[k] for k in np.flatnonzero(paired_rows)}),
         doubts=(*laid.doubts, *doubts),
@@ -185,7 +196,7 @@ def _sheet(
             continue
         more = opened(Source(path, source.actuated, role))
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
-    return unfolded(of_marker(sheet, source.marker))
+    return named(unfolded(of_marker(sheet, source.marker)))
 
 
 def opened(source: Source) -> Source:

@@ -138,7 +138,7 @@ def file_units(texts: list[str]) -> dict[str, str]:
 def kind_of(meaning: str) -> str | None:
     """Kind of the unit that a meaning has; None where it has none that could be told."""
     word = meaning.rpartition(" ")[2]
-    if meaning.startswith("joint "):
+    if meaning.startswith(("joint ", "orientation ")):
         return "angle"
     if word in ("fx", "fy", "fz", "payload"):
         return "force"

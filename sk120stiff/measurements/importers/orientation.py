@@ -1,0 +1,197 @@
+"""Orientations beside positions: which columns they are, and how their numbers are meant.
+
+Controllers and trackers write three angles in a dozen ways, and no header tells which. The arm
+does: with the tracker placed by the positions, only one way of reading them leaves a constant turn
+between tool and target, whatever the pose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from sk120stiff import units
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.measurements.columns import QUATERNION
+from sk120stiff.measurements.importers.contract import Column
+from sk120stiff.measurements.importers.drafting import Draft
+from sk120stiff.measurements.importers.orientation_columns import orientation_columns
+from sk120stiff.measurements.importers.told import Mode, Told, plain
+from sk120stiff.measurements.registration import Registration
+from sk120stiff.measurements.turned import COMPUTED, FITS, mounting
+from sk120stiff.robot import Robot
+
+FEWEST = 6  # orientations that tell how they are meant
+UNIT = 0.01  # by which the length of a quaternion may differ from 1
+SAME = 1e-6  # rad; ways that differ by less at every pose are one
+APART = 5.0  # times farther off the arm the next way of reading them has to be
+KNOWN = {
+    "zyx moved": "KUKA's A, B, C",
+    "xyz fixed": "FANUC's W, P, R",
+    "zyz moved": "Kawasaki's O, A, T",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Orientation:
+    """Orientations that were understood.
+
+    Attributes:
+        columns: Those of the file.
+        rotation: (N, 3, 3) of the target in axes of the tracker; NaN where a cell is blank.
+        way: How the numbers are meant, in words.
+        off, next: Angle to the arm's (median), so and in the next best way [rad].
+        turned: By how much the target is turned on the tool [rad].
+    """
+
+    columns: tuple[str, ...]
+    rotation: Array
+    way: str
+    off: float
+    next: float
+    turned: float
+
+    def sentence(self) -> str:
+        """What was understood."""
+        return (
+            f"Orientations {', '.join(self.columns)} are {self.way}: so they are "
+            f"{np.degrees(self.off):.2g} deg off the arm's (median), in the next best way "
+            f"{np.degrees(self.next):.2g} deg. The target is turned by "
+            f"{np.degrees(self.turned):.3g} deg on the tool, which the fit finds with all else."
+        )
+
+
+def understood(
+    draft: Draft, robot: Robot, told: Told, mode: Mode, fitted: Registration | None, rows: Index
+) -> Orientation | str | None:
+    """The orientations of a draft; why they are not taken, in words; None where there are none.
+
+    Args:
+        draft: Its rows.
+        robot, told: What was measured, and what was told of the file.
+        mode: What its positions become.
+        fitted, rows: The robot laid onto positions, and those rows (P,).
+    """
+    columns = orientation_columns(draft.sheet)
+    if not columns:
+        return None
+    if mode != "positions":
+        return "how far the point went is all that is used"
+    if fitted is None or len(rows) < FEWEST:
+        return f"fewer than {FEWEST} placed poses do not tell how they are meant"
+    values = _numbers(columns)
+    if values is None:
+        return "not all cells are numbers"
+    whole: Mask = np.asarray(np.isfinite(values).all(axis=1))
+    if len(columns) == len(QUATERNION):  # what was not seen is often written as zeros
+        whole &= np.abs(np.linalg.norm(values, axis=1) - 1.0) < UNIT
+    else:
+        unit = _unit(draft, columns, told)
+        if unit is None:
+            return "their unit is not stated (--angle)"
+        values = values * float(units.to_si(1.0, unit, "angle"))
+    used = rows[whole[rows]]
+    if len(used) < FEWEST:
+        return f"fewer than {FEWEST} of them stand at placed poses"
+    tool = Rotation.from_matrix(fitted.turn @ robot.screws(draft.joints.values[used]).rotation)
+    group = np.unique(np.array(draft.marker_of)[used], return_inverse=True)[1]
+    count = int(group.max()) + 1
+    found = []
+    for way, turned in _ways(values[whole]):
+        read = turned[np.flatnonzero(np.isin(np.flatnonzero(whole), used))]
+        sits = mounting(tool, read, group, count)
+        off = float(np.median(((tool * sits[group]).inv() * read).magnitude()))
+        found.append((off, way, turned, float(sits.magnitude().max())))
+    found.sort(key=lambda item: item[0])
+    off, way, turned, sits_by = found[0]
+    other = next(each for each in found[1:] if not _same(turned, each[2]))
+    after = other[0]
+    if off > FITS:
+        return f"in no usual way are they the arm's: {np.degrees(off):.2g} deg are left at least"
+    if off < COMPUTED:
+        return (
+            f"they follow the robot of the URDF to {np.degrees(off):.1g} deg, nearer than any "
+            "instrument: as a controller shows them, not as measured"
+        )
+    if after < APART * off:
+        return (
+            f"they can be meant as {way} or as {other[1]}: {np.degrees(off):.2g} and "
+            f"{np.degrees(after):.2g} deg are left"
+        )
+    rotation = np.full((len(values), 3, 3), np.nan)
+    rotation[whole] = turned.as_matrix()
+    return Orientation(tuple(c.header for c in columns), rotation, way, off, after, sits_by)
+
+
+def with_orientation(
+    draft: Draft, found: Orientation | str | None, fitted: Registration | None, *, registered: bool
+) -> Draft:
+    """The draft with quaternions beside its positions, or with why there are none."""
+    if found is None:
+        return draft
+    if isinstance(found, str):
+        left = [f"column {column.header}: {found}" for column in orientation_columns(draft.sheet)]
+        return replace(draft, unused=(*left, *draft.unused))
+    rotation = found.rotation
+    if registered and fitted is not None:
+        rotation = fitted.turn.T @ rotation
+    known = np.isfinite(rotation).all(axis=(1, 2))
+    cells = np.full((len(rotation), 4), "", dtype=object)
+    turns = np.roll(Rotation.from_matrix(rotation[known]).as_quat(), 1, axis=1)
+    cells[known] = [[f"{value:.12g}" for value in turn] for turn in turns]
+    written = tuple((name, tuple(cells[:, k])) for k, name in enumerate(QUATERNION))
+    return replace(draft, other=(*written, *draft.other), said=(*draft.said, found.sentence()))
+
+
+def _same(one: Rotation, other: Rotation) -> bool:
+    return float((one.inv() * other).magnitude().max()) < SAME
+
+
+def _numbers(columns: Sequence[Column]) -> Array | None:
+    """(N, k), NaN where a cell is blank; None where one is neither."""
+    try:
+        return np.array([[float(cell or "nan") for cell in c.cells] for c in columns]).T
+    except ValueError:
+        return None
+
+
+def _unit(draft: Draft, columns: Sequence[Column], told: Told) -> str | None:
+    """Unit of angles: that of the file, the one that was told, or that of the joints."""
+    stated = {plain(column.unit) for column in columns if column.unit}
+    if not stated and told.angle is not None:
+        stated = {told.angle}
+    if not stated:
+        joints = {header.partition("[")[2].rstrip("]") for header, _ in draft.joints.written}
+        stated = joints & {"deg", "rad"}
+    return stated.pop() if len(stated) == 1 else None
+
+
+def _ways(values: Array) -> Iterator[tuple[str, Rotation]]:
+    """Every usual way to read the numbers (M, k) of an orientation, in words, and what it gives."""
+    if values.shape[1] == len(QUATERNION):
+        orders = {"first": (1, 2, 3, 0), "last": (0, 1, 2, 3)}
+        plainly = [
+            (f"quaternions, the real part {at}", Rotation.from_quat(values[:, order]))
+            for at, order in orders.items()
+        ]
+    else:
+        plainly = [("rotation vectors", Rotation.from_rotvec(values))]
+        for axes in map("".join, product("xyz", repeat=3)):
+            if axes[0] == axes[1] or axes[1] == axes[2]:
+                continue
+            for moved in (True, False):
+                word = "moved" if moved else "fixed"
+                like = KNOWN.get(f"{axes} {word}")
+                plainly.append(
+                    (
+                        f"angles about the {word} axes {', '.join(axes)}"
+                        + (f" (as {like})" if like else ""),
+                        Rotation.from_euler(axes.upper() if moved else axes, values),
+                    )
+                )
+    yield from plainly
+    yield from ((f"{way}, of the tracker in axes of the target", r.inv()) for way, r in plainly)

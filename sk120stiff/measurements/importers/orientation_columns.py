@@ -1,0 +1,54 @@
+"""Which columns hold an orientation: four numbers, or three angles by the names of a controller."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sk120stiff.measurements.columns import QUATERNION
+from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.words import unit_of_header
+
+# By which names three angles stand side by side; the order is that of the numbers in a row.
+NAMES = ("x y z", "roll pitch yaw", "a b c", "w p r", "o a t", "alpha beta gamma")
+NUMBERED = ("q1", "q2", "q3", "q4")  # a quaternion as ABB writes it, where joints have other names
+
+
+def named(sheet: Sheet) -> Sheet:
+    """The sheet with columns such as A, B, C or W, P, R known as angles, where all three stand."""
+    plain_names = [unit_of_header(column.header)[0].strip().lower() for column in sheet.spare]
+    for names in (each.split() for each in NAMES):
+        places = [plain_names.index(name) for name in names if plain_names.count(name) == 1]
+        if len(places) == len(names):
+            found = [
+                replace(sheet.spare[place], meaning=f"orientation {name}")
+                for place, name in zip(places, names, strict=True)
+            ]
+            spare = tuple(c for k, c in enumerate(sheet.spare) if k not in places)
+            return replace(sheet, columns=(*sheet.columns, *found), spare=spare)
+    return sheet
+
+
+def orientation_columns(sheet: Sheet) -> tuple[Column, ...]:
+    """Columns of an orientation, four or three that belong together; none where there are not."""
+    four = [column for name in QUATERNION if (column := sheet.get(name))]
+    if len(four) == len(QUATERNION):
+        return tuple(four)
+    for names in NAMES:
+        three = [c for name in names.split() if (c := sheet.get(f"orientation {name}"))]
+        if len(three) == len(names.split()):
+            return tuple(three)
+    return ()
+
+
+def with_quaternions(
+    names: Sequence[str], meanings: Sequence[tuple[str, float] | None]
+) -> list[tuple[str, float] | None]:
+    """Meanings of columns where q1 to q4 are no joints: those have names of their own beside."""
+    plain, out = [name.strip().lower() for name in names], list(meanings)
+    places = [plain.index(name) for name in NUMBERED if plain.count(name) == 1]
+    others = [known[0] for k, known in enumerate(meanings) if known and k not in places]
+    if len(places) == len(NUMBERED) and all(f"joint {k}" in others for k in (1, 2, 3, 4)):
+        for place, meaning in zip(places, QUATERNION, strict=True):
+            out[place] = (meaning, 1.0)
+    return out
