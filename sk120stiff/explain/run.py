@@ -33,7 +33,7 @@ from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
-from sk120stiff.explain.judge.steps import foretold_beside, gap_steps
+from sk120stiff.explain.judge.steps import foretold_beside, foretold_on_file, gap_steps
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
@@ -153,9 +153,9 @@ def explain_displacements(
         if account is not None:  # of another suspect in its place no more need be said
             lives = (*lives[:1], account.sentence())
         if account is not None:
-            without = None if holdout is not None else steps[-1].heldout_rms
-            count = len(effects)
-            lives += foretold_beside(account.beside, found, count, without, seed=options.seed)
+            lives += _worth_of_the_suspect(
+                account, found, effects, holdout, steps[-1].heldout_rms, options.seed
+            )
         remainder = replace(remainder, where=(*lives[1 : 1 + TOLD], *left.of_time))
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
@@ -191,6 +191,21 @@ def explain_displacements(
     )
     tell("what these readings cannot tell", 0.85)
     return completed(answer, found.regression, seed=options.seed, cell=options.cell)
+
+
+def _worth_of_the_suspect(
+    account: Account,
+    found: Selection,
+    effects: Sequence[Effect],
+    holdout: Measurements | None,
+    without: float,
+    seed: int,
+) -> tuple[str, ...]:
+    """How much nearer other poses are foretold with it."""
+    beside = account.beside
+    if holdout is None:
+        return foretold_beside(beside, len(effects), without, seed=seed)
+    return foretold_on_file(found, beside, account.suspect, effects, holdout, without)
 
 
 def _judged(

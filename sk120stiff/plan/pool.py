@@ -24,6 +24,7 @@ REACH_OF_UNLIMITED_SLIDE = 0.5  # m
 SHARE_OF_RANGE = 0.9  # the ends of the range are left out
 BATCHES = 200  # drawn before closed loops are given up
 DRAWS = 50_000  # poses drawn before a cell is given up
+TOLD = 4_000  # poses drawn that tell how many there would be after all of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +188,7 @@ def poses_in(
     why: Counter[str] = Counter()
     example: dict[str, str] = {}
     drawn_in_all = 0
-    while drawn_in_all < DRAWS:
+    while drawn_in_all < DRAWS and not _hopeless(count - missing, drawn_in_all, count):
         drawn = random_poses(robot, max(count, 64), rng)
         verdict = feasible(robot, cell, drawn, point=point)
         drawn_in_all += len(drawn)
@@ -207,6 +208,11 @@ def poses_in(
         remedy="Lower the floor, widen the box, or correct the cell; --check says what is wrong "
         "with single poses.",
     )
+
+
+def _hopeless(found: int, drawn: int, count: int) -> bool:
+    """Would all draws bring too few, at three standard errors more than this rate?"""
+    return drawn >= TOLD and (found + 3.0 * np.sqrt(found) + 3.0) * DRAWS < count * drawn
 
 
 def _kind(fault: str) -> str:

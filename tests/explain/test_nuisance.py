@@ -8,7 +8,7 @@ import pytest
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.explain.judge.nuisance import nuisance
-from sk120stiff.explain.judge.steps import foretold_beside
+from sk120stiff.explain.judge.steps import foretold_beside, foretold_on_file
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.identify import fit, held_out, refitted
 from tests.explain.readings import NOISE, SIGMA, base_fit, hidden
@@ -92,11 +92,22 @@ def test_a_cause_without_a_name_is_shown_on_poses_left_out():
     base = base_fit(readings)
     (plain,) = held_out(readings, refitted(base.model, noise=NOISE))
     alone = select(base.model, readings, NOISE, (), max_effects=0, alpha=0.01)
+    others = hidden(TEETH, poses=9, seed=8)
+    missed = fit(base.model, readings, noise=NOISE).model.predict(
+        load_cases_of(base.model.robot, others)
+    )
+    apart = float(np.sqrt(np.mean((others.displacement - missed) ** 2)))
     for name, helps in ((ANGLE, True), ("a constant that no load changes", False)):
         model = base.model + nuisance(name, base)
         beside = select(model, readings, NOISE, (), max_effects=0, alpha=0.01)
-        (said,) = foretold_beside(beside, alone, 0, plain.rms, seed=0)
-        assert foretold_beside(beside, alone, 0, None, seed=0) == (said,)
+        (said,) = foretold_beside(beside, 0, plain.rms, seed=0)
+        on_file = foretold_on_file(alone, beside, name, (), others, apart)
+        assert len(on_file) == helps  # a constant of other readings is another
+        if helps:
+            near = float(on_file[0].partition("foretold to ")[2].partition(" µm")[0])
+            assert (
+                1e-6 * near == pytest.approx(np.sqrt(2.0) * SIGMA, rel=0.15) and near < 1e6 * apart
+            )
         gap = float(said.partition("foretold to ")[2].partition(" µm")[0])
         expected = np.sqrt(2.0) * SIGMA if helps else plain.rms  # noise of a reading and its zero
         assert 1e-6 * gap == pytest.approx(expected, rel=0.1)

@@ -95,8 +95,16 @@ def nuisance(name: str, base: Fit) -> Nuisance:
     Raises:
         InputError: The readings of the fit do not tell of it.
     """
-    fitted = base.problem.load_cases
-    suspect = suspect_named(name, base.model, fitted)
+    return nuisance_at(name, base.model, base.problem.load_cases)
+
+
+def nuisance_at(name: str, model: Model, fitted: LoadCases) -> Nuisance:
+    """The same, its columns as these readings have them.
+
+    Raises:
+        InputError: They do not tell of it.
+    """
+    suspect = suspect_named(name, model, fitted)
     if suspect is None:
         raise InputError(f"these readings do not tell of {name}")
     columns = suspect.columns
@@ -105,7 +113,7 @@ def nuisance(name: str, base: Fit) -> Nuisance:
     seen = size > SMALLEST * size[0]
     factors = right[seen].T / size[seen]
     price = suspect.price_of_choice
-    return Nuisance("", suspect=name, model=base.model, factors=factors, price=price, fitted=fitted)
+    return Nuisance("", suspect=name, model=model, factors=factors, price=price, fitted=fitted)
 
 
 def _keys(load_cases: LoadCases) -> list[bytes]:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import Effect
+from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
+from sk120stiff.explain.judge.nuisance import nuisance_at
+from sk120stiff.explain.localise.suspects import of_the_clock
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
@@ -61,29 +64,60 @@ def gap_steps(
     )
 
 
-def foretold_beside(
-    beside: Selection, alone: Selection, count: int, without: float | None, *, seed: int
-) -> tuple[str, ...]:
+def foretold_beside(beside: Selection, count: int, without: float, *, seed: int) -> tuple[str, ...]:
     """What poses left out of the fit say of a suspect; nothing where they do not hold the model.
-
-    Also where a hold-out file was given: that may be of another hour, and of another range of
-    loads, by which a suspect's columns are scaled.
 
     Args:
         beside: Names beside the suspect.
-        alone: Names without it.
         count: How many names there are.
-        without: Gap on these poses with the names alone, rms per axis [m]; None: not known yet.
+        without: Gap on these poses with the names alone, rms per axis [m].
         seed: Of the parts in which poses are left out.
     """
     (gap,) = _on_poses_left_out(beside, [count], seed)
-    if without is None:
-        (without,) = _on_poses_left_out(alone, [count], seed)
+    return _foretold("Poses that are left out are", gap, without)
+
+
+def foretold_on_file(
+    found: Selection,
+    beside: Selection,
+    suspect: str,
+    effects: Sequence[Effect],
+    holdout: Measurements,
+    without: float,
+) -> tuple[str, ...]:
+    """What a hold-out file says of a suspect; nothing where that is of these readings' clock.
+
+    Its columns are those of both files together: it may be scaled by the largest load of all.
+
+    Args:
+        found, beside: Names without the suspect, and beside it.
+        suspect: Its name.
+        effects: The names.
+        holdout: Readings of other poses.
+        without: Gap on them with the names alone, rms per axis [m].
+    """
+    base, noise = found.base, beside.final.problem.noise
+    readings = base.problem.measurements
+    other = holdout.masked()
+    other = replace(other, pose=tuple(f"hold-out {label}" for label in other.pose))
+    try:
+        both = load_cases_of(base.model.robot, readings + other)
+        if of_the_clock(suspect, base.model, both):
+            return ()
+        model = base.model + nuisance_at(suspect, base.model, both)
+        with_it = fit(model, readings, noise=noise)
+        gap = _on_file(refit(with_it, effects) if effects else with_it, holdout)
+    except (InputError, Refusal):  # of other points or joints; or they do not hold the model
+        return ()
+    return _foretold("The readings of the hold-out file are", gap, without)
+
+
+def _foretold(what: str, gap: float, without: float) -> tuple[str, ...]:
     if not np.isfinite([gap, without]).all():
         return ()
     both = f"to {1e6 * gap:.3g} µm rms per axis with it and to {1e6 * without:.3g} without"
     but = "" if gap < without else ": that is where it shows, but how it goes on there is not known"
-    return (f"Poses that are left out are foretold {both}{but}.",)
+    return (f"{what} foretold {both}{but}.",)
 
 
 def nested(found: Selection, counts: Sequence[int]) -> Learn:
