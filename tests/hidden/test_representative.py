@@ -1,4 +1,4 @@
-"""A case of every level, two of some, through the public command; bounds from EVIDENCE.md.
+"""A case of every level through the public command; bounds from EVIDENCE.md.
 
 Small numbers cannot show 95 %; the full table is printed by the scripts (README.md). These bounds
 are those that a program at its goals misses in less than one run out of a hundred.
@@ -15,7 +15,7 @@ import pytest
 from tests.hidden import make_cases, run, score
 
 SEED = 20
-LEVELS = "L0=1,L1=2,L2=1,L3=1,L4=1,L5=1,L6=2,L7=1,L8=1,L9=1"
+LEVELS = "L0=1,L1=1,L2=1,L3=1,L4=1,L5=1,L6=1,L7=1,L8=1,L9=1"
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ pytestmark = pytest.mark.timeout(1200)
 
 def test_every_case_gets_an_answer(scored: dict[str, list[dict[str, Any]]]) -> None:
     verdicts = [entry["verdict"] for entries in scored.values() for entry in entries]
-    assert len(verdicts) == 12
+    assert len(verdicts) == 10
     assert set(verdicts) <= {"none", "named", "ambiguous", "outside"}
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from tests.identify.prediction_coverage import KINDS, Campaign, campaigns, share_inside
 
-COUNT = 9  # campaigns of each kind
+COUNT = 7  # campaigns of each kind
 HOLD = (0.92, 0.98)
 
 

@@ -17,8 +17,9 @@ from tests.workspace.arms import joint_job
 dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def cluster():
+    """One for all: a worker that is killed comes back."""
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
     ) as running:
@@ -43,7 +44,7 @@ def test_a_cluster_writes_the_same_map(cluster, tmp_path: Path) -> None:
 
 
 def test_a_lost_worker_costs_time_only(cluster, tmp_path: Path) -> None:
-    job, path = joint_job(60, 40, 30), tmp_path / "m.zarr"
+    job, path = joint_job(40, 40, 30), tmp_path / "m.zarr"
     progress = path / store_module.PROGRESS
     killed: list[int] = []
 
