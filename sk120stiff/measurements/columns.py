@@ -16,6 +16,7 @@ DISPLACEMENTS = ("dx", "dy", "dz")
 POSITIONS = ("x", "y", "z")
 ROTATION_VECTOR = ("rx", "ry", "rz")
 QUATERNION = ("qw", "qx", "qy", "qz")
+TURNS = ("drx", "dry", "drz")
 DIRECTIONS = ("ux", "uy", "uz")
 ANCHORS = ("ax", "ay", "az")
 LEVELS = ("vx", "vy", "vz")
@@ -89,6 +90,9 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
                     where=table.place(name),
                     remedy=f"Write its header as {name}.",
                 )
+            continue
+        if name in (*TURNS, *ROTATION_VECTOR) and name not in actuated:  # of no reading of a turn
+            extra.append(name)
             continue
         _refuse_misspelt(table, name, actuated)
         kind = next((k for k in ("angle", "length") if unit and units.is_kind(unit, k)), None)

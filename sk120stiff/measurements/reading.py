@@ -96,6 +96,7 @@ def assembled(
     named = _robot(file.settings.robot, table.path.parent)
     refuse_payload_for_force(table, file.settings, named)
     roles = columns.assign_roles(table, tuple(actuated or ()))
+    _tell_unused_turns(table, roles.extra)
     measurements = _assemble(table, roles, file, data_hash)
     if actuated is not None:
         kinds = None
@@ -184,6 +185,17 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         notes=(*_assumed_frames(settings, absolute, rows), *found.notes, *told),
         data_hash=data_hash,
     )
+
+
+def _tell_unused_turns(table: Table, extra: Sequence[str]) -> None:
+    """Warn that turns under a load are not read beside displacements."""
+    turns = [name for name in extra if name in (*columns.TURNS, *columns.ROTATION_VECTOR)]
+    if turns:
+        warn(
+            f"{table.path}: {', '.join(turns)} are not used: how far the point went is, and not "
+            "how the tool turned. To use both, write where the point stood and how the tool was "
+            "turned under each load: x y z beside qw qx qy qz."
+        )
 
 
 def _sigma_of_rows(rows: Rows, found: Displacements, roles: Roles) -> Array | None:

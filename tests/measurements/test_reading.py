@@ -206,6 +206,17 @@ def test_absurd_sizes_raise_doubt_about_units(
     assert part in str(caught[0].message)
 
 
+@pytest.mark.parametrize("name", ["drx", "rx"])
+def test_turns_beside_displacements_are_no_joints_and_that_is_told(
+    name: str, tmp_path: Path
+) -> None:
+    csv = f"pose,a[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm],{name}[mrad]\n"
+    path = put(tmp_path, csv + "A,1,0,0,-9,0,0,-1,0.5\nA,1,0,0,-20,0,0,-2,1\n")
+    with pytest.warns(ToolkitWarning, match=f"{name} are not used.*x y z beside qw"):
+        m = read_measurements(path)
+    assert m.joint_names == ("a",)
+
+
 def test_exact_zeros_without_load_are_masked_and_said(tmp_path: Path) -> None:
     m = read_measurements(put(tmp_path, PLAIN + "1,0,0,0,0,0,0,0\n1,0,0,0,0,0.001,0,0\n"))
     np.testing.assert_array_equal(m.use, [True, True, False, True])

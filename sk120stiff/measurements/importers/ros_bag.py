@@ -16,17 +16,18 @@ import numpy as np
 from sk120stiff import files
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, require
+from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.contract import NO, Column, Guess, Sheet, Source
 
 STILL = 1e-3  # rad or m between the joint states around a position
 LATE = 0.1  # s from a position to the nearest joint state
 _MAGIC = (b"\x89MCAP0\r\n", b"SQLite format 3\0", b"#ROSBAG V2.0")
 _JOINTS = "sensor_msgs/msg/JointState"
-_POINTS = {  # type of message → where the position stands in it
-    "geometry_msgs/msg/PointStamped": "point",
-    "geometry_msgs/msg/PoseStamped": "pose.position",
-    "geometry_msgs/msg/PoseWithCovarianceStamped": "pose.pose.position",
-    "geometry_msgs/msg/TransformStamped": "transform.translation",
+_POINTS = {  # type of message → where position and quaternion stand in it
+    "geometry_msgs/msg/PointStamped": ("point", None),
+    "geometry_msgs/msg/PoseStamped": ("pose.position", "pose.orientation"),
+    "geometry_msgs/msg/PoseWithCovarianceStamped": ("pose.pose.position", "pose.pose.orientation"),
+    "geometry_msgs/msg/TransformStamped": ("transform.translation", "transform.rotation"),
 }
 
 
@@ -66,7 +67,7 @@ class RosBag:
         order = np.argsort(at, kind="stable")
         at, q = at[order], np.array([values for _, values in joints])[order]
         kept, skipped, values = [], [], []
-        for number, (stamp, position, _) in enumerate(points, 1):
+        for number, (stamp, position, _, _) in enumerate(points, 1):
             reason, value = _joints_at(stamp, at, q)
             if not np.isfinite(position).all():
                 reason = "the position is not finite"
@@ -100,17 +101,23 @@ def _sheet(
     def column(header: str, meaning: str, unit: str, cells: Sequence[float]) -> Column:
         return Column(header, meaning, unit, "REP 103", tuple(map(repr, cells)))
 
-    stamps = np.array([stamp for stamp, _, _ in points])
-    xyz = np.array([position for _, position, _ in points])
+    stamps = np.array([stamp for stamp, *_ in points])
+    xyz = np.array([position for _, position, *_ in points])
+    turns = [turn for *_, turn in points if turn is not None]
     columns = [column(f"{topic} {a}", a, "m", xyz[:, k].tolist()) for k, a in enumerate("xyz")]
     columns += [
         column(name, f"joint {k + 1}", "SI", q[:, k].tolist())
         for k, name in enumerate(source.actuated)
     ]
+    if turns:
+        columns += [
+            Column(f"{topic} {name}", name, None, "REP 103", tuple(repr(turn[k]) for turn in turns))
+            for k, name in enumerate(QUATERNION)
+        ]
     labels = _standstills(q)
     columns.append(column("time stamp", "time", "s", (stamps - stamps[0]).tolist()))
     columns.append(Column("standstill", "pose", None, "", labels))
-    frames = sorted({frame for _, _, frame in points})
+    frames = sorted({frame for _, _, frame, _ in points})
     return Sheet(
         path=source.path,
         title="a ROS bag",
@@ -177,11 +184,13 @@ def _messages(source: Source) -> tuple[list[Any], list[Any], str, str]:
                     if set(source.actuated) <= known.keys():
                         joints.append((stamp, [float(known[name]) for name in source.actuated]))
                 else:
-                    place = message
-                    for part in _POINTS[connection.msgtype].split("."):
-                        place = getattr(place, part)
+                    where, turned = _POINTS[connection.msgtype]
+                    place, turn = _part(message, where), None
                     xyz = (float(place.x), float(place.y), float(place.z))
-                    points.append((stamp, xyz, message.header.frame_id))
+                    if turned is not None:
+                        q = _part(message, turned)
+                        turn = (float(q.w), float(q.x), float(q.y), float(q.z))
+                    points.append((stamp, xyz, message.header.frame_id, turn))
     except InputError:
         raise
     except Exception as error:  # whatever a broken recording makes of it
@@ -190,11 +199,15 @@ def _messages(source: Source) -> tuple[list[Any], list[Any], str, str]:
             where=str(source.path),
             remedy="Give the folder that holds metadata.yaml, or make it with: ros2 bag reindex.",
         ) from error
-    kind = topics[topic]
     rest = [f"{t} ({k})" for t, k in topics.items() if t != topic and k != _JOINTS]
-    if not kind.endswith("PointStamped"):
-        rest.append(f"orientations of {topic}: the axes of a marker are not those of the tool")
     return joints, points, topic, f"Topics: {'; '.join(rest)}." if rest else ""
+
+
+def _part(message: Any, path: str) -> Any:
+    """What stands in a message under ``pose.position`` and the like."""
+    for part in path.split("."):
+        message = getattr(message, part)
+    return message
 
 
 def _folder(path: Path) -> Path:

@@ -23,6 +23,7 @@ from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, 
 from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
 from sk120stiff.measurements.importers.load_pairs import unfolded
+from sk120stiff.measurements.importers.log import standstills
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.orientation import (
     Orientation,
@@ -132,6 +133,9 @@ def import_readings(
         _sheet(source, formats, format_name, joints_file, loads_file),
         told, robot.actuated, prismatic,
     )  # fmt: skip
+    of_log = standstills(draft)
+    if of_log is not None:
+        draft = drafted(of_log, told, robot.actuated, prismatic)
     differences, paired_rows, shifted = paired_loads(draft)
     mode: Mode = "positions"
     if draft.displaced:

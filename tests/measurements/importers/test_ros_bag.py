@@ -87,7 +87,7 @@ def test_positions_while_the_arm_stands(tmp_path: Path, kind: str) -> None:
     np.testing.assert_array_equal(draft.joints.values, POSES)
     assert [float(c) for c in columns["time[s]"]] == pytest.approx([0.0, 1.0, 2.0, 3.0])
     assert draft.pose == ("P1", "P2", "P3", "P4")
-    assert any("orientations" in item for item in draft.unused) == (kind == "PoseStamped")
+    assert draft.sheet.has("qw", "qx", "qy", "qz") == (kind == "PoseStamped")
 
 
 def test_what_a_recording_lacks_is_told(tmp_path: Path) -> None:
