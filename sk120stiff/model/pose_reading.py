@@ -59,6 +59,20 @@ def read_poses(
     return PoseReading(*(np.concatenate([getattr(part, n) for part in parts]) for n in names))
 
 
+def instrument_frame(model: Model) -> tuple[Array, Array]:
+    """(3, 3) rotation and (3,) origin [m] of base axes as the instrument sees them."""
+    return _frame(model.assembly, model.values)
+
+
+def _frame(assembly: Assembly, values: Array) -> tuple[Array, Array]:
+    R, t = np.eye(3), np.zeros(3)
+    for effect, part in zip(assembly.effects, assembly.slices, strict=True):
+        if isinstance(effect, Viewpoint):
+            own, shift = effect.frame(values[part])
+            R, t = own @ R, own @ t + shift
+    return R, t
+
+
 def _blocks(load_cases: LoadCases, n: int) -> Iterator[LoadCases]:
     size = max(1, min(BLOCK, BUDGET // n**2))
     for k in range(0, load_cases.count, size):
@@ -70,12 +84,9 @@ def _read(
 ) -> PoseReading:
     stood = assembly.stand(load_cases, values)
     screws = stood.rest.screws
-    R, t = np.eye(3), np.zeros(3)
+    R, t = _frame(assembly, values)
     effects = list(zip(assembly.effects, assembly.slices, strict=True))
     views = [(effect, part) for effect, part in effects if isinstance(effect, Viewpoint)]
-    for effect, part in views:
-        own, shift = effect.frame(values[part])
-        R, t = own @ R, own @ t + shift
     turned = screws.position @ R.T
     said = misread(assembly.of(ReadingError), load_cases, values, turned + t)
     P = len(values) if derivative else 0

@@ -13,6 +13,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.explain import Explained
 from sk120stiff.identify import Calibration, known_model
 from sk120stiff.model import Model
+from sk120stiff.show import scene_of_model
 from tests.absolute.arm import Arm, Array, poses, tracked, write
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
@@ -48,6 +49,28 @@ def test_fit_and_predict_say_where_the_marker_stands(tmp_path: Path) -> None:
     kept = "joint_springs:j2.stiffness"
     held = sk.fit(model, readings, fix=[kept])
     assert kept not in {p.name for p in held.parameters}
+
+
+def test_a_scene_shows_the_gap_of_every_position(tmp_path: Path) -> None:
+    """In base axes, from where the last model has the marker; blank cells have no arrow."""
+    robot, readings = read(tmp_path, poses(40, 70))
+    before = sk.fit(sk.base_model(robot), readings.select(np.arange(20))).model
+    found = sk.fit(sk.base_model(robot), readings)
+    scene = scene_of_model(found.model, readings, models={"before": before, "model": found.model})
+    shown = [reading for pose in scene.poses for reading in pose.readings]
+    gap = np.array([reading.measured for reading in shown])
+    lengths = np.linalg.norm(found.gap.reshape(-1, 3), axis=1)
+    np.testing.assert_allclose(np.linalg.norm(gap, axis=1), lengths, rtol=1e-4, atol=1e-9)
+    assert not any(reading.predicted["model"].any() for reading in shown)
+    apart = np.array([reading.predicted["before"] for reading in shown])
+    assert 0.0 < np.abs(apart).max() < 1e-3
+    read_of = sk.predict(found.model, readings).position
+    at = sk.predict(before, readings).position
+    np.testing.assert_allclose(  # the frames of both differ by far less than what they tell
+        np.linalg.norm(apart, axis=1), np.linalg.norm(at - read_of, axis=1), atol=3e-4
+    )
+    bare = scene_of_model(sk.base_model(robot), readings)  # where the tracker stands is not known
+    assert all(reading.measured is None for pose in bare.poses for reading in pose.readings)
 
 
 def test_explain_names_saves_and_reports(tmp_path: Path) -> None:

@@ -105,7 +105,10 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
     for k, column in enumerate(taken):
         kind = "force" if k < 3 else "moment"
         W[:, k] = quantity(sheet, column, kind, unit_of(sheet, column, kind, told))
-    said = "Forces are taken to act on the robot, in axes of the base frame."
+    said = (
+        "Forces are taken to act on the robot, in axes of the base frame; of those of a sensor on "
+        "the tool write force: {frame: tool} into the YAML file."
+    )
     return Loads(W, None, tuple(taken), said)
 
 

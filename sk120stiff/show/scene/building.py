@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.errors import InputError
 from sk120stiff.show.scene.elastic import Elastic
 from sk120stiff.show.scene.scene import Reading, Scene, ScenePose
 
@@ -104,7 +105,8 @@ def poses_of(
 ) -> tuple[ScenePose, ...]:
     """The poses of measurements with their readings in base axes, and what models predict.
 
-    A reading that lacks an axis has no measured arrow.
+    A reading that lacks an axis has no measured arrow. Of positions the arrows are told from where
+    the last of the models has the marker: what was measured is the gap that it leaves.
 
     Raises:
         InputError: The data belong to another robot.
@@ -114,8 +116,16 @@ def poses_of(
     used = data.masked()
     load_cases = load_cases_of(robot, used)
     models = models or {}
-    predicted = {name: _in_base(load_cases, m.predict(load_cases)) for name, m in models.items()}
-    measured = None if used.displacement is None else _in_base(load_cases, used.displacement)
+    if used.absolute is None:
+        measured = None if used.displacement is None else _in_base(load_cases, used.displacement)
+        predicted = {
+            name: _in_base(load_cases, m.predict(load_cases)) for name, m in models.items()
+        }
+    else:
+        measured, predicted = _off_the_last(used, models)
+    read: Mask = np.zeros(used.n_readings, dtype=np.bool_)
+    if measured is not None:
+        read |= np.isfinite(measured).all(axis=1)
     wrench = _at_point(load_cases)
     poses = []
     for k, pose in enumerate(load_cases.poses):
@@ -123,7 +133,7 @@ def poses_of(
         readings = tuple(
             Reading(
                 wrench=wrench[row],
-                measured=measured[row] if measured is not None and used.read[row].all() else None,
+                measured=measured[row] if measured is not None and read[row] else None,
                 predicted={name: values[row] for name, values in predicted.items()},
                 label=f"reading {number + 1}",
             )
@@ -133,6 +143,31 @@ def poses_of(
     return tuple(poses)
 
 
+def _off_the_last(
+    used: Measurements, models: Mapping[str, Model]
+) -> tuple[Array | None, dict[str, Array]]:
+    """Positions (N, 3) as read, and as models have them, from those of the last, base axes [m].
+
+    Nothing where a model does not know where the instrument stands, or no position was read.
+    """
+    from sk120stiff.model import instrument_frame, predict
+
+    position = None if used.absolute is None else used.absolute.channels.position
+    if position is None or not models:
+        return None, {}
+    at: dict[str, Array] = {}
+    for name, model in models.items():
+        try:
+            said = predict(model, used).position
+        except InputError:
+            return None, {}
+        R, t = instrument_frame(model)
+        at[name] = (np.asarray(said) - t) @ R
+    last = next(reversed(at))
+    R, t = instrument_frame(models[last])
+    return (position - t) @ R - at[last], {name: own - at[last] for name, own in at.items()}
+
+
 def _in_base(load_cases: LoadCases, values: Array) -> Array:
     """(N, 3) displacements in base axes."""
     return np.asarray(np.einsum("nij,nj->ni", load_cases.reading_axes, values))
@@ -140,7 +175,8 @@ def _in_base(load_cases: LoadCases, values: Array) -> Array:
 
 def _at_point(load_cases: LoadCases) -> Array:
     """(N, 6) loads moved to the measured point: the same wrench, seen from there."""
-    arm = load_cases.rotation @ (load_cases.force_point - load_cases.point)
+    arm = np.einsum("nij,nj->ni", load_cases.rotation, np.broadcast_to(
+        load_cases.force_point - load_cases.point, (load_cases.count, 3)))  # fmt: skip
     wrench = load_cases.wrench.copy()
     wrench[:, 3:] += np.cross(arm, wrench[:, :3])
     return wrench
