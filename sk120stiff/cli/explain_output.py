@@ -94,10 +94,18 @@ def _write_pages(answer: Explanation | Explained, task: Task, out: Path) -> dict
     command = provenance(task.data, task.readings)["command"]
     facts = reproducibility(command, task.inputs, seed=task.seed)
     if isinstance(answer, Explained):
-        model, told = yielding(answer.final.model), answer.report
+        model, told = answer.final.model, answer.report
         return write_pages(
             out,
-            lambda: scene_of_model(model, title=model.robot.name),
+            lambda: scene_of_model(
+                yielding(model),
+                task.readings,
+                models={"model": model},
+                title=model.robot.name,
+                subtitle=task.data.name,
+                model_file="model.yaml",
+                named=[finding.effect for finding in answer.findings],
+            ),
             lambda _: told(data=task.data.name, reproducibility=facts),
         )
     return write_pages(

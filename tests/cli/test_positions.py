@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,15 @@ def test_the_command_writes_its_folder(run, tmp_path: Path) -> None:
     assert verdict["gap"]["steps"][-1]["heldout_rms"] < 30
     for name in ("report.html", "scene.html", "model.yaml", "gaps.csv"):
         assert (out / name).stat().st_size > 1000
+    drawn = re.search(
+        r'<script type="application/json" id="scene">(.*?)</script>',
+        (out / "scene.html").read_text(encoding="utf-8"), re.DOTALL,
+    )  # fmt: skip
+    assert drawn is not None
+    of_data = json.loads(drawn.group(1))["poses"]
+    assert len(of_data) == 40
+    gaps = [reading["measured"] for pose in of_data for reading in pose["readings"]]
+    assert 1e-6 < np.linalg.norm(gaps, axis=1).mean() < 1e-4
     assert verdict["remainder"]["interval_95"][0] < 10.0  # beside a noise of 20 µm, which is stated
     assert "beyond the stated noise" in outcome.stdout
     assert "looks for" not in outcome.stdout
