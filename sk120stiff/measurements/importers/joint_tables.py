@@ -13,7 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import layout_of, shaped, sheet_by_order
+from sk120stiff.measurements.importers.layout import (
+    layout_of,
+    of_other_columns,
+    shaped,
+    sheet_by_order,
+)
 
 
 @dataclass(frozen=True)
@@ -43,7 +48,7 @@ class JointTable:
             wanted = _with_joints(self.meanings, [f"joint {k + 1}" for k in range(n)])
             return Guess(0.9, self.why) if layout.has(*wanted) else NO
         count, named, _ = shaped(source)
-        if named != ("tag" in self.columns) or count != n + 6:
+        if named != ("tag" in self.columns) or count != n + 6 or of_other_columns(source):
             return NO
         return Guess(0.5, f"{'a tag and ' * named}{count} numbers in a row: {self.row}")
 

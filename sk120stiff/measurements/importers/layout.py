@@ -35,7 +35,7 @@ SEARCHED = 80  # rows that may stand above the headers
 LISTED = 12  # comments and lines above the table that are shown one by one
 BLANK = {"", "nan", "n/a", "na", "-", "--", "---", "none", "null", "#n/a"}
 ABOVE = "the lines above the table"
-_FRAME = re.compile(r"(?:working )?frame\W+(.+)", re.IGNORECASE)
+_FRAME = re.compile(r"(?:working )?frame\W+(?!rate)(.+)", re.IGNORECASE)
 
 Meaning = Callable[[str, tuple[str, ...]], tuple[str, float] | None]
 
@@ -74,7 +74,8 @@ def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
     if source.columns is not None:
         first = next((k for k, row in enumerate(grid.rows) if _numeric(row)), len(grid.rows))
         return _laid_out(source, tuple(source.columns), first, first, "as told", meaning)
-    for k, row in enumerate(grid.rows[:SEARCHED]):
+    for k in range(min(SEARCHED, len(grid.rows))):
+        row = _with_what_stands_above(grid.rows, k)
         if _names_enough(row, source, meaning):
             return _laid_out(source, row, k, k + 1, f"line {grid.lines[k]}", meaning)
     start = next((k for k, row in enumerate(grid.rows) if _numeric(row)), None)
@@ -85,6 +86,21 @@ def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
         if len(headers) == len(grid.rows[start]) and _names_enough(headers, source, meaning):
             return _laid_out(source, headers, start, start, f"line {number}", meaning)
     return None
+
+
+def _with_what_stands_above(rows: tuple[tuple[str, ...], ...], k: int) -> tuple[str, ...]:
+    """Headers in two rows, as mocap programs write them: Rotation above X, Position above X."""
+    row, above = rows[k], rows[k - 1] if k else ()
+    words = [cell.strip().lower() for cell in above]
+    if len(above) != len(row) or not {"rotation", "position"} <= set(words):
+        return row
+    axes = [cell.strip().lower() for cell in row]
+    turned = {axis for word, axis in zip(words, axes, strict=True) if word == "rotation"}
+    called = {"position": "position", "rotation": "quat" if "w" in turned else "rotation"}
+    return tuple(
+        f"{called[word]} {cell}" if word in called and axis in "xyzw" else cell
+        for word, axis, cell in zip(words, axes, row, strict=True)
+    )
 
 
 def _numeric(row: tuple[str, ...]) -> bool:
@@ -164,6 +180,18 @@ def shaped(source: Source) -> tuple[int, bool, int]:
     some = [row for row in rows[first:] if len(_cut(row)) == width]
     named = not all(is_number(row[0]) for row in some)
     return width - named, named, first
+
+
+def of_other_columns(source: Source) -> bool:
+    """Does a row of headers stand above the numbers that `layout_of` did not understand?
+
+    How many numbers stand in a row then tells nothing: they have names, and others.
+    """
+    count, named, first = shaped(source)
+    above = _cut(source.grid.rows[first - 1]) if first else ()
+    if len(above) != count + named or count <= len(POSITION):
+        return False
+    return not any(map(is_number, above)) and source.columns is None
 
 
 def _cut(row: tuple[str, ...], width: int = 0) -> tuple[str, ...]:

@@ -25,8 +25,9 @@ from sk120stiff.measurements.registration import Registration
 from sk120stiff.measurements.turned import COMPUTED, FITS, mounting
 from sk120stiff.robot import Robot
 
+MATRIX = 9  # numbers
 FEWEST = 6  # orientations that tell how they are meant
-UNIT = 0.01  # by which the length of a quaternion may differ from 1
+UNIT = 0.01  # by which the length of a quaternion or a determinant may differ from 1
 SAME = 1e-6  # rad; ways that differ by less at every pose are one
 APART = 5.0  # times farther off the arm the next way of reading them has to be
 KNOWN = {
@@ -89,6 +90,8 @@ def understood(
     whole: Mask = np.asarray(np.isfinite(values).all(axis=1))
     if len(columns) == len(QUATERNION):  # what was not seen is often written as zeros
         whole &= np.abs(np.linalg.norm(values, axis=1) - 1.0) < UNIT
+    elif len(columns) == MATRIX:
+        whole &= np.abs(np.linalg.det(np.nan_to_num(values).reshape(-1, 3, 3)) - 1.0) < UNIT
     else:
         unit = _unit(draft, columns, told)
         if unit is None:
@@ -178,6 +181,10 @@ def _ways(values: Array) -> Iterator[tuple[str, Rotation]]:
             (f"quaternions, the real part {at}", Rotation.from_quat(values[:, order]))
             for at, order in orders.items()
         ]
+    elif values.shape[1] == MATRIX:
+        rows = Rotation.from_matrix(values.reshape(-1, 3, 3))
+        yield from (("matrices, row by row", rows), ("matrices, column by column", rows.inv()))
+        return
     else:
         plainly = [("rotation vectors", Rotation.from_rotvec(values))]
         for axes in map("".join, product("xyz", repeat=3)):

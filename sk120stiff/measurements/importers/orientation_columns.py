@@ -1,4 +1,4 @@
-"""Which columns hold an orientation: four numbers, or three angles by the names of a controller."""
+"""Which columns hold an orientation: a quaternion, a matrix, or angles as controllers name them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,18 @@ from sk120stiff.measurements.importers.words import unit_of_header
 
 # By which names three angles stand side by side; the order is that of the numbers in a row.
 NAMES = ("x y z", "roll pitch yaw", "a b c", "w p r", "o a t", "alpha beta gamma")
+MATRICES = (  # row by row, and column by column
+    "r11 r12 r13 r21 r22 r23 r31 r32 r33",
+    "r00 r01 r02 r10 r11 r12 r20 r21 r22",
+    "nx ny nz ox oy oz ax ay az",
+)
 NUMBERED = ("q1", "q2", "q3", "q4")  # a quaternion as ABB writes it, where joints have other names
 
 
 def named(sheet: Sheet) -> Sheet:
-    """The sheet with columns such as A, B, C or W, P, R known as angles, where all three stand."""
+    """The sheet with columns such as A, B, C or R11, R12 ... known, where all of them stand."""
     plain_names = [unit_of_header(column.header)[0].strip().lower() for column in sheet.spare]
-    for names in (each.split() for each in NAMES):
+    for names in (each.split() for each in (*MATRICES, *NAMES)):
         places = [plain_names.index(name) for name in names if plain_names.count(name) == 1]
         if len(places) == len(names):
             found = [
@@ -30,14 +35,14 @@ def named(sheet: Sheet) -> Sheet:
 
 
 def orientation_columns(sheet: Sheet) -> tuple[Column, ...]:
-    """Columns of an orientation, four or three that belong together; none where there are not."""
+    """Columns of an orientation that belong together; none where there are not."""
     four = [column for name in QUATERNION if (column := sheet.get(name))]
     if len(four) == len(QUATERNION):
         return tuple(four)
-    for names in NAMES:
-        three = [c for name in names.split() if (c := sheet.get(f"orientation {name}"))]
-        if len(three) == len(names.split()):
-            return tuple(three)
+    for names in (*MATRICES, *NAMES):
+        found = [c for name in names.split() if (c := sheet.get(f"orientation {name}"))]
+        if len(found) == len(names.split()):
+            return tuple(found)
     return ()
 
 

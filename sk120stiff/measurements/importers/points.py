@@ -7,7 +7,14 @@ from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import POSITION, Layout, layout_of, shaped, sheet_of
+from sk120stiff.measurements.importers.layout import (
+    POSITION,
+    Layout,
+    layout_of,
+    of_other_columns,
+    shaped,
+    sheet_of,
+)
 
 _BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
 _FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -28,7 +35,7 @@ class Points:
         if _joints_alone(source) is not None:
             return Guess(0.05, "its columns are joints")
         count, named, _ = shaped(source)
-        if _names(source, count) is None:
+        if _names(source, count) is None or of_other_columns(source):
             return NO
         return Guess(0.4, f"{'a name and ' if named else ''}{count} numbers in a row")
 

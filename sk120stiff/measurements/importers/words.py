@@ -15,7 +15,7 @@ _MOVED = (
 )
 _FORCE = "force|kraft|forza|fuerza"
 _AXES = {
-    "": rf"(?:(?:p|pos(?:ition)?|[ck]oord(?:inate)?|point|marker) ?)?{_AXIS}"
+    "": rf"(?:(?:p|pos(?:ition)?|[ck]oord(?:inate)?|point|marker|t|trans(?:lation)?) ?)?{_AXIS}"
     r"(?: (?:[ck]oord(?:inate)?|pos(?:ition)?|value|wert))?",
     "measured ": rf"(?:meas(?:ured)?|act(?:ual)?|ist|tracker) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:meas(?:ured)?|act(?:ual)?|ist|tracker)",
@@ -75,12 +75,24 @@ _FILE_UNITS = {
               "radian": "rad"},
 }  # fmt: skip
 
+_IN_WORDS = {
+    word: unit
+    for known in (
+        *_FILE_UNITS.values(),
+        {"seconds": "s", "second": "s", "sec": "s", "newtons": "N", "newton": "N"},
+    )
+    for word, unit in known.items()
+    if len(word) > 2
+}
+
 
 def unit_of_header(header: str) -> tuple[str, str | None]:
-    """Name and unit of a header as people write it: ``X [mm]``, ``X (mm)``, ``X/mm``, ``x_mm``."""
+    """Name and unit of a header as people write it: ``X (mm)``, ``X [Meters]``, ``x_mm``."""
     match = _BRACKETS.fullmatch(header.strip())
-    if match and is_unit(match[2]):
-        return f"{match[1]} {match[3]}".strip(), match[2].strip()
+    if match:
+        unit = _IN_WORDS.get(match[2].strip().lower(), match[2].strip())
+        if is_unit(unit):
+            return f"{match[1]} {match[3]}".strip(), unit
     tail = _TAIL.fullmatch(header.strip())
     if tail:
         return tail[1], tail[2] or tail[3]

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sk120stiff import base_model, fit, load_robot, read_measurements
+from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers import Told
 from sk120stiff.measurements.importers.run import Imported, import_readings
 from tests.measurements.importers.tracked import TURN, Campaign, campaign, ur5
@@ -153,3 +154,62 @@ def test_a_tool_that_never_turns_does_not_tell(tmp_path: Path) -> None:
     axes = axes * Rotation.from_rotvec(2e-4 * rng.normal(size=(len(q), 3)))
     found = brought(tmp_path, "A,B,C", euler("ZYX")(axes), replace(SEEN, q=q, x=x))
     assert found.orientation is None
+
+
+MOTIVE = """\
+Format Version,1.23,Take Name,Take 1,Capture Frame Rate,120,Length Units,Meters
+,,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body
+,,tool,tool,tool,tool,tool,tool,tool
+,,Rotation,Rotation,Rotation,Rotation,Position,Position,Position
+Frame,Time (Seconds),X,Y,Z,W,X,Y,Z
+"""
+
+
+def test_headers_in_two_rows_as_mocap_programs_write_them(tmp_path: Path) -> None:
+    """OptiTrack's Motive: Rotation above X Y Z W, Position above X Y Z."""
+    numbers = np.column_stack(
+        [np.arange(30), 0.5 * np.arange(30), target().as_quat(), 1e-3 * SEEN.x]
+    )
+    rows = [",".join(f"{v:.7f}" for v in row) for row in numbers]
+    path, joints = tmp_path / "take.csv", tmp_path / "joints.csv"
+    path.write_text(MOTIVE + "\n".join(rows) + "\n")
+    head = ",".join(f"q{k}[deg]" for k in range(1, 7))
+    np.savetxt(joints, SEEN.q, delimiter=",", header=head, comments="", fmt="%.6f")
+    robot = load_robot(ur5(), tool="tool0")
+    found = import_readings(path, robot, Told(), joints_file=joints)
+    assert found.fitted is not None and found.fitted.rms < 2e-3
+    assert found.orientation is not None and "the real part first" in found.orientation.way
+    assert found.draft.sheet.frame is None
+    assert dict(found.columns)["time[s]"][:2] == ("0.0000000", "0.5000000")
+
+
+@pytest.mark.parametrize(
+    ("headers", "turn"),
+    [
+        (",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)), lambda m: m),
+        (",".join(f"R{i}{j}" for i in (0, 1, 2) for j in (0, 1, 2)), lambda m: m),
+        ("nx,ny,nz,ox,oy,oz,ax,ay,az", lambda m: np.swapaxes(m, 1, 2)),
+    ],
+)
+def test_matrices_row_by_row_or_column_by_column(
+    headers: str, turn: Callable[[np.ndarray], np.ndarray], tmp_path: Path
+) -> None:
+    found = brought(tmp_path, headers, turn(target().as_matrix()).reshape(-1, 9))
+    assert found.orientation is not None and "matrices" in found.orientation.way
+    said = found.readings.absolute
+    assert said is not None
+    apart = Rotation.from_matrix(said.channels.rotation).inv() * target()
+    assert apart.magnitude().max() < 1e-6
+
+
+def test_headers_that_name_something_else_are_not_passed_over(tmp_path: Path) -> None:
+    """Twelve numbers in a row are no table of calibration where they have other names."""
+    rows = np.column_stack([SEEN.x, euler("xyz")(target()), SEEN.q])
+    path = tmp_path / "foo.csv"
+    head = "foo,bar,baz,u,v,w," + ",".join(f"J{k} (deg)" for k in range(1, 7))
+    np.savetxt(path, rows, delimiter=",", header=head, comments="", fmt="%.6f")
+    with pytest.raises(InputError, match=r"foo, bar, baz.*--columns"):
+        import_readings(path, load_robot(ur5(), tool="tool0"), Told(length="mm"))
+    path.write_text(path.read_text().replace("foo,bar,baz", "tx,ty,tz"))
+    found = import_readings(path, load_robot(ur5(), tool="tool0"), Told(length="mm"))
+    assert found.fitted is not None and found.fitted.rms < 2e-3
