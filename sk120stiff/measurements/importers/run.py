@@ -24,6 +24,7 @@ from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
+from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.orientation import (
     Orientation,
@@ -204,12 +205,12 @@ def _sheet(
 
 
 def opened(source: Source) -> Source:
-    """The source with its rows, where a workbook or a MATLAB file holds them."""
+    """The source with its rows, where a workbook or a MATLAB file holds them, or in two headers."""
     if is_workbook(source.data):
-        return dataclasses.replace(source, given=workbook_grid(source))
-    return (
-        dataclasses.replace(source, given=matlab_grid(source)) if is_matlab(source.data) else source
-    )
+        source = dataclasses.replace(source, given=workbook_grid(source))
+    elif is_matlab(source.data):
+        source = dataclasses.replace(source, given=matlab_grid(source))
+    return with_numbered_markers(source)
 
 
 def _assembled(

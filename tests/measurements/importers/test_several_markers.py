@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers import FORMATS, Source
+from sk120stiff.measurements.importers.run import opened
 from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
 from tests.measurements.importers.reading import SIX, draft_of, sheet_of
 
@@ -59,3 +61,41 @@ def test_points_that_nobody_named_are_told_by_where_they_are(tmp_path: Path) -> 
 def test_a_single_slip_among_repeats_is_no_other_marker(tmp_path: Path) -> None:
     text = table("M1", "M1", named=False).replace("950,100.0,700.0\n", "950,180.0,700.0\n", 1)
     refuse_several_points(draft_of(tmp_path, text, SIX))
+
+
+ABOVE = {
+    "once": (
+        "Trajectories",
+        "100",
+        ",,tool:a,,,tool:b,,",
+        "Frame,Sub,X,Y,Z,X,Y,Z",
+        ",,mm,mm,mm,mm,mm,mm",
+    ),
+    "above each axis": (
+        "Format Version,1.23,Length Units,Millimeters",
+        ",Name,tool:a,tool:a,tool:a,tool:b,tool:b,tool:b",
+        ",,Position,Position,Position,Position,Position,Position",
+        "Frame,Time (Seconds),X,Y,Z,X,Y,Z",
+    ),
+}
+
+
+@pytest.mark.parametrize("above", ABOVE.values(), ids=ABOVE)
+def test_names_in_a_row_above_the_axes(above: tuple[str, ...], tmp_path: Path) -> None:
+    """As mocap programs write them."""
+    rows = [f"{k},0.1,{900 + k},100,700,{900 + k},240,700" for k in range(4)]
+    path = tmp_path / "take.csv"
+    path.write_text("\n".join([*above, *rows]) + "\n")
+    source = opened(Source(path, SIX))
+    sheet = FORMATS.chosen(source)[0].read(source)
+    marker, y = sheet.get("marker"), sheet.get("y")
+    assert marker is not None and marker.cells[:2] == ("1", "2")
+    assert y is not None and y.unit == "mm" and y.cells[:2] == ("100", "240")
+    assert sheet.lines[0] == len(above) + 1
+    assert any("1 is tool:a, 2 is tool:b" in note for note in sheet.notes)
+
+
+def test_a_rotation_beside_a_position_is_no_second_marker(tmp_path: Path) -> None:
+    path = tmp_path / "take.csv"
+    path.write_text("Rotation,,,Position,,\nX,Y,Z,X,Y,Z\n1,2,3,4,5,6\n")
+    assert opened(Source(path, SIX)).given is None
