@@ -41,6 +41,7 @@ _UNITS = {
     ("time", "zero_time"): "s", ROTATION_VECTOR: "rad", ANCHORS: "m", _SINGLE: "mm",
     ("inc",): "deg",
 }  # fmt: skip
+_TORQUE = re.compile(r"(t|tau|torque)_?[xyz]", re.IGNORECASE)
 _OTHER_DRESS = re.compile(r"(?P<name>[A-Za-z]+)\s*(?P<mark>[ (/_])(?P<unit>[^)]*)\)?")
 
 
@@ -186,6 +187,13 @@ def _bare(name: str) -> str:
 def _refuse_misspelt(table: Table, name: str, actuated: tuple[str, ...]) -> None:
     """A column may have any name but that of a known one with a slip in it."""
     bare = _bare(name)
+    unit = table.column_units[name]
+    if name not in actuated and unit and _TORQUE.fullmatch(name) and units.is_kind(unit, "moment"):
+        raise InputError(
+            f"the column {table.headers[name]!r} is not known (did you mean 'm{name[-1]}'?)",
+            where=table.place(name),
+            remedy=f"Write m{name[-1]}[{unit}], or rename the column if it is a note.",
+        )
     if name in actuated or (bare not in _WORDS and table.column_units[name] is not None):
         return
     longer = [word for word in _WORDS if len(word) > 3]

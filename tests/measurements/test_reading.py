@@ -217,6 +217,12 @@ def test_turns_beside_displacements_are_no_joints_and_that_is_told(
     assert m.joint_names == ("a",)
 
 
+def test_torques_by_another_name_are_not_passed_over(tmp_path: Path) -> None:
+    csv = "pose,a[deg],fx[N],fy[N],fz[N],tx[N*m],ty[N*m],tz[N*m],dx[mm],dy[mm],dz[mm]\n"
+    with pytest.raises(InputError, match=r"'tx\[N\*m\]' is not known \(did you mean 'mx'"):
+        read_measurements(put(tmp_path, csv + "A,1,0,0,-9,1,2,3,0,0,-1\n"))
+
+
 def test_exact_zeros_without_load_are_masked_and_said(tmp_path: Path) -> None:
     m = read_measurements(put(tmp_path, PLAIN + "1,0,0,0,0,0,0,0\n1,0,0,0,0,0.001,0,0\n"))
     np.testing.assert_array_equal(m.use, [True, True, False, True])

@@ -17,6 +17,7 @@ from sk120stiff.measurements.importers.words import (
     kind_of,
     meaning_of,
     unit_of_header,
+    with_torques,
 )
 
 POSITION = ("x", "y", "z")
@@ -109,11 +110,9 @@ def _numeric(row: tuple[str, ...]) -> bool:
 
 
 def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> bool:
-    found = set()
-    for cell in row:
-        known = meaning(unit_of_header(cell)[0], source.actuated)
-        if known and not is_number(cell):
-            found.add(known[0])
+    named = [unit_of_header(cell) for cell in row if not is_number(cell)]
+    known = [meaning(name, source.actuated) for name, _ in named]
+    found = {each[0] for each in with_torques(known, [unit for _, unit in named]) if each}
     return any(set(group) <= found for group in NEEDED[source.role])
 
 
@@ -135,6 +134,7 @@ def _laid_out(
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
     known = [meaning(name, source.actuated) if name else None for name, _ in named]
+    known = with_torques(known, units)
     meanings = _measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from sk120stiff import units
 
+TS = ("tx", "ty", "tz")
 _AXIS = r"(?P<a>[xyz])"
 _FREE = "unloaded|no load|without load|unbelastet|ohne last|sans charge"
 _PUSHED = "loaded|with load|under load|belastet|mit last|avec charge"
@@ -15,7 +17,7 @@ _MOVED = (
 )
 _FORCE = "force|kraft|forza|fuerza"
 _AXES = {
-    "": rf"(?:(?:p|pos(?:ition)?|[ck]oord(?:inate)?|point|marker|t|trans(?:lation)?) ?)?{_AXIS}"
+    "": rf"(?:(?:p|pos(?:ition)?|[ck]oord(?:inate)?|point|marker|trans(?:lation)?) ?)?{_AXIS}"
     r"(?: (?:[ck]oord(?:inate)?|pos(?:ition)?|value|wert))?",
     "measured ": rf"(?:meas(?:ured)?|act(?:ual)?|ist|tracker) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:meas(?:ured)?|act(?:ual)?|ist|tracker)",
@@ -32,7 +34,8 @@ _AXES = {
     "s": rf"(?:s|sd|std(?: dev)?|sigma|u|unc(?:ertainty)?) ?{_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:sigma|std|sd|unc(?:ertainty)?)",
     "f": rf"(?:f|{_FORCE}) ?{_AXIS}|{_AXIS.replace('a>', 'b>')} (?:{_FORCE})",
-    "m": rf"(?:m|moment) ?{_AXIS}",
+    "m": rf"(?:m|moment|torque) ?{_AXIS}",
+    "t": rf"t ?{_AXIS}",  # a translation, or a torque: `with_torques` tells
     "tcp ": rf"(?:tcp|tool) ?{_AXIS}",
     "orientation ": rf"(?:phi|rot(?:ation)?|r) ?{_AXIS}\d?",
     "q": r"(?:q|quat(?:ernion)?) ?(?P<a>[wxyz])",
@@ -133,6 +136,22 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
     if _TEMPERATURE.fullmatch(plain):
         return "temperature", 1.0
     return None
+
+
+def with_torques(
+    meanings: Sequence[tuple[str, float] | None], units_of: Sequence[str | None]
+) -> list[tuple[str, float] | None]:
+    """What tx, ty, tz mean: torques beside forces or in such a unit, else where the marker is."""
+    torques = any(known and known[0] == "fx" for known in meanings) or any(
+        known and known[0] == "tx" and unit and units.is_kind(unit, "moment")
+        for known, unit in zip(meanings, units_of, strict=True)
+    )
+    return [
+        ((known[0].replace("t", "m" if torques else ""), known[1]) if known[0] in TS else known)
+        if known
+        else None
+        for known in meanings
+    ]
 
 
 def file_units(texts: list[str]) -> dict[str, str]:

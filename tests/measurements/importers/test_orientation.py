@@ -202,6 +202,16 @@ def test_matrices_row_by_row_or_column_by_column(
     assert apart.magnitude().max() < 1e-6
 
 
+def test_a_t_beside_forces_is_a_torque(tmp_path: Path) -> None:
+    """As force sensors write them; without forces it is a translation, as above."""
+    path = tmp_path / "wrench.csv"
+    head = [f"q{k}[deg]" for k in range(1, 7)] + [f"F{axis}[N]" for axis in "xyz"]
+    head += [f"T{axis}[N*m]" for axis in "xyz"] + [f"d{axis}[mm]" for axis in "xyz"]
+    path.write_text(",".join(head) + "\n10,-60,50,20,30,40,0,0,-100,1,2,3,0.1,0.2,-0.9\n")
+    found = import_readings(path, load_robot(ur5(), tool="tool0"), Told())
+    assert found.readings.wrench[0].tolist() == [0.0, 0.0, -100.0, 1.0, 2.0, 3.0]
+
+
 def test_headers_that_name_something_else_are_not_passed_over(tmp_path: Path) -> None:
     """Twelve numbers in a row are no table of calibration where they have other names."""
     rows = np.column_stack([SEEN.x, euler("xyz")(target()), SEEN.q])
