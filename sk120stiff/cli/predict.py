@@ -103,6 +103,11 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
             f"Gap over {len(gap)} positions: {left:.4g} µm rms per axis, "
             f"{far:.4g} µm mean distance."
         )
+    turns = np.array([columns.get(f"gap_r{axis}[urad]", []) for axis in "xyz"], dtype=float).T
+    turns = turns[readings.use & np.isfinite(turns).all(axis=1)] if turns.size else turns
+    if turns.size:
+        document["rms_urad"] = rms(turns)
+        parts.append(f"Gap over {len(turns)} rotations: {rms(turns):.4g} µrad rms per axis.")
     ways = predicted.std_parameters, predicted.std_remainder
     parts += sentences(model, *ways, what="a position")
     if out is not None:

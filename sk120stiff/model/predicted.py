@@ -16,6 +16,7 @@ from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
 from sk120stiff.model.pose_reading import read_poses
 from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
+from sk120stiff.robot.rotations import rotation_vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +31,8 @@ class Predicted:
         std_remainder: (N, 3) standard size of what the model leaves unexplained [m]; None where
             that is not known.
         blame: For every reading the names of the parameters that make its uncertainty infinite.
-        position, rotation: (N, 3) where the marker stands [m] and (N, 3, 3) axes of the tool, both
-            in the axes of the instrument; None where displacements were read.
+        position, rotation: (N, 3) where the marker stands [m] and (N, 3, 3) axes that are read, the
+            tool's or a target's, in the axes of the instrument; None where displacements were read.
     """
 
     displacement: Array
@@ -271,7 +272,7 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
             columns[f"{of}{axis}[mm]"] = read[:, k] * 1e3
         for k, axis in enumerate(AXES):
             columns[f"gap_{axis}[um]"] = (read - said)[:, k] * 1e6
-    columns |= _of_gauges(readings, predicted.displacement)
+    columns |= _of_turns(readings, predicted) | _of_gauges(readings, predicted.displacement)
     columns["use"] = readings.use.astype(int)
     missing = ~np.isfinite(predicted.displacement).all(axis=1)
     if missing.any():
@@ -280,6 +281,22 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
     if any(reasons):
         columns["std_reason"] = reasons
     return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
+
+
+def _of_turns(readings: Measurements, predicted: Predicted) -> dict[str, Array]:
+    """Rotation vectors of the axes that are read, axes of the instrument; nothing where none was.
+
+    The gap is the rotation from the predicted axes to those that were read.
+    """
+    read = None if readings.absolute is None else readings.absolute.channels.rotation
+    if read is None or predicted.rotation is None:
+        return {}
+    said, gap = rotation_vector(predicted.rotation), np.full((len(read), 3), np.nan)
+    known = np.isfinite(read).all(axis=(1, 2)) & np.isfinite(said).all(axis=1)
+    gap[known] = rotation_vector(read[known] @ np.swapaxes(predicted.rotation[known], 1, 2))
+    return {f"predicted_r{axis}[rad]": said[:, k] for k, axis in enumerate(AXES)} | {
+        f"gap_r{axis}[urad]": gap[:, k] * 1e6 for k, axis in enumerate(AXES)
+    }
 
 
 def _of_gauges(readings: Measurements, moved: Array) -> dict[str, Array]:

@@ -14,6 +14,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import write_measurements
 from sk120stiff.model import Model, read_model, write_model
+from sk120stiff.model.predicted import prediction_table
 from tests.absolute.arm import NAMES, TURN, Array, errors, poses, tracked, write
 
 SIGMA, ANGLE = 2e-5, 3e-5
@@ -123,3 +124,9 @@ def test_what_a_file_says_of_axes_is_written_and_read(tmp_path: Path) -> None:
         data.absolute.channels.rotation
     )
     assert np.sqrt(np.mean(left.magnitude() ** 2)) < 2.5 * ANGLE  # of three axes together
+    table = prediction_table(data, said)
+    gap = 1e-6 * np.array([table[f"gap_r{axis}[urad]"] for axis in "xyz"], dtype=float).T
+    assert np.allclose(np.linalg.norm(gap, axis=1), left.magnitude(), rtol=1e-6)
+    told = np.array([table[f"predicted_r{axis}[rad]"] for axis in "xyz"], dtype=float).T
+    read = Rotation.from_rotvec(gap) * Rotation.from_rotvec(told)
+    assert np.allclose(read.as_matrix(), data.absolute.channels.rotation, atol=1e-9)
