@@ -6,7 +6,7 @@ import pytest
 
 from tests.attacks.loads import SIZES, measured
 
-SHARE = {"readings": 5_000, "path points": 2_500, "joints": 4}
+SHARE = {"readings": 10_000, "path points": 5_000, "joints": 5}
 
 
 @pytest.mark.parametrize("what", SIZES)

@@ -13,10 +13,6 @@ from tests.hidden.generator.world import Cause, World
 
 SIGMA = 8e-6
 NOISE = NoiseModel(SIGMA, zero="shared")
-# Where names are not what is asked: the search is a third of the whole.
-FEW = Options(
-    only=("gear_hardening", "friction_hysteresis", "joint_tilt", "base_rocking", "tool_compliance")
-)
 POINT = np.array([-0.06, 0.04, 0.15])
 
 

@@ -19,7 +19,7 @@ from sk120stiff.explain.judge.beside_suspect import (
 from sk120stiff.explain.judge.nuisance import nuisance
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.measurements import NoiseStatement
-from tests.explain.readings import FEW, NOISE, SIGMA, answered, hidden
+from tests.explain.readings import NOISE, SIGMA, answered, hidden
 from tests.hidden.generator.causes_elastic import ToolCompliance
 from tests.hidden.generator.causes_foreign import TrackerStand
 from tests.hidden.generator.causes_joint import GearHardening, PeriodicGear
@@ -104,7 +104,7 @@ def test_a_name_shows_beside_a_cause_that_takes_most_of_the_rest(springs):
     """Two gears are softer at some angles: beside both the third, which stiffens, is outweighed."""
     waves = PeriodicGear("joint_2_l", {"share": 0.3}, {"count": 1, "phase": 1.0})
     others = PeriodicGear("joint_3_u", {"share": 0.15}, {"count": 2, "phase": 2.0})
-    answer = answered(springs, hidden(GEAR, waves, others, poses=16, loads=3), options=FEW)
+    answer = answered(springs, hidden(GEAR, waves, others, poses=16, loads=3))
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert answer.remainder.where[0].startswith("Most of it goes with the position of joint_2_l")
     left = float(answer.remainder.where[0].partition("names, ")[2].partition(" µm")[0])
@@ -115,7 +115,7 @@ def test_a_name_shows_beside_a_cause_that_takes_most_of_the_rest(springs):
 def test_a_sigma_that_was_stated_too_small_hides_no_account(springs):
     """Less than a third too small: what is left has no structure, and its size is let free."""
     readings = replace(hidden(GEAR, TEETH), noise=NoiseStatement(sigma=0.72 * SIGMA))
-    answer = answered(springs, readings, options=FEW)
+    answer = answered(springs, readings)
     assert [finding.effect.id for finding in answer.findings] == ["gear_hardening:joint_1_s"]
     assert "the position of joint_2_l" in answer.remainder.where[0]
     assert TOLD in answer.remainder.where[0]
@@ -125,7 +125,7 @@ def test_what_hides_behind_a_name_that_fell_is_looked_for(springs):
     """A gear's teeth outweigh a soft tool, which falls; beside it they show, and it stands."""
     waves = PeriodicGear("joint_2_l", {"share": 0.2}, {"count": 7, "phase": 1.0})
     tool = ToolCompliance("tool0", {"rx": 2e-5, "ry": 2e-5})
-    answer = answered(springs, hidden(tool, waves), options=FEW)
+    answer = answered(springs, hidden(tool, waves))
     assert [finding.effect.id for finding in answer.findings] == ["tool_compliance:tool0"]
     assert "its own stiffness depends in 7 waves a turn" in answer.remainder.where[0]
     assert TOLD in answer.remainder.where[0]

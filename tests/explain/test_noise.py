@@ -11,7 +11,7 @@ from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.measurements import NoiseStatement
 from sk120stiff.show.stories.verdicts import title_of
-from tests.explain.readings import FEW, SIGMA, answered, hidden
+from tests.explain.readings import SIGMA, answered, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 from tests.hidden.generator.causes_joint import FrictionHysteresis, Memory
 
@@ -33,7 +33,7 @@ def understated(seed, factor):
 @pytest.fixture(scope="module")
 def halved(springs: Model) -> Explanation:
     """Readings that are twice as noisy as stated."""
-    return answered(springs, understated(101, 2.0), options=FEW)
+    return answered(springs, understated(101, 2.0))
 
 
 def test_a_stated_uncertainty_that_is_a_little_too_small_is_said_to_be(springs):
@@ -55,13 +55,13 @@ def assert_said_to_be_too_small(answer, factor):
 
 
 def test_a_statement_that_is_a_wrong_number_is_said_to_be(springs):
-    answer = answered(springs, understated(101, 4.0), options=FEW)
+    answer = answered(springs, understated(101, 4.0))
     assert_said_to_be_too_small(answer, 4.0)
     assert "Correct the stated σ to about" in next_step(answer)
 
 
 def test_a_statement_exceeded_eight_times_is_a_finding(springs):
-    answer = answered(springs, understated(100, 9.0), options=FEW)
+    answer = answered(springs, understated(100, 9.0))
     assert answer.verdict == "outside"
     assert "times the stated uncertainty" in " ".join(answer.noise_reasons)
 
@@ -77,16 +77,14 @@ def test_hysteresis_that_nothing_can_name_is_outside(springs):
     """Neither branch nor order: the effect cannot be named, and is no noise for all that."""
     readings = hidden(DRAG, schedule="up_down", loads=4, poses=5, sigma=5e-6)
     bare = replace(readings, branch=None, order=None, zero_order=None)
-    answer = answered(springs, bare, options=FEW)
+    answer = answered(springs, bare)
     assert answer.verdict == "outside"
     assert answer.noise.sigma == 5e-6
 
 
 def test_a_foreign_memory_is_not_called_noise(springs):
     cause = Memory("joint_2_l", {"share": 0.4}, {"play": 150.0})
-    answer = answered(
-        springs, hidden(cause, schedule="up_down", loads=3, poses=6, sigma=5e-6), options=FEW
-    )
+    answer = answered(springs, hidden(cause, schedule="up_down", loads=3, poses=6, sigma=5e-6))
     assert answer.verdict != "none"
 
 

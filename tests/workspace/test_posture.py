@@ -138,11 +138,11 @@ def test_the_part_is_put_where_it_serves_best() -> None:
             arm,
             replace(path, position=path.position + np.array([x, 0.0, z])),
             minimise="deflection",
-            starts=48,
-            rounds=12,
+            starts=64,
+            rounds=15,
         ).objective
-        for x in (-0.4, -0.1)
-        for z in (-0.3, 0.0, 0.3)
+        for x in (-0.4, -0.2)
+        for z in (-0.3, -0.1, 0.1, 0.3)
     )
     assert moved.objective <= best * (1.0 + 1e-6)
 
