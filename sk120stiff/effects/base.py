@@ -13,7 +13,7 @@ class          what it changes                                             examp
 `LoadError`    the load, W_true = W + (S·p) W + o·p in sensor axes         force bias
 `ReadingError` the displacement read, d_read = d + (S·p) d + o·p           tracker misalignment
 `Viewpoint`    the axes in which positions are stated, x = R(p) X + t(p)   tracker's frame
-`Mounting`     the axes of the target on the tool, R_read = R_tool R(p)     a turned target
+`Mounting`     the axes of the target on the tool, R_read = R_tool R(p)    a turned target
 =============  ==========================================================  ======================
 
 So a misread force can never pose as a spring. Adding an effect is one new file and one line in

@@ -28,6 +28,20 @@ def rows_by_label(labels: NDArray[np.integer]) -> list[Index]:
     return np.split(order, ends)
 
 
+def rows_at_rest(joints: Array, within: float, alike: Array | None = None) -> list[Index]:
+    """Rows in turn at which the joints (N, n) stay within so much of the first of them.
+
+    `alike` (N, k), such as loads: what besides must not change among them.
+    """
+    starts = [0]
+    for k in range(1, len(joints)):
+        first = starts[-1]
+        moved = np.abs(joints[k] - joints[first]).max() > within
+        if moved or (alike is not None and (alike[k] != alike[first]).any()):
+            starts.append(k)
+    return np.split(np.arange(len(joints)), starts[1:])
+
+
 def refuse_differing_joints(
     pose: Sequence[str],
     pose_index: Integers,

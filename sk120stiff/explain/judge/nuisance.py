@@ -13,6 +13,7 @@ from sk120stiff.effects import LoadCases
 from sk120stiff.effects.base import ReadingError
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.errors import InputError
+from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
@@ -95,25 +96,24 @@ def nuisance(name: str, base: Fit) -> Nuisance:
     Raises:
         InputError: The readings of the fit do not tell of it.
     """
-    return nuisance_at(name, base.model, base.problem.load_cases)
-
-
-def nuisance_at(name: str, model: Model, fitted: LoadCases) -> Nuisance:
-    """The same, its columns as these readings have them.
-
-    Raises:
-        InputError: They do not tell of it.
-    """
-    suspect = suspect_named(name, model, fitted)
+    fitted = base.problem.load_cases
+    suspect = suspect_named(name, base.model, fitted)
     if suspect is None:
         raise InputError(f"these readings do not tell of {name}")
+    return nuisance_of(suspect, base.model, fitted)
+
+
+def nuisance_of(suspect: Suspect, model: Model, fitted: LoadCases) -> Nuisance:
+    """A suspect of these readings as parameters of a model."""
     columns = suspect.columns
     flat = columns.reshape(-1, columns.shape[2]) / np.sqrt(columns[..., 0].size)
     _, size, right = np.linalg.svd(flat, full_matrices=False)
     seen = size > SMALLEST * size[0]
     factors = right[seen].T / size[seen]
     price = suspect.price_of_choice
-    return Nuisance("", suspect=name, model=model, factors=factors, price=price, fitted=fitted)
+    return Nuisance(
+        "", suspect=suspect.name, model=model, factors=factors, price=price, fitted=fitted
+    )
 
 
 def _keys(load_cases: LoadCases) -> list[bytes]:

@@ -13,8 +13,8 @@ from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
-from sk120stiff.explain.judge.nuisance import nuisance_at
-from sk120stiff.explain.localise.suspects import of_the_clock
+from sk120stiff.explain.judge.nuisance import nuisance_of
+from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
@@ -80,7 +80,7 @@ def foretold_beside(beside: Selection, count: int, without: float, *, seed: int)
 def foretold_on_file(
     found: Selection,
     beside: Selection,
-    suspect: str,
+    name: str,
     effects: Sequence[Effect],
     holdout: Measurements,
     without: float,
@@ -91,7 +91,7 @@ def foretold_on_file(
 
     Args:
         found, beside: Names without the suspect, and beside it.
-        suspect: Its name.
+        name: That of the suspect.
         effects: The names.
         holdout: Readings of other poses.
         without: Gap on them with the names alone, rms per axis [m].
@@ -102,9 +102,10 @@ def foretold_on_file(
     other = replace(other, pose=tuple(f"hold-out {label}" for label in other.pose))
     try:
         both = load_cases_of(base.model.robot, readings + other)
-        if of_the_clock(suspect, base.model, both):
+        suspect = suspect_named(name, base.model, both)
+        if suspect is None or suspect.family == "series":
             return ()
-        model = base.model + nuisance_at(suspect, base.model, both)
+        model = base.model + nuisance_of(suspect, base.model, both)
         with_it = fit(model, readings, noise=noise)
         gap = _on_file(refit(with_it, effects) if effects else with_it, holdout)
     except (InputError, Refusal):  # of other points or joints; or they do not hold the model

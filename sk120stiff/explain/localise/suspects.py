@@ -95,12 +95,6 @@ def suspect_named(name: str | None, model: Model, load_cases: LoadCases) -> Susp
     return next((each for each in every if each.name == name), None)
 
 
-def of_the_clock(name: str, model: Model, load_cases: LoadCases) -> bool:
-    """Does the suspect of that name go with the series, which is another in other readings?"""
-    suspect = suspect_named(name, model, load_cases)
-    return suspect is None or suspect.family == "series"
-
-
 def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     """The arm yields somewhere from base to tool, under the moment or force it carries there."""
     robot, count = load_cases.robot, load_cases.count

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Index
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.drafting import Draft
+from sk120stiff.measurements.poses import rows_at_rest
 
 STILL = 2e-4  # rad or m: what encoders of an arm that stands may wander by
 LEAST = 5  # rows of a standstill
@@ -26,7 +27,7 @@ def standstills(draft: Draft) -> Sheet | None:
     q = draft.joints.values
     if draft.displaced or len(set(draft.marker_of)) > 1 or len(q) < STANDSTILLS * LEAST + MOVING:
         return None
-    runs = _runs(q, draft.loads.wrench)
+    runs = rows_at_rest(q, STILL, draft.loads.wrench)
     still = [run for run in runs if len(run) >= LEAST]
     moving = np.concatenate([np.zeros(0, int), *(run for run in runs if len(run) < LEAST)])
     if len(still) < STANDSTILLS or len(moving) < MOVING:
@@ -36,16 +37,6 @@ def standstills(draft: Draft) -> Sheet | None:
     if np.median(steps) > SHORT * np.median(ways):
         return None
     return _of_standstills(draft, still, len(moving))
-
-
-def _runs(q: Array, wrench: Array) -> list[Index]:
-    """Rows in turn at which the joints (N, n) and the load (N, 6) stay as they were."""
-    starts = [0]
-    for k in range(1, len(q)):
-        first = starts[-1]
-        if np.abs(q[k] - q[first]).max() > STILL or (wrench[k] != wrench[first]).any():
-            starts.append(k)
-    return np.split(np.arange(len(q)), starts[1:])
 
 
 def _of_standstills(draft: Draft, still: list[Index], moving: int) -> Sheet:

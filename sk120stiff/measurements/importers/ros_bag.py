@@ -18,6 +18,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, require
 from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.contract import NO, Column, Guess, Sheet, Source
+from sk120stiff.measurements.poses import rows_at_rest
 
 STILL = 1e-3  # rad or m between the joint states around a position
 LATE = 0.1  # s from a position to the nearest joint state
@@ -114,7 +115,8 @@ def _sheet(
             Column(f"{topic} {name}", name, None, "REP 103", tuple(repr(turn[k]) for turn in turns))
             for k, name in enumerate(QUATERNION)
         ]
-    labels = _standstills(q)
+    runs = rows_at_rest(q, STILL)
+    labels = tuple(f"P{k}" for k, run in enumerate(runs, 1) for _ in run)
     columns.append(column("time stamp", "time", "s", (stamps - stamps[0]).tolist()))
     columns.append(Column("standstill", "pose", None, "", labels))
     frames = sorted({frame for _, _, frame, _ in points})
@@ -148,17 +150,6 @@ def _joints_at(stamp: float, at: Array, q: Array) -> tuple[str, Array]:
         return "the arm moved", q[0]
     best = min(near, key=lambda k: abs(at[k] - stamp))
     return "", q[best]
-
-
-def _standstills(q: Array) -> tuple[str, ...]:
-    """P1, P2 ...: rows in turn whose joints stay as they were at the first of them."""
-    labels, first = [], 0
-    count = 1
-    for k in range(len(q)):
-        if np.abs(q[k] - q[first]).max() > STILL:
-            first, count = k, count + 1
-        labels.append(f"P{count}")
-    return tuple(labels)
 
 
 def _messages(source: Source) -> tuple[list[Any], list[Any], str, str]:
