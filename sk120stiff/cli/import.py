@@ -1,4 +1,4 @@
-"""`sk120stiff import FILE --robot ROBOT --out FILE.csv`."""
+"""`sk120stiff import FILE... --robot ROBOT --out FILE.csv`."""
 # ruff: noqa: N999 - the file is named as its command, and is imported by that name alone
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Dates(StrEnum):
 
 
 def command(
-    source: Path,
+    sources: list[Path],
     robot: Annotated[str, typer.Option("--robot")],
     out: Path | None = None,
     preview: Annotated[bool, typer.Option("--preview", "--dry-run")] = False,
@@ -83,8 +83,9 @@ def command(
     --angle deg --out own.csv
 
     Args:
-        source (FILE): Positions of a marker, with or without joints: text of any separator, .xlsx,
-            .mat, or the folder of a ROS bag. What it is, its content tells.
+        sources (FILE): Positions of a marker, with or without joints: text of any separator, .xlsx,
+            .mat, or the folder of a ROS bag. What it is, its content tells. Several files of the
+            same columns are one campaign; the tracker may have moved in between.
         robot (ROBOT): A .urdf, a .xacro, a DH table (.csv), a folder with robot.yaml, or a bundled
             name (motoman_sk120).
         out (FILE): The CSV file to write; a YAML file goes beside it.
@@ -125,7 +126,7 @@ def command(
         declare_readings(out)
     arm = open_robot(robot, base, tool)
     found = import_readings(
-        source,
+        sources,
         arm,
         Told(
             length=length,

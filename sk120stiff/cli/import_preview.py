@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.cli.tables import table
 from sk120stiff.measurements.importers import Column, Imported, Told
 from sk120stiff.measurements.importers.words import kind_of
+from sk120stiff.measurements.registration import Registration
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.rotations import rotation_vector
@@ -87,7 +88,7 @@ def registration_of(found: Imported) -> dict[str, object] | None:
     fitted = found.fitted
     if fitted is None:
         return None
-    known = bool(np.isfinite(fitted.covariance).all())
+    frames = _frames(found, fitted)
     order = np.argsort(-fitted.distance)[:WORST]
     rows = found.fitted_rows
     return {
@@ -107,13 +108,28 @@ def registration_of(found: Imported) -> dict[str, object] | None:
         "marker_m": fitted.marker,
         "marker_fitted": fitted.marker_fitted,
         "turned_deg": None if found.turned is None else float(np.degrees(found.turned)),
-        "rotation_rad": rotation_vector(fitted.turn),
-        "shift_m": fitted.shift,
-        "std_rotation_rad": fitted.std[:3] if known else None,
-        "std_shift_m": fitted.std[3:] if known else None,
-        "covariance": fitted.covariance if known else None,
-        "reason": None if known else "the positions do not tell the tracker's frame",
+        **{key: value for key, value in frames[0].items() if key != "station"},
+        "stations": frames if len(frames) > 1 else [],
+        "reason": None
+        if np.isfinite(fitted.covariances).all()
+        else "the positions do not tell the tracker's frame",
     }
+
+
+def _frames(found: Imported, fitted: Registration) -> list[dict[str, object]]:
+    """The robot's base in the axes of the file, from each station."""
+    known = bool(np.isfinite(fitted.covariances).all())
+    return [
+        {
+            "station": station,
+            "rotation_rad": rotation_vector(fitted.turns[k]),
+            "shift_m": fitted.shifts[k],
+            "std_rotation_rad": fitted.std[k, :3] if known else None,
+            "std_shift_m": fitted.std[k, 3:] if known else None,
+            "covariance": fitted.covariances[k] if known else None,
+        }
+        for k, station in enumerate(dict.fromkeys(found.draft.stations or ("",)))
+    ]
 
 
 def identifiable(found: Imported) -> str:
@@ -224,20 +240,25 @@ def _placing(found: Imported, robot: Robot) -> list[object]:
             + (f" and {len(aside) - SHOWN} more" if len(aside) > SHOWN else "")
             + ". They are written all the same."
         )
-    turn, shift, std = rotation_vector(fitted.turn), fitted.shift, fitted.std
+    stations = tuple(dict.fromkeys(found.draft.stations or ("",)))
     rows = [
-        (f"{what} {axis} [{unit}]", f"{scale * value:.4f}", f"{scale * error:.4f}")
+        (station, f"{what} {axis} [{unit}]", f"{scale * value:.4f}", f"{scale * error:.4f}")
+        for station, turn, shift, std in zip(
+            stations, fitted.turns, fitted.shifts, fitted.std, strict=True
+        )
         for what, unit, scale, values, errors in (
-            ("shift", "mm", 1e3, shift, std[3:]), ("turn", "mrad", 1e3, turn, std[:3]),
+            ("shift", "mm", 1e3, shift, std[3:]),
+            ("turn", "mrad", 1e3, rotation_vector(turn), std[:3]),
         )
         for axis, value, error in zip("xyz", values, errors, strict=True)
     ]  # fmt: skip
-    parts.append(
-        table("The robot's base in the axes of the file", ["", "value", "std. error"], rows)
-    )
+    head = ["station", "", "value", "std. error"]
+    first = 0 if len(stations) > 1 else 1
+    title = "The robot's base in the axes of the file"
+    parts.append(table(title, head[first:], [row[first:] for row in rows]))
     parts.append(
         "Standard errors hold as far as what is left is independent from pose to pose."
-        if np.isfinite(std).all()
+        if np.isfinite(fitted.std).all()
         else "The positions do not tell the frame."
     )
     if found.registered:

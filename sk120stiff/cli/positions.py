@@ -42,6 +42,7 @@ def _held_out(found: HeldOutFile, problem: PoseProblem) -> tuple[dict[str, objec
         "mean_distance_um": found.distance * 1e6 if whole else None,
         "set_aside": [{"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows],
         f"rms_of_all_{ending}": found.rms_of_all * 1e6,
+        "placed_anew": found.anew,
     }
     said = f"Held-out file: {1e6 * found.rms:.3g} {problem.rms_unit}"
     said += f", {1e6 * found.distance:.3g} µm mean distance" if whole else ""
@@ -51,7 +52,7 @@ def _held_out(found: HeldOutFile, problem: PoseProblem) -> tuple[dict[str, objec
         lie = "1 row that lies" if len(rows) == 1 else f"{len(rows)} rows that lie"
         said += f". Not counted: {lie} far off all others, {listed([*lines, *more])}; with "
         said += f"{'it' if len(rows) == 1 else 'them'} {1e6 * found.rms_of_all:.3g} {unit}"
-    return document, f"{said}."
+    return document, f"{said}." + (f" {found.anew}" if found.anew else "")
 
 
 def yielding(model: Model) -> Model:

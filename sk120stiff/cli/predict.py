@@ -17,6 +17,7 @@ from sk120stiff.data_checks import look
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import warn
 from sk120stiff.files import csv_text, will_write, write_atomically
+from sk120stiff.identify.absolute.placed_anew import placed_anew
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Predicted, predict, warn_of_far_bend
 from sk120stiff.model.predicted import (
@@ -79,6 +80,8 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
 
 def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer:
     """Where a model has the marker at every reading, and how far the readings are off."""
+    moved = placed_anew(model, readings)
+    model = model if moved is None else moved.model
     predicted = predict(model, readings)
     columns = prediction_table(readings, predicted)
     if out is not None:
@@ -86,9 +89,10 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
     document: dict[str, object] = {
         "rows": rows_of(columns),
         "uncertainty": uncertainty_keys(model),
+        "placed_anew": None if moved is None else moved.sentence(),
         "out": out,
     }
-    parts: list[object] = []
+    parts: list[object] = [] if moved is None else [moved.sentence()]
     gauge = np.array(columns.get("gap_d[um]", []), dtype=float)
     if gauge.size and np.isfinite(gauge[readings.use]).any():
         gauge = gauge[readings.use & np.isfinite(gauge)]

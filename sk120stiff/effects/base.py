@@ -375,11 +375,11 @@ class Viewpoint(Effect):
     """
 
     @abstractmethod
-    def frame(self, values: Array) -> tuple[Array, Array]:
-        """(3, 3) rotation R and (3,) origin t [m]: base axes as the instrument sees them."""
+    def frames(self, load_cases: LoadCases, values: Array) -> tuple[Array, Array]:
+        """(N, 3, 3) rotations R and (N, 3) origins t [m]: base axes as the instrument sees them."""
 
     @abstractmethod
-    def columns(self, turned: Array, values: Array) -> Array:
+    def columns(self, load_cases: LoadCases, turned: Array, values: Array) -> Array:
         """(N, 6, P) change of position and of orientation as read, instrument axes.
 
         `turned` (N, 3) is R X [m].

@@ -336,7 +336,10 @@ def effect(
         'base_rocking:base_link'
     """
     return catalogue.effect(
-        robot, name, where, Options(tuple(poses), timed, tuple(breaks), tuple(series), thermal)
+        robot,
+        name,
+        where,
+        Options(tuple(poses), timed, tuple(breaks), tuple(series), thermal=thermal),
     )
 
 

@@ -50,6 +50,7 @@ class LoadCases:
         payload_point: (3,) where a payload hangs, in the tool frame [m]; None where there is none.
         temperature: (N,) temperature over its mean [K], or None.
         series, series_names: (N,) series that each reading belongs to, and their labels.
+        station, station_names: (N,) place that the instrument stood at, and their labels.
         zero_a: (N, n) coordinates of the zero reading [rad or m]; None: those of the reading.
         side: (N, n) side from which each joint came to its pose, -1, 0 or 1; None without an order.
         zero_group, repeat: (N,) which zero reading a row subtracts, and the how-manieth repeat it
@@ -73,6 +74,8 @@ class LoadCases:
     temperature: Array | None = None
     series: Index | None = None
     series_names: tuple[str, ...] = ()
+    station: Index | None = None
+    station_names: tuple[str, ...] = ("",)
     side: Array | None = None
     zero_a: Array | None = None
     zero_group: Integers | None = None
@@ -207,6 +210,7 @@ class LoadCases:
             point=self.point if self.point.ndim == 1 else self.point[pick],
             temperature=part(self.temperature),
             series=part(self.series),
+            station=part(self.station),
             side=part(self.side),
             zero_a=part(self.zero_a),
             zero_group=part(self.zero_group),
@@ -314,6 +318,7 @@ def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> L
     wrench[:, 3:] += np.cross(lever, weight)
     labels = said.groups
     names = () if labels is None else tuple(dict.fromkeys(labels))
+    stations, stood = said.stood
     temperature = said.temperature
     clock = measurements.order if measurements.order is not None else measurements.time
     return replace(
@@ -330,6 +335,8 @@ def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> L
         temperature=None if temperature is None else temperature - temperature.mean(),
         series=None if labels is None else np.array([names.index(label) for label in labels]),
         series_names=names,
+        station=stood,
+        station_names=stations,
         side=None if clock is None else approach_sides(plain.a, clock),
     )
 

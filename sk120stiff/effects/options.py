@@ -14,6 +14,7 @@ class Options:
         timed: The experiment has times, for `reading_drift`.
         breaks: Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
         series: Series of the experiment, for `marker_shift` and `target_rotation`.
+        stations: Where the instrument stood, for `tracker_frame`; one without a label is "".
         thermal: The experiment has temperatures, for `thermal_growth`.
         rotations: Rotations of the tool were read, for `target_rotation`.
         shape: Names of the parameters of the law that is meant, for effects that know more than
@@ -24,6 +25,7 @@ class Options:
     timed: bool = False
     breaks: tuple[float, ...] = ()
     series: tuple[str, ...] = ()
+    stations: tuple[str, ...] = ("",)
     thermal: bool = False
     rotations: bool = False
     shape: tuple[str, ...] = ()

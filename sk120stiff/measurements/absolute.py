@@ -50,6 +50,7 @@ class Absolute:
             tool frame [m], and whether mass and centre are in doubt.
         temperature: (N,) [degC], or None.
         series: N labels of what may have changed in between, or None.
+        stations: N labels of where the instrument stood, or None.
     """
 
     channels: Channels
@@ -63,6 +64,7 @@ class Absolute:
     temperature: Array | None = None
     series: tuple[str, ...] | None = None
     fit_axes: bool = False
+    stations: tuple[str, ...] | None = None
 
     def select(self, index: Index) -> Absolute:
         """Some of the rows."""
@@ -78,6 +80,7 @@ class Absolute:
             payload=self.payload[index],
             temperature=None if self.temperature is None else self.temperature[index],
             series=cut(self.series),
+            stations=cut(self.stations),
         )
 
     @property
@@ -90,6 +93,17 @@ class Absolute:
         if self.series is None or apart is None:
             return self.series or apart
         return tuple(f"{a}/{b}" for a, b in zip(self.series, apart, strict=True))
+
+    @property
+    def stood(self) -> tuple[tuple[str, ...], Index]:
+        """Labels of the places that the instrument stood at with axes of its own, and (N,) which.
+
+        One without a label where no column tells of any, or where all axes are those of the base.
+        """
+        if self.stations is None or self.frame == "base":
+            return ("",), np.zeros(len(self.point), dtype=np.intp)
+        names = tuple(dict.fromkeys(self.stations))
+        return names, np.array([names.index(label) for label in self.stations])
 
 
 def is_absolute(file: SettingsFile, roles: Roles, loaded: bool, unlike: bool) -> bool:
@@ -150,6 +164,7 @@ def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
         fit_payload=settings.payload is not None and settings.payload.fit,
         temperature=_temperature(table) if "temperature" in roles.has else None,
         series=table.cells["series"] if "series" in roles.has else None,
+        stations=table.cells["station"] if "station" in roles.has else None,
         fit_axes=fit_point if settings.rotation is None else settings.rotation.axes == "target",
     )
 

@@ -25,7 +25,7 @@ ZEROS = ("zero_group", "zero_count", "zero_order", "zero_time")
 # Columns that are words or counts and carry no unit.
 _BARE = ("pose", "order", "branch", "repeat", "use", "zero_group", "zero_count", "zero_order")
 # What stands beside positions, distances and single readings; a note elsewhere.
-_BESIDE = ("payload", "marker", "temperature", "series")
+_BESIDE = ("payload", "marker", "temperature", "series", "station")
 _SINGLE = ("d", "l")
 _GROUPS: dict[str, tuple[str, ...]] = {"d": DIRECTIONS, "l": ANCHORS, "inc": LEVELS}
 _ABSOLUTE = (
@@ -101,7 +101,7 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
             joints[name] = kind
         else:
             extra.append(name)
-    absolute = bool(has & set(_ABSOLUTE) - {"temperature", "series"})
+    absolute = bool(has & set(_ABSOLUTE) - {"temperature", "series", "station"})
     if "pose" not in has and {"x1", "y1", "z1"} <= table.headers.keys():
         raise InputError(
             "these are marker positions of a calibration, not readings under load",

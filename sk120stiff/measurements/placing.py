@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.absolute import Absolute
-from sk120stiff.measurements.cloud import Cloud
+from sk120stiff.measurements.cloud import FEWEST, Cloud
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.placing_distances import place_distances
 from sk120stiff.measurements.placing_slips import (
@@ -23,7 +23,6 @@ from sk120stiff.measurements.registration import Registration
 from sk120stiff.robot import STANDARD_GRAVITY, Robot
 from sk120stiff.robot.rotations import rotation_vector
 
-FEWEST = 3  # positions that a frame can be registered from
 FITS = 0.03  # of the spread of the positions: what no calibrated arm leaves after placing
 SUSPECT = 1e-3  # of the spread of the positions: what is worth a look for slips of the pen
 BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
@@ -38,7 +37,8 @@ class Placing:
     """The rigid robot laid onto the positions.
 
     Attributes:
-        shift, turn: (3,) [m] and (3,) rotation vector of the base frame as the instrument sees it.
+        shift, turn: (S, 3) [m] and (S, 3) rotation vector of the base frame as the instrument sees
+            it from each of `Absolute.stood`.
         marker: (3,) how far markers are off their stated place, tool axes [m].
         apart: (G, 3) how much farther than the first each group of `Absolute.groups` is off [m].
         rms: Distance that is left, rows that are wild set aside [m].
@@ -75,11 +75,15 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     whole = _lightest(readings, said, whole)
     if len(whole) < FEWEST:
         return _by_distances(robot, readings)
+    stations, stood = said.stood
+    stands_for_all(stations, stood[whole], readings)
     free = said.fit_point
     names = np.array(said.markers)[whole]
     labels = list(dict.fromkeys(said.groups or ()))
     one = np.zeros(len(whole), dtype=np.intp)
-    cloud = Cloud(robot, readings.joints[whole], x[whole], said.point[whole], names, one)
+    cloud = Cloud(
+        robot, readings.joints[whole], x[whole], said.point[whole], names, one, stood[whole]
+    )
     found, kept = cloud.placed(fit_marker=True)
     spread = float(np.sqrt(((x[whole] - x[whole].mean(axis=0)) ** 2).sum(axis=1).mean()))
     if free and len(labels) > 1 and found.rms > SUSPECT * spread:
@@ -126,8 +130,8 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     wild = np.zeros(readings.n_readings, dtype=bool)
     wild[whole[~kept]] = True
     return Placing(
-        shift=found.shift,
-        turn=rotation_vector(found.turn),
+        shift=found.shifts,
+        turn=rotation_vector(found.turns),
         marker=found.marker if free else np.zeros(3),
         apart=found.apart,
         rms=found.rms,
@@ -135,6 +139,19 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         distance=distance,
         notes=tuple(notes),
     )
+
+
+def stands_for_all(stations: tuple[str, ...], stood: Index, readings: Measurements) -> None:
+    """Each station must have enough positions to tell where it is."""
+    counts = np.bincount(stood, minlength=len(stations))
+    few = [f"{name} ({n})" for name, n in zip(stations, counts, strict=True) if n < FEWEST]
+    if few:
+        raise InputError(
+            f"too few positions to tell where the tracker stood: {listed(few)}",
+            where=f"{readings.path or 'measurements'}, column station",
+            remedy=f"From {FEWEST} whole positions on they tell it, from some ten on well. Leave "
+            "these rows out (use: 0), or measure more from there.",
+        )
 
 
 def _lightest(readings: Measurements, said: Absolute, rows: Index) -> Index:
@@ -151,6 +168,12 @@ def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:
     found, said = place_distances(robot, readings), readings.absolute
     if found is None or said is None or said.channels.distance is None:
         return None
+    if len(said.stood[0]) > 1:
+        raise InputError(
+            "distances to fixed points know no stations: ax, ay, az are in one frame",
+            where=f"{readings.path or 'measurements'}, column station",
+            remedy="State the fixed points in one frame and take the column out.",
+        )
     if said.frame == "base" and found.off > max(SHIFTED * found.spread, 10.0 * found.rms):
         raise InputError(
             f"the fixed points are not where ax, ay, az state them in axes of the base frame: "
@@ -169,8 +192,8 @@ def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:
         "the axes of ax, ay, az are turned, and nothing else depends on it.",
     )
     return Placing(
-        shift=found.shift,
-        turn=rotation_vector(found.turn),
+        shift=found.shift[None],
+        turn=rotation_vector(found.turn)[None],
         marker=found.marker,
         apart=np.zeros((1, 3)),
         rms=found.rms,
@@ -253,7 +276,7 @@ def _refuse_other_axes(
     screws = cloud.robot.screws(cloud.a)
     marker = cloud.point + found.marker
     at = screws.frame_position + np.einsum("nij,nj->ni", screws.rotation, marker)
-    angle = float(np.linalg.norm(rotation_vector(found.turn)))
+    angle = float(np.linalg.norm(rotation_vector(found.turns[0])))
     off = float(np.median(np.linalg.norm(cloud.x - at, axis=1)))
     if angle < TURNED and off < max(SHIFTED * spread, 10.0 * found.rms):
         return

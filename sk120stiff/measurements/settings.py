@@ -67,9 +67,10 @@ class RegisteredEntry(Strict):
     """A record of how positions came into base axes: where the tracker had the base.
 
     A position of the tracker was rotation · (position here) + xyz; the rotation is a vector, its
-    standard errors are about the tracker's axes.
+    standard errors are about the tracker's axes. Of several stations each has its own.
     """
 
+    station: str | None = None
     xyz: Vector
     unit: str
     rotation: Vector
@@ -132,7 +133,7 @@ class Settings(Strict):
     displacement: DisplacementEntry = DisplacementEntry()
     position: PositionEntry | None = None
     rotation: RotationEntry | None = None
-    registered: RegisteredEntry | None = None
+    registered: RegisteredEntry | list[RegisteredEntry] | None = None
     points: dict[str, PointEntry] = Field(default_factory=dict)
     payload: PayloadEntry | None = None
     joints: dict[str, str | float] = Field(default_factory=dict)

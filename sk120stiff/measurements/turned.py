@@ -26,7 +26,7 @@ def targets_on_tool(
     """How the targets whose rotations were read are turned on the tool, and what is to be said.
 
     Args:
-        turn: (3, 3) base axes as the instrument sees them.
+        turn: (N, 3, 3) base axes as the instrument sees them.
 
     Returns:
         Rotation vectors (G, 3) of the targets' axes in those of the tool, one for every group of
@@ -45,7 +45,7 @@ def targets_on_tool(
         return (np.zeros((len(labels), 3)) if said.fit_axes else None), ()
     group = groups[whole]
     screws = robot.screws(readings.joints[whole])
-    tool = Rotation.from_matrix(turn @ screws.rotation)
+    tool = Rotation.from_matrix(turn[whole] @ screws.rotation)
     read = Rotation.from_matrix(said.channels.rotation[whole])
     sits = mounting(tool, read, group, len(labels))
     beside = _off(tool * sits[group], read)

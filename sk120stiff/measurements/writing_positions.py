@@ -45,6 +45,8 @@ def columns_of_positions(m: Measurements, said: Absolute, angle: str, length: st
         yield "marker", said.markers
     if said.series is not None:
         yield "series", said.series
+    if said.stations is not None:
+        yield "station", said.stations
     yield from _channels(said.channels, length)
     if said.temperature is not None:
         yield "temperature[degC]", map(_digits, said.temperature)

@@ -32,7 +32,7 @@ from sk120stiff.model.parameter import (
     Parameter,
     parameter_frame,
 )
-from sk120stiff.model.pose_reading import instrument_frame
+from sk120stiff.model.pose_reading import instrument_frames
 from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty
 from sk120stiff.model.typical import typical_model, typical_parameters
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
@@ -53,7 +53,7 @@ __all__ = [
     "Uncertainty",
     "base_model",
     "held_loads",
-    "instrument_frame",
+    "instrument_frames",
     "joint_shares",
     "joint_spring_model",
     "loaded_stiffness",

@@ -59,17 +59,21 @@ def read_poses(
     return PoseReading(*(np.concatenate([getattr(part, n) for part in parts]) for n in names))
 
 
-def instrument_frame(model: Model) -> tuple[Array, Array]:
-    """(3, 3) rotation and (3,) origin [m] of base axes as the instrument sees them."""
-    return _frame(model.assembly, model.values)
+def instrument_frames(model: Model, load_cases: LoadCases) -> tuple[Array, Array]:
+    """(N, 3, 3) rotations and (N, 3) origins [m] of base axes as the instrument sees them.
+
+    Raises:
+        InputError: It stood where the model does not know of.
+    """
+    return _frames(model.assembly, load_cases, model.values)
 
 
-def _frame(assembly: Assembly, values: Array) -> tuple[Array, Array]:
-    R, t = np.eye(3), np.zeros(3)
+def _frames(assembly: Assembly, load_cases: LoadCases, values: Array) -> tuple[Array, Array]:
+    R, t = np.tile(np.eye(3), (load_cases.count, 1, 1)), np.zeros((load_cases.count, 3))
     for effect, part in zip(assembly.effects, assembly.slices, strict=True):
         if isinstance(effect, Viewpoint):
-            own, shift = effect.frame(values[part])
-            R, t = own @ R, own @ t + shift
+            own, shift = effect.frames(load_cases, values[part])
+            R, t = own @ R, np.einsum("nij,nj->ni", own, t) + shift
     return R, t
 
 
@@ -84,10 +88,10 @@ def _read(
 ) -> PoseReading:
     stood = assembly.stand(load_cases, values)
     screws = stood.rest.screws
-    R, t = _frame(assembly, values)
+    R, t = _frames(assembly, load_cases, values)
     effects = list(zip(assembly.effects, assembly.slices, strict=True))
     views = [(effect, part) for effect, part in effects if isinstance(effect, Viewpoint)]
-    turned = screws.position @ R.T
+    turned = np.einsum("nij,nj->ni", R, screws.position)
     said = misread(assembly.of(ReadingError), load_cases, values, turned + t)
     P = len(values) if derivative else 0
     columns = np.zeros((load_cases.count, 6, P))
@@ -97,7 +101,7 @@ def _read(
         turning = body[:, 3:]
         columns[:, :3], columns[:, 3:] = R @ body[:, :3], R @ body[:, 3:]
         for effect, part in views:
-            columns[:, :, part] += effect.columns(turned, values[part])
+            columns[:, :, part] += effect.columns(load_cases, turned, values[part])
         columns[:, :3] = said.matrix @ columns[:, :3]
         for part, own in said.columns:
             columns[:, :3, part] += own

@@ -13,6 +13,7 @@ from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Contender
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.noise_sizes import far_off
+from sk120stiff.identify.absolute.placed_anew import placed_anew
 from sk120stiff.measurements import Measurements
 
 
@@ -36,6 +37,7 @@ class HeldOutFile:
         set_aside: (N,) rows that lie far off all others of their file.
         rms_of_all: Rms with these rows [m].
         readings: All N readings.
+        anew: What was found anew because the tracker stands elsewhere, in words; None: nothing.
     """
 
     rms: float
@@ -43,6 +45,7 @@ class HeldOutFile:
     set_aside: Mask
     rms_of_all: float
     readings: Measurements
+    anew: str | None = None
 
 
 def numbers_told(seen: Calibration, final: Calibration, readings: Measurements) -> Index:
@@ -136,7 +139,13 @@ def rms(x: Array) -> float:
 
 
 def heldout_on(final: Calibration, others: Measurements) -> HeldOutFile:
-    """How far a calibration is off at readings it never saw; rows far off all others are told."""
+    """How far a calibration is off at readings it never saw; rows far off all others are told.
+
+    Where the tracker stands elsewhere by then, its frame is that of these readings.
+    """
+    moved = placed_anew(final.model, others)
+    if moved is not None:
+        final = replace(final, model=moved.model)
     wild = far_off(final, others, np.zeros(others.n_readings, dtype=bool))
     problem = replace(final.problem, measurements=others.masked(), model=final.model)
     gap, kept = problem.channel_gap(final.model.values)[0], ~wild[others.use]
@@ -149,5 +158,6 @@ def heldout_on(final: Calibration, others: Measurements) -> HeldOutFile:
         whole = full[held.all(axis=1) & kept]
         distance = float(np.linalg.norm(whole, axis=1).mean()) if len(whole) else np.nan
     return HeldOutFile(
-        rms(gap[counted[kept[problem.rows[counted]]]]), distance, wild, rms(gap[counted]), others
-    )
+        rms(gap[counted[kept[problem.rows[counted]]]]), distance, wild, rms(gap[counted]), others,
+        None if moved is None else moved.sentence(),
+    )  # fmt: skip

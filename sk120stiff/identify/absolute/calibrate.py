@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
@@ -37,6 +36,7 @@ from sk120stiff.measurements.stated_sizes import doubtful_sizes
 from sk120stiff.measurements.turned import targets_on_tool
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import arm_length
+from sk120stiff.robot.rotations import rotation_of
 
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
 MORE_ROUNDS = 3  # where other rows are still set aside
@@ -160,10 +160,9 @@ def calibrate(
     placed = place(model.robot, readings)
     mounted, turns = None, tuple[str, ...]()
     if placed is not None or said.frame == "base":
-        turn = np.zeros(3) if placed is None or said.frame == "base" else placed.turn
-        mounted, turns = targets_on_tool(
-            model.robot, readings, Rotation.from_rotvec(turn).as_matrix()
-        )
+        turn = np.zeros((1, 3)) if placed is None or said.frame == "base" else placed.turn
+        seen = rotation_of(turn)[said.stood[1]]
+        mounted, turns = targets_on_tool(model.robot, readings, seen)
     if placed is None and said.frame == "unknown" and set(said.channels.present) != {"inclination"}:
         raise _nowhere(readings)
     wild = np.zeros(readings.n_readings, dtype=bool) if placed is None else placed.wild

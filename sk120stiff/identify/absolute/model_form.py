@@ -162,7 +162,9 @@ def _cells(problem: PoseProblem) -> Index:
     """(M,) equal numbers for numbers of one axis, of poses and loads that were read again."""
     said, readings = problem.said, problem.measurements
     key = [problem.load_cases.pose, said.payload, *readings.wrench.T]
-    labels = (w for w in (said.markers, said.series, readings.branch) if w is not None)
+    labels = (
+        w for w in (said.markers, said.series, said.stations, readings.branch) if w is not None
+    )
     key += [np.unique(np.array(words), return_inverse=True)[1] for words in labels]
     for ways in (said.channels.anchor, said.channels.along, said.channels.level):
         if ways is not None:

@@ -22,6 +22,7 @@ def options_of(readings: Measurements) -> Options:
         poses=readings.poses,
         timed=readings.time is not None,
         series=labels,
+        stations=("",) if said is None else said.stood[0],
         thermal=said is not None and said.temperature is not None,
         rotations=said is not None and said.channels.rotation is not None,
     )
@@ -56,7 +57,7 @@ def started(
         ]
 
     if said.frame == "unknown" and placed is not None:
-        frame = np.concatenate([placed.shift, placed.turn])
+        frame = np.concatenate([placed.shift, placed.turn], axis=1).ravel()
         model = joined(model, "tracker_frame", "tracker", frame)
     if said.fit_point:
         marker = np.zeros(3) if placed is None else placed.marker

@@ -13,6 +13,7 @@ from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.grid import Grid, text_grid
 
 Role = Literal["points", "joints", "loads"]
+FILE = "(file)"  # header of a column that holds the names of files
 CLOSE = 0.1  # confidences that differ by less do not decide
 
 

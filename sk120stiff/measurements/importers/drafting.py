@@ -32,6 +32,9 @@ Written = tuple[tuple[str, tuple[str, ...]], ...]
 POSITIONS, DISPLACEMENTS, SIGMAS = ("x", "y", "z"), ("dx", "dy", "dz"), ("sx", "sy", "sz")
 
 
+LABELS = ("order", "marker", "series", "station", "branch", "repeat")  # taken over as they stand
+
+
 @dataclass(frozen=True, eq=False)
 class Draft:
     """The rows of a sheet, understood.
@@ -70,6 +73,25 @@ class Draft:
         """The marker of every row, N names; empty ones where the file names none."""
         named = next((cells for header, cells in self.other if header == "marker"), ())
         return named or self.markers[0] or ("",) * len(self.pose)
+
+    @property
+    def mounts(self) -> tuple[str, ...]:
+        """N labels of markers as they were mounted: of another series one may sit elsewhere."""
+        series = self.series or ("",) * len(self.pose)
+        return tuple(f"{m}/{s}" for m, s in zip(self.marker_of, series, strict=True))
+
+    @property
+    def stations(self) -> tuple[str, ...] | None:
+        """Where the instrument stood for every row, N labels, where the file tells."""
+        return self._labels("station")
+
+    @property
+    def series(self) -> tuple[str, ...] | None:
+        """What may have changed from row to row, N labels, where the file tells."""
+        return self._labels("series")
+
+    def _labels(self, header: str) -> tuple[str, ...] | None:
+        return next((cells for name, cells in self.other if name == header), None)
 
 
 def drafted(
@@ -243,7 +265,7 @@ def _conditions(sheet: Sheet, told: Told, reasons: dict[int, str]) -> _Group:
                 numbers(sheet, column)
                 header = f"temperature[{'K' if unit == 'K' else 'degC'}]"
                 found.append((column, header, texts(column)))
-        elif word in ("order", "marker", "series", "branch", "repeat") and all(column.cells):
+        elif word in LABELS and all(column.cells):
             if word == "order":
                 numbers(sheet, column)
             found.append((column, word, column.cells))

@@ -64,6 +64,7 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         absolute=Absolute(
             Channels(position=draft.measured),
             "unknown", point, not known, draft.marker_of, np.zeros(len(draft.pose)),
+            stations=draft.stations, series=draft.series,
         ),
     ).select(rows)  # fmt: skip
     try:
@@ -84,13 +85,15 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         )
     kept = rows[~placing.wild]
     screws = robot.screws(draft.joints.values[kept])
-    markers = np.unique(np.array(draft.marker_of)[kept], return_inverse=True)[1]
+    markers = np.unique(np.array(draft.mounts)[kept], return_inverse=True)[1]
+    stood = stood_of(draft)
 
     def fit(x: Array) -> Registration | None:
         where, turn = screws.frame_position, screws.rotation
         return register(
             x[kept], where, turn, point[kept],
             fit_marker=not known, group=np.zeros_like(markers) if known else markers,
+            station=stood[kept],
         )  # fmt: skip
 
     fitted = fit(draft.measured)
@@ -104,6 +107,13 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             f"would be left, not {1e3 * fitted.rms:.3g} mm: ask where the file comes from."
         )
     return Placed(fitted, kept, wild, other.rms if other else None, tuple(doubts))
+
+
+def stood_of(draft: Draft) -> Index:
+    """(N,) number of the station of every row, in the order in which they come."""
+    labels = draft.stations or ("",) * len(draft.pose)
+    names = list(dict.fromkeys(labels))
+    return np.array([names.index(label) for label in labels], dtype=np.intp)
 
 
 def _by_other_columns(error: OtherConvention, draft: Draft) -> Refusal:
@@ -162,8 +172,8 @@ def axes(
                 remedy="Leave it out.",
             )
         return None, False, []
-    turned = float(np.linalg.norm(rotation_vector(fitted.turn)))
-    vague = float(fitted.std[:3].max()) > VAGUE
+    turned = float(np.linalg.norm(rotation_vector(fitted.turns), axis=1).max())
+    vague = float(fitted.std[:, :3].max()) > VAGUE
     if into_base:
         if vague:
             raise Refusal(

@@ -19,6 +19,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.contract import Column
 from sk120stiff.measurements.importers.drafting import Draft
+from sk120stiff.measurements.importers.frames import stood_of
 from sk120stiff.measurements.importers.orientation_columns import orientation_columns
 from sk120stiff.measurements.importers.told import Mode, Told, plain
 from sk120stiff.measurements.registration import Registration
@@ -100,8 +101,9 @@ def understood(
     used = rows[whole[rows]]
     if len(used) < FEWEST:
         return f"fewer than {FEWEST} of them stand at placed poses"
-    tool = Rotation.from_matrix(fitted.turn @ robot.screws(draft.joints.values[used]).rotation)
-    group = np.unique(np.array(draft.marker_of)[used], return_inverse=True)[1]
+    turn = fitted.turns[stood_of(draft)[used]]
+    tool = Rotation.from_matrix(turn @ robot.screws(draft.joints.values[used]).rotation)
+    group = np.unique(np.array(draft.mounts)[used], return_inverse=True)[1]
     count = int(group.max()) + 1
     found = []
     for way, turned in _ways(values[whole]):
@@ -141,7 +143,7 @@ def with_orientation(
         return replace(draft, unused=(*left, *draft.unused))
     rotation = found.rotation
     if registered and fitted is not None:
-        rotation = fitted.turn.T @ rotation
+        rotation = fitted.turns[stood_of(draft)].swapaxes(1, 2) @ rotation
     known = np.isfinite(rotation).all(axis=(1, 2))
     cells = np.full((len(rotation), 4), "", dtype=object)
     turns = np.roll(Rotation.from_matrix(rotation[known]).as_quat(), 1, axis=1)

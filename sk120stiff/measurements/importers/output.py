@@ -12,7 +12,7 @@ from sk120stiff import files, units
 from sk120stiff.arrays import Array
 from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.drafting import Draft, Written
-from sk120stiff.measurements.importers.frames import points_of
+from sk120stiff.measurements.importers.frames import points_of, stood_of
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.registration import Registration
 from sk120stiff.measurements.writing import check_name, robot_seen_from
@@ -86,17 +86,7 @@ def settings_for(
         zero = {"zero": "shared"} if mode == "load pairs" else {}
         settings["displacement"] = {"frame": "base", **zero}
     if registered and fitted is not None:
-        std = np.where(np.isfinite(fitted.std), fitted.std, 0.0)
-        settings["registered"] = {
-            "xyz": [float(v) for v in 1e3 * fitted.shift],
-            "unit": "mm",
-            "rotation": [float(v) for v in rotation_vector(fitted.turn)],
-            "rotation_unit": "rad",
-            "std_xyz": [float(v) for v in 1e3 * std[3:]],
-            "std_rotation": [float(v) for v in std[:3]],
-            "rms": 1e3 * fitted.rms,
-            "poses": fitted.poses,
-        }
+        settings["registered"] = _registered(fitted, draft)
     if draft.joints.mapping:
         settings["joints"] = draft.joints.mapping
     settings["source"] = f"imported from {draft.sheet.path.name} ({draft.sheet.title})"
@@ -127,13 +117,35 @@ def columns_for(
     if mode != "positions":  # where the column marker means positions as such, here it is a note
         other = [("marker_name" if h == "marker" else h, cells) for h, cells in other]
     if registered and fitted is not None:
-        at = 1e3 * fitted.in_base(draft.measured)
+        at = 1e3 * fitted.in_base(draft.measured, stood_of(draft))
         readings = [(f"{a}[mm]", _reprs(at[:, k])) for k, a in enumerate("xyz")]
-        other = _turned_sigmas(other, fitted.turn)
+        other = _turned_sigmas(other, fitted.turns[stood_of(draft)])
     columns += readings + other
     if not draft.use.all():
         columns.append(("use", tuple("1" if used else "0" for used in draft.use)))
     return tuple(columns)
+
+
+def _registered(fitted: Registration, draft: Draft) -> dict[str, Any] | list[dict[str, Any]]:
+    """The fit that turned positions into base axes, on record; of several stations each."""
+    quality = {"rms": 1e3 * fitted.rms, "poses": fitted.poses}
+    std = np.where(np.isfinite(fitted.std), fitted.std, 0.0)
+    frames = [
+        {
+            "xyz": [float(v) for v in 1e3 * shift],
+            "unit": "mm",
+            "rotation": [float(v) for v in rotation_vector(turn)],
+            "rotation_unit": "rad",
+            "std_xyz": [float(v) for v in 1e3 * error[3:]],
+            "std_rotation": [float(v) for v in error[:3]],
+            **quality,
+        }
+        for turn, shift, error in zip(fitted.turns, fitted.shifts, std, strict=True)
+    ]
+    if draft.stations is None:
+        return frames[0]
+    named = zip(dict.fromkeys(draft.stations), frames, strict=True)
+    return [{"station": station, **frame} for station, frame in named]
 
 
 def _turned_sigmas(other: list[tuple[str, tuple[str, ...]]], turn: Array) -> list[Any]:
@@ -144,7 +156,7 @@ def _turned_sigmas(other: list[tuple[str, tuple[str, ...]]], turn: Array) -> lis
     metres = np.column_stack(
         [units.to_si([float(c) for c in other[k][1]], other[k][0][3:-1], "length") for k in sizes]
     )
-    along = 1e3 * np.sqrt(metres**2 @ turn**2)
+    along = 1e3 * np.sqrt(np.einsum("ni,nij->nj", metres**2, turn**2))
     turned = {
         k: (f"s{a}[mm]", _reprs(along[:, i]))
         for i, (k, a) in enumerate(zip(sizes, "xyz", strict=True))

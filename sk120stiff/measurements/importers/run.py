@@ -33,7 +33,9 @@ from sk120stiff.measurements.importers.orientation import (
 )
 from sk120stiff.measurements.importers.orientation_columns import named
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
+from sk120stiff.measurements.importers.several_files import joined
 from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
+from sk120stiff.measurements.importers.stations import with_stations
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
 from sk120stiff.measurements.reading import assembled
@@ -92,7 +94,7 @@ class Imported:
 
 
 def import_readings(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     robot: Robot,
     told: Told | None = None,
     *,
@@ -109,7 +111,8 @@ def import_readings(
     """Read positions of a marker, or displacements, in any format of `formats`.
 
     Args:
-        path: The file, or the folder of a ROS bag.
+        path: The file, or the folder of a ROS bag; or several of one campaign, with the same
+            columns.
         robot: What was measured.
         told: Units and places that the file does not say.
         joints_file, loads_file: Joints and loads, where they stand in files of their own.
@@ -126,14 +129,20 @@ def import_readings(
     """
     told = told or Told()
     prismatic = tuple(n for n, s in zip(robot.actuated, robot.prismatic, strict=True) if s)
-    source = Source(
-        Path(path), robot.actuated, "points", tuple(columns) if columns else None,
-        sheet, topic, marker,
-    )  # fmt: skip
-    draft = drafted(
-        _sheet(source, formats, format_name, joints_file, loads_file),
-        told, robot.actuated, prismatic,
-    )  # fmt: skip
+    paths = [path] if isinstance(path, str | os.PathLike) else path
+    _refuse_beside_several(paths, {"--joints-file": joints_file, "--loads-file": loads_file})
+    sheets = [
+        _sheet(
+            Source(
+                Path(one), robot.actuated, "points", tuple(columns) if columns else None,
+                sheet, topic, marker,
+            ),
+            formats, format_name, joints_file, loads_file,
+        )
+        for one in paths
+    ]  # fmt: skip
+    whole = sheets[0] if len(sheets) == 1 else joined(sheets)
+    draft = drafted(whole, told, robot.actuated, prismatic)
     of_log = standstills(draft)
     if of_log is not None:
         draft = drafted(of_log, told, robot.actuated, prismatic)
@@ -145,6 +154,7 @@ def import_readings(
         mode = "load pairs"
     if mode != "positions":
         refuse_several_points(draft)
+    draft = with_stations(draft, mode, robot, told)
     laid = placed(draft, mode, robot, told)
     turned, registered, doubts = axes(laid.fitted, mode, into_base, told)
     read = understood(draft, robot, told, mode, laid.fitted, laid.rows)
@@ -178,6 +188,18 @@ def import_readings(
         doubts=(*laid.doubts, *doubts),
         said=tuple(said),
     )
+
+
+def _refuse_beside_several(paths: Sequence[object], beside: dict[str, Path | None]) -> None:
+    given = [option for option, path in beside.items() if path is not None]
+    if given and len(paths) > 1:
+        raise InputError(
+            f"{len(paths)} files of positions, and one of {given[0].strip('-').split('-')[0]}",
+            where=given[0],
+            remedy="Import them one by one, or put the columns of both into each file.",
+        )
+    if not paths:
+        raise InputError("no file is given", remedy="Give one file, or several of one campaign.")
 
 
 def _sheet(

@@ -52,6 +52,8 @@ _NAMES = {
     "datum/zeit|datum und uhrzeit|heure|date heure|ora|hora|fecha hora",
     "date": "date|datum|fecha",
     "marker": "marker|reflector|smr",
+    "station": "station|station id|station no|station name|instrument station|tracker station|"
+    "instrument id|instrument setup|tracker setup|tracker position|standpunkt|standort|stazione",
     "orientation roll": "roll",
     "orientation pitch": "pitch",
     "orientation yaw": "yaw",

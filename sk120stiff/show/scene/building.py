@@ -122,7 +122,7 @@ def poses_of(
             name: _in_base(load_cases, m.predict(load_cases)) for name, m in models.items()
         }
     else:
-        measured, predicted = _off_the_last(used, models)
+        measured, predicted = _off_the_last(used, load_cases, models)
     read: Mask = np.zeros(used.n_readings, dtype=np.bool_)
     if measured is not None:
         read |= np.isfinite(measured).all(axis=1)
@@ -144,28 +144,37 @@ def poses_of(
 
 
 def _off_the_last(
-    used: Measurements, models: Mapping[str, Model]
+    used: Measurements, load_cases: LoadCases, models: Mapping[str, Model]
 ) -> tuple[Array | None, dict[str, Array]]:
     """Positions (N, 3) as read, and as models have them, from those of the last, base axes [m].
 
     Nothing where a model does not know where the instrument stands, or no position was read.
     """
-    from sk120stiff.model import instrument_frame, predict
+    from sk120stiff.identify.absolute.placed_anew import placed_anew
+    from sk120stiff.model import instrument_frames, predict
 
     position = None if used.absolute is None else used.absolute.channels.position
     if position is None or not models:
         return None, {}
     at: dict[str, Array] = {}
     for name, model in models.items():
+        moved = placed_anew(model, used)
+        model = model if moved is None else moved.model
         try:
             said = predict(model, used).position
         except InputError:
             return None, {}
-        R, t = instrument_frame(model)
-        at[name] = (np.asarray(said) - t) @ R
-    last = next(reversed(at))
-    R, t = instrument_frame(models[last])
-    return (position - t) @ R - at[last], {name: own - at[last] for name, own in at.items()}
+        frames = instrument_frames(model, load_cases)
+        at[name] = _from_base(frames, np.asarray(said))
+    last = at[next(reversed(at))]
+    read = _from_base(frames, position)
+    return read - last, {name: own - last for name, own in at.items()}
+
+
+def _from_base(frames: tuple[Array, Array], seen: Array) -> Array:
+    """(N, 3) in base axes, of what an instrument of these frames sees [m]."""
+    R, t = frames
+    return np.asarray(np.einsum("nji,nj->ni", R, seen - t))
 
 
 def _in_base(load_cases: LoadCases, values: Array) -> Array:
