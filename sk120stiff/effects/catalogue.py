@@ -310,6 +310,7 @@ def effect(
     timed: bool = False,
     breaks: Sequence[float] = (),
     series: Sequence[str] = (),
+    stations: Sequence[str] = ("",),
     thermal: bool = False,
     catalogue: Catalogue = CATALOGUE,
 ) -> Effect:
@@ -323,6 +324,7 @@ def effect(
         timed: The experiment has times, for `reading_drift`.
         breaks: Torques [N·m] at which a gear changes its stiffness, for `gear_hardening`.
         series: Series of the experiment, for `marker_shift`.
+        stations: Where the tracker stood, for `tracker_frame`.
         thermal: The experiment has temperatures, for `thermal_growth`.
         catalogue: The effects that there are.
 
@@ -339,7 +341,7 @@ def effect(
         robot,
         name,
         where,
-        Options(tuple(poses), timed, tuple(breaks), tuple(series), thermal=thermal),
+        Options(tuple(poses), timed, tuple(breaks), tuple(series), tuple(stations), thermal),
     )
 
 
@@ -349,6 +351,7 @@ def all_effects(
     poses: Sequence[str] = (),
     timed: bool = False,
     series: Sequence[str] = (),
+    stations: Sequence[str] = ("",),
     thermal: bool = False,
     absolute: bool = False,
     catalogue: Catalogue = CATALOGUE,
@@ -357,7 +360,10 @@ def all_effects(
 
     Those that positions alone show are left out unless readings are `absolute`.
     """
-    told = Options(tuple(poses), timed, series=tuple(series), thermal=thermal, rotations=absolute)
+    told = Options(
+        tuple(poses), timed, series=tuple(series), stations=tuple(stations), thermal=thermal,
+        rotations=absolute,
+    )  # fmt: skip
     return tuple(
         kind.at(robot, where, told)
         for kind in catalogue

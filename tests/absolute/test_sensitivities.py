@@ -16,6 +16,7 @@ from sk120stiff.robot.rotations import rotation_vector
 from tests.effects.arms import ARMS, LOOPED, POSES, Array, arm, random_values, readings, sprung
 
 SERIES = ("a", "b", "c")
+STATIONS = ("left", "right")
 
 
 def load_cases_of(robot: Robot, seed: int) -> LoadCases:
@@ -28,6 +29,8 @@ def load_cases_of(robot: Robot, seed: int) -> LoadCases:
         temperature=5.0 * rng.normal(size=8),
         series=np.arange(8) % 3,
         series_names=SERIES,
+        station=np.arange(8) // 3 % 2,
+        station_names=STATIONS,
         side=rng.choice([-1.0, 1.0], (8, robot.n)),
     )
 
@@ -41,7 +44,9 @@ def smooth(effect: Effect) -> bool:
 
 def with_everything(robot: Robot, seed: int) -> tuple[Model, Array]:
     model = sprung(robot)
-    told = {"poses": POSES, "timed": True, "series": SERIES, "thermal": True}
+    told = {
+        "poses": POSES, "timed": True, "series": SERIES, "stations": STATIONS, "thermal": True
+    }  # fmt: skip
     for effect in all_effects(robot, absolute=True, **told):
         if effect.name != "joint_springs" and smooth(effect):
             model = model + effect
