@@ -285,8 +285,9 @@ FAULTS: tuple[Fault, ...] = (
     *_of(
         "measurements/registration.py", *_tests("measurements", "registration"),
         mirrored_frames=("np.sign(np.linalg.det(u @ vt)) or 1.0", "1.0"),
-        residual_not_divided_by_its_freedom=("spare = 3 * count - 6 - (marker.size if fit_marker else 0)", "spare = 3 * count"),
-        covariance_of_a_frame_without_its_scale=("(vt.T / values)[:6] / size[:6, None]", "(vt.T / values)[:6]"),
+        residual_not_divided_by_its_freedom=("spare = 3 * count - frames - (marker.size if fit_marker else 0)", "spare = 3 * count"),
+        covariance_of_a_frame_without_its_scale=("(vt.T / values)[:frames] / size[:frames, None]", "(vt.T / values)[:frames]"),
+        stations_laid_as_one=("rows = [station == k for k", "rows = [station >= 0 for k"),
     ),
     *_of(
         "model/uncertainty.py", *_tests("model", "uncertainty", "loaded_uncertainty"),

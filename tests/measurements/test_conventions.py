@@ -21,7 +21,9 @@ def cloud_of(robot: Robot, signs: np.ndarray, quarters: np.ndarray, seed: int) -
     x = x + NOISE * rng.normal(size=x.shape)
     nothing = np.zeros(len(a), dtype=np.intp)
     columns = (a - quarters * np.pi / 2) * signs
-    return Cloud(robot, columns, x, np.zeros((len(a), 3)), np.array([""] * len(a)), nothing)
+    return Cloud(
+        robot, columns, x, np.zeros((len(a), 3)), np.array([""] * len(a)), nothing, nothing
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -22,7 +22,8 @@ from sk120stiff.robot.rotations import rotation_vector
 
 BETTER = 0.2  # of what is left, below which it must fall: no error of a model moves a cloud so
 STEPS = 3  # of Gauss and Newton, because an instrument may misread what it sees from there
-FAR, ROUNDS = 8.0, 5  # times the median: rows that do not tell where the tracker stands
+FAR = 8.0  # times the median distance: rows that do not tell where the tracker stands
+ROUNDS = 5  # of leaving such rows out
 FEWEST = 4  # whole positions: three would fit in any case, nearly
 
 

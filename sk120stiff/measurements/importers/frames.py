@@ -11,11 +11,12 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError, Refusal, listed
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
+from sk120stiff.measurements.cloud import FEWEST, Cloud
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.words import unit_of_header
-from sk120stiff.measurements.placing import place
+from sk120stiff.measurements.placing import FITS, place
 from sk120stiff.measurements.placing_slips import OtherConvention
 from sk120stiff.measurements.registration import Registration, register
 from sk120stiff.robot import Robot
@@ -44,13 +45,9 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         Refusal: They are not this robot's.
     """
     nothing = Placed(None, np.zeros(0, int), np.zeros(len(draft.pose), bool), None, ())
-    rows = np.flatnonzero(draft.use)
-    if mode == "load pairs":
-        size = np.linalg.norm(draft.loads.wrench[rows], axis=1)
-        rows = rows[np.lexsort((rows, size))]
-        rows = np.sort(rows[np.unique(np.array(draft.pose)[rows], return_index=True)[1]])
     if mode == "displacements":
         return nothing
+    rows = _unloaded(draft, mode)
     point, known = points_of(draft, told)
     rough = Measurements(
         pose=tuple(f"{k}" for k in range(len(draft.pose))),
@@ -107,6 +104,33 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             f"would be left, not {1e3 * fitted.rms:.3g} mm: ask where the file comes from."
         )
     return Placed(fitted, kept, wild, other.rms if other else None, tuple(doubts))
+
+
+def _unloaded(draft: Draft, mode: Mode) -> Index:
+    """Rows that the rigid robot is laid onto: of load pairs those under the lightest load."""
+    rows = np.flatnonzero(draft.use)
+    if mode == "load pairs":
+        size = np.linalg.norm(draft.loads.wrench[rows], axis=1)
+        rows = rows[np.lexsort((rows, size))]
+        rows = np.sort(rows[np.unique(np.array(draft.pose)[rows], return_index=True)[1]])
+    return np.asarray(rows, dtype=np.intp)
+
+
+def left_over(draft: Draft, mode: Mode, robot: Robot, told: Told) -> float:
+    """What is left of the positions [m]; infinite where no arm leaves as much, or few tell it."""
+    rows, (point, known) = _unloaded(draft, mode), points_of(draft, told)
+    rows = rows[np.isfinite(draft.measured[rows]).all(axis=1)]
+    stood = stood_of(draft)[rows]
+    if len(rows) < FEWEST or np.bincount(stood, minlength=int(stood_of(draft).max()) + 1).min() < (
+        FEWEST
+    ):
+        return np.inf
+    x, names = draft.measured[rows], np.array(draft.mounts)[rows]
+    group = np.unique(names, return_inverse=True)[1] * (not known)
+    cloud = Cloud(robot, draft.joints.values[rows], x, point[rows], names, group, stood)
+    rms = cloud.placed(fit_marker=not known)[0].rms
+    spread = float(np.sqrt(((x - x.mean(axis=0)) ** 2).sum(axis=1).mean()))
+    return rms if rms < FITS * spread else np.inf
 
 
 def stood_of(draft: Draft) -> Index:

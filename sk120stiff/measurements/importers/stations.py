@@ -14,7 +14,7 @@ from sk120stiff.errors import InputError, Refusal, listed
 from sk120stiff.measurements.cloud import FEWEST
 from sk120stiff.measurements.importers.contract import FILE
 from sk120stiff.measurements.importers.drafting import Draft
-from sk120stiff.measurements.importers.frames import placed
+from sk120stiff.measurements.importers.frames import left_over, placed
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.robot import Robot
 
@@ -30,7 +30,7 @@ def with_stations(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Draft:
     reasons: where few positions were read from a station, one frame is enough if it fits as well.
 
     Raises:
-        InputError: The tracker has moved, and too few positions tell where it stood.
+        Refusal: No frame fits, and too few positions tell whether the tracker moved.
     """
     labels = draft.stations
     if labels is None or mode == "displacements":
@@ -43,19 +43,10 @@ def with_stations(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Draft:
     if len(counts) == 1:
         return _with(draft, (), labels)
     few = [name for name, count in counts.items() if count < FEWEST]
-    left = {
-        way: np.inf if few and "station" in way
-        else _left(_with(draft, way, labels), mode, robot, told)
-        for way in ways
-    }  # fmt: skip
+    left = {way: left_over(_with(draft, way, labels), mode, robot, told) for way in ways}
     best = min(left.values())
     if few and not np.isfinite(best):
-        raise InputError(
-            "these positions are in no one frame, and too few of them tell where the tracker stood "
-            f"for {listed(few)}",
-            where=f"{draft.sheet.path}, column station",
-            remedy=f"From {FEWEST} positions on a station has a frame. Leave those rows out.",
-        )
+        raise _in_no_frame(_with(draft, (), labels), few, mode, robot, told)
     way = next((way for way in ways if left[way] <= AS_WELL * best), ("station",))
     if "station" not in way and min(counts.values()) >= WELL:
         way = ("station", *way)
@@ -68,13 +59,21 @@ def _with(draft: Draft, way: Columns, labels: Columns) -> Draft:
     return replace(draft, other=(*kept, *((header, labels) for header in way)))
 
 
-def _left(draft: Draft, mode: Mode, robot: Robot, told: Told) -> float:
-    """What is left with the robot laid onto the positions [m]; infinite where they are not its."""
+def _in_no_frame(
+    draft: Draft, few: list[str], mode: Mode, robot: Robot, told: Told
+) -> InputError | Refusal:
+    """Positions that one frame of the tracker does not fit, with too few for several frames."""
+    moved = (
+        f"Or the tracker moved: from {FEWEST} positions on a station has a frame, and fewer were "
+        f"read from {listed(few)}."
+    )
     try:
-        found = placed(draft, mode, robot, told).fitted
-    except Refusal:
-        return np.inf
-    return np.inf if found is None else found.rms
+        placed(draft, mode, robot, told)
+    except Refusal as error:
+        return Refusal(error.what, where=error.where, remedy=f"{error.remedy} {moved}")
+    return InputError(
+        "these positions are in no one frame", where=str(draft.sheet.path), remedy=moved
+    )
 
 
 def _told(draft: Draft, way: Columns, names: list[str], left: dict[Columns, float]) -> Draft:

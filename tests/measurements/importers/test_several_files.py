@@ -117,8 +117,9 @@ def test_too_few_positions_from_a_place_are_set_aside_or_refused(tmp_path: Path)
         shifted = moved(part(WHOLE, slice(k, k + 2)))
         shifted = replace(shifted, x=shifted.x + 300.0 * k)
         paths.append(written(tmp_path, f"d{k}.csv", shifted))
-    with pytest.raises(InputError, match="too few of them tell where the tracker stood for b"):
+    with pytest.raises(Refusal) as refused:
         brought(paths)
+    assert "and fewer were read from b, d42, d44, d46 and d48" in refused.value.remedy
 
 
 def test_a_column_of_stations_in_one_file(tmp_path: Path) -> None:
