@@ -15,6 +15,7 @@ from sk120stiff.measurements.placing_distances import place_distances
 from sk120stiff.measurements.placing_slips import (
     OtherConvention,
     markers,
+    moved_at,
     signs_and_turns,
     slips,
     with_sums,
@@ -93,7 +94,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         cloud = replace(cloud, group=own)
         found, kept = cloud.placed(fit_marker=True)
     if found.rms > SUSPECT * spread:
-        _refuse_slips(cloud, found, readings, spread)
+        _refuse_slips(cloud, found, readings, whole, spread)
     if found.rms > FITS * spread:
         if free and not found.marker_fitted:
             raise InputError(
@@ -203,7 +204,9 @@ def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:
     )
 
 
-def _refuse_slips(cloud: Cloud, found: Registration, readings: Measurements, spread: float) -> None:
+def _refuse_slips(
+    cloud: Cloud, found: Registration, readings: Measurements, rows: Index, spread: float
+) -> None:
     """Refuse positions that one slip of the pen explains far better.
 
     So many conventions are tried that one of them always does better on few poses: it has to leave
@@ -218,6 +221,16 @@ def _refuse_slips(cloud: Cloud, found: Registration, readings: Measurements, spr
         _, rms, what, remedy = tried
         raise InputError(
             f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
+        )
+    moved = moved_at(cloud) if readings.absolute and readings.absolute.frame == "unknown" else None
+    if moved is not None and moved[0] < min(BETTER * base, FITS * spread):
+        rms, row = moved
+        before, after = readings.line[rows[row - 1]], readings.line[rows[row]]
+        raise InputError(
+            f"{told}. The tracker looks moved between lines {before} and {after}: with another "
+            f"frame from there on {1e3 * rms:.3g} mm are left",
+            where=where,
+            remedy="Add a column station with one label up to there and another from there on.",
         )
     ways = (signs_and_turns, "zeros or signs"), (with_sums, "zeros, signs or sums")
     for found_by, what in ways:

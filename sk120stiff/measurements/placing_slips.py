@@ -11,9 +11,12 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.cloud import Cloud
+from sk120stiff.measurements.registration import register
 
 MARKERS = 4  # up to which every exchange of markers is tried
 BETTERED = 0.9  # of what is left, that one change of a convention must fall below
+SIDE = 6  # rows at least before and after the tracker moved
+SPLITS = 16  # rows between which that is looked for first
 WHOLE = 2  # joints of whose ways all are kept, since the wrist tells little of them
 KEPT = 32  # of the ways of the joints so far that are followed
 SLACK = 0.02  # rad or m; a joint may go so far beyond what its URDF states
@@ -65,6 +68,35 @@ def slips(cloud: Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, 
         said = f"The columns of {names[i]} and {names[j]} look exchanged"
         yield rms, rms, said, "Put the right names over the columns."
     yield from markers(cloud)
+
+
+def moved_at(cloud: Cloud) -> tuple[float, int] | None:
+    """What is left if the tracker moved once between two rows [m], and the first row after it.
+
+    None where too few rows are on either side, or stations are told.
+    """
+    count = len(cloud.x)
+    if count < 2 * SIDE or cloud.station.any():
+        return None
+    screws = cloud.robot.screws(cloud.a)
+
+    def split(row: int) -> Cloud:
+        return replace(cloud, station=(np.arange(count) >= row).astype(np.intp))
+
+    def left(row: int) -> float:
+        found = register(
+            cloud.x, screws.frame_position, screws.rotation, cloud.point,
+            group=cloud.group, station=split(row).station, until=NEARLY,
+        )  # fmt: skip
+        return np.inf if found is None else float(found.distance.mean())
+
+    rows = np.unique(np.linspace(SIDE, count - SIDE, SPLITS).astype(int)).tolist()
+    step = max(np.diff(rows).max(initial=1), 1)
+    best = min(rows, key=left)
+    while step > 0:
+        near = [r for r in (best - step, best, best + step) if SIDE <= r <= count - SIDE]
+        best, step = min(near, key=left), step // 2
+    return split(best).placed(fit_marker=True, until=NEARLY)[0].rms, best
 
 
 def markers(cloud: Cloud) -> Iterator[tuple[float, float, str, str]]:
