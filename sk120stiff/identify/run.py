@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.errors import InputError, listed
+from sk120stiff.identify.absolute.bumped import refuse_pushed
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import known_calibration
@@ -69,7 +72,9 @@ def fit(
             measurements, noise=noise is not None, method=method != "trf", robust=robust
         )
         readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
-        found = with_model_form(calibrate(model, readings, freedom=fix, waves=waves))
+        calibrated = calibrate(model, readings, freedom=fix, waves=waves)
+        refuse_pushed(calibrated, readings, calibrated.jacobian, np.zeros(len(calibrated.x)))
+        found = with_model_form(calibrated)
         return replace(found, notes=(*found.notes, *pounds(found)))
     if not waves:
         raise InputError(

@@ -231,6 +231,17 @@ class Linear:
         return float(gap @ gap)
 
 
+def everything(linear: Linear) -> tuple[Array, Array]:
+    """Columns (M, P + K) of base and candidates, and inverse variances (P + K,) of their factors.
+
+    In units of what all of them leave together.
+    """
+    free = linear.base.shape[1]
+    noise = linear.noise(tuple(range(len(linear.candidates))))
+    prior = np.concatenate([np.zeros(free), np.full(linear.columns.shape[1], noise)])
+    return np.column_stack([linear.base, linear.columns]), prior
+
+
 @dataclass(frozen=True, eq=False)
 class Solved:
     """A linear model fitted: columns that took part, their factors, what is left, prior volume."""

@@ -35,11 +35,12 @@ from sk120stiff.explain.absolute.choose import (
 )
 from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at
-from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.absolute.linear import Linear, everything
 from sk120stiff.explain.absolute.remainder import where_it_lives
 from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options
 from sk120stiff.identify import refuse_for_positions, refuse_plan
+from sk120stiff.identify.absolute.bumped import refuse_pushed
 from sk120stiff.identify.absolute.calibrate import (
     Calibration,
     calibrate,
@@ -106,6 +107,7 @@ def explain_positions(
     tell("searching the catalogue", 0.2)
     seen = base
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
+    refuse_pushed(base, readings, *everything(linear))
     tell("fitting exactly", 0.5)
     final = _exactly(base, seen, linear, found, readings, catalogue)
     for _ in range(ROUNDS):

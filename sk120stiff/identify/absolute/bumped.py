@@ -1,0 +1,201 @@
+"""A tracker that was pushed, or a marker that slipped, in the middle of a campaign.
+
+From every row on another place of either is tried beside all that the model has, by sums over the
+rows behind it (a change point of a linear model, e.g. Andrews, Econometrica 61, 1993, p. 821). It
+counts where the square of what is left halves: no smooth error of a model does that at one row,
+since poses before and behind it are alike. What creeps from row to row instead is no push.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg
+
+from sk120stiff.arrays import Array, Index
+from sk120stiff.effects import Viewpoint
+from sk120stiff.effects.geometry import ToolOffset
+from sk120stiff.errors import InputError, listed
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.fit import Fit
+from sk120stiff.measurements import Measurements
+
+HALF = 0.5  # of the square of what is left, below which a push must bring it
+BEYOND_DOUBT = 10.0  # logarithm of the odds for it, after what so many rows and numbers cost
+SIDE = 6  # rows at least before and after it
+SPLITS = 400  # rows between which it is looked for first
+MOST = 4  # pushes of one campaign
+ROUNDING = 1e-10  # added to the squares of columns of length one, which may hold each other
+
+
+@dataclass(frozen=True)
+class _Cause:
+    """What was moved, the column that tells when, and what each of its labels has."""
+
+    what: str
+    column: str
+    own: str
+
+
+PUSHED = _Cause("the tracker", "station", "a frame of its own")
+SLIPPED = _Cause("the marker", "series", "a place of its own on the tool")
+
+
+def refuse_pushed(found: Fit, readings: Measurements, others: Array, prior: Array) -> None:
+    """Stop where the tracker was pushed, or its marker slipped, and the file tells nothing of it.
+
+    Args:
+        found: A fit whose tracker has a frame.
+        readings: Where they come from.
+        others: (M, P) whitened columns of all that may be at work.
+        prior: (P,) inverse variances of their factors, in units of what is left.
+
+    Raises:
+        InputError: It was, between lines that the message tells.
+    """
+    problem = found.problem
+    if not isinstance(problem, PoseProblem) or "distance" in problem.channels.present:
+        return
+    when = _when(problem.measurements)
+    frames = {
+        PUSHED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, Viewpoint)],
+        SLIPPED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)],
+    }
+    told = {PUSHED: problem.said.stations, SLIPPED: problem.said.series}
+    tried = {
+        cause: _Steps(
+            others, prior, found.residual, found.jacobian[:, columns], when[problem.rows]
+        ).found()
+        for cause, columns in frames.items()
+        if columns and told[cause] is None
+    }
+    cause = min(tried, key=lambda each: tried[each][1], default=PUSHED)
+    cuts, share = tried.get(cause, ([], 1.0))
+    if not cuts:
+        return
+    order, line = np.argsort(when), problem.measurements.line
+    between = [f"{line[order[k - 1]]} and {line[order[k]]}" for k in cuts]
+    raise InputError(
+        f"{cause.what} looks moved between lines {listed(between)}: with another place from there "
+        f"on the gap falls to {100.0 * share:.2g} % of what all else leaves",
+        where=str(readings.path or "measurements"),
+        remedy=f"Add a column {cause.column} with a label for each time between, as a and b: each "
+        f"has {cause.own} then, and the arm is one. Or one label for all, if nothing was moved.",
+    )
+
+
+def _when(readings: Measurements) -> Index:
+    """(N,) place of each row in the order in which they were read, which is that of the file."""
+    clock = readings.order if readings.order is not None else readings.time
+    rows = np.arange(readings.n_readings) if clock is None else clock
+    return np.asarray(np.argsort(np.argsort(rows, kind="stable"), kind="stable"), dtype=np.intp)
+
+
+@dataclass(frozen=True, eq=False)
+class _Steps:
+    """Columns (M, P), inverse variances (P,), gap (M,), columns of a place (M, f), times (M,)."""
+
+    columns: Array
+    prior: Array
+    gap: Array
+    frame: Array
+    when: Index
+
+    def found(self) -> tuple[list[int], float]:
+        """Times at which a place changed, in order, and the share of the rms gap that they leave.
+
+        None unless half is taken off, of what is left and of what evenly creeping would leave too.
+        """
+        cuts = list[int]()
+        while len(cuts) < MOST and (cut := self._next(cuts)) is not None:
+            cuts = sorted([*cuts, cut])
+        while cuts:  # the first ones may stand between others
+            less = {cut: [c for c in cuts if c != cut] for cut in cuts}
+            weakest = min(cuts, key=lambda cut: self._left(less[cut]))
+            if self._odds(self._left(less[weakest]), self._left(cuts)) > BEYOND_DOUBT:
+                break
+            cuts = less[weakest]
+        if not cuts:
+            return [], 1.0
+        cuts = [self._nearest(cuts, k) for k in range(len(cuts))]
+        before, after = self._left([]), self._left(cuts)
+        creeping = self._left([], creeping=True)
+        if after > HALF * min(before, creeping):
+            return [], 1.0
+        return cuts, float(np.sqrt(after / before))
+
+    def _odds(self, before: float, after: float) -> float:
+        """Logarithm of the odds for one time more, which leaves a square `after` of `before`."""
+        numbers, times = len(self.gap), int(self.when.max()) + 1
+        cost = 0.5 * self.frame.shape[1] * np.log(numbers) + np.log(times)
+        return float(0.5 * numbers * np.log(before / after) - cost)
+
+    def _beside(self, cuts: list[int], *, creeping: bool = False) -> _Fitted:
+        """All that may be at work and these changes, fitted."""
+        known = [self.frame * (self.when >= cut)[:, None] for cut in cuts]
+        if creeping:
+            known.append(self.frame * (self.when / self.when.max())[:, None])
+        A = np.concatenate([self.columns, *known], axis=1)
+        prior = np.concatenate([self.prior, np.zeros(A.shape[1] - len(self.prior))])
+        size = np.linalg.norm(A, axis=0)
+        A, prior = A[:, size > 0.0] / size[size > 0.0], prior[size > 0.0] / size[size > 0.0] ** 2
+        H = linalg.cho_factor(A.T @ A + np.diag(prior + ROUNDING))
+        left = self.gap - A @ linalg.cho_solve(H, A.T @ self.gap)
+        return _Fitted(A, H, left, max(float(self.gap @ left), 1e-300))
+
+    def _left(self, cuts: list[int], *, creeping: bool = False) -> float:
+        return self._beside(cuts, creeping=creeping).square
+
+    def _nearest(self, cuts: list[int], k: int) -> int:
+        """The best time near one of them, with the others as they are."""
+        others = [cut for cut in cuts if cut != cuts[k]]
+        near = range(max(cuts[k] - SIDE, 1), min(cuts[k] + SIDE, int(self.when.max())) + 1)
+        return min(near, key=lambda cut: self._left(sorted([*others, cut])))
+
+    def _next(self, cuts: list[int]) -> int | None:
+        """The change that takes off most beside those that are known, if it is beyond doubt."""
+        end, known = int(self.when.max()) + 1, self._beside(cuts)
+        best: tuple[float, int] = 0.0, -1
+        for begin, stop in zip([0, *cuts], [*cuts, end], strict=True):
+            if stop - begin < 2 * SIDE:
+                continue
+            ways = np.unique(np.linspace(begin + SIDE, stop - SIDE, SPLITS).astype(int))
+            near = ways[int(np.argmax(self._gains(known, ways, stop)))]
+            wide = int(np.diff(ways).max(initial=1))
+            ways = np.arange(max(near - wide, begin + SIDE), min(near + wide, stop - SIDE) + 1)
+            gains = self._gains(known, ways, stop)
+            best = max(best, (float(gains.max()), int(ways[int(np.argmax(gains))])))
+        after = max(known.square - best[0], 1e-12 * known.square)
+        return best[1] if self._odds(known.square, after) > BEYOND_DOUBT else None
+
+    def _gains(self, known: _Fitted, ways: Index, stop: int) -> Array:
+        """(K,) fall of the square by another place from each of these times on, until `stop`."""
+        A, F, f = known.columns, self.frame, self.frame.shape[1]
+        edges, out = [*ways.tolist(), stop], np.zeros(len(ways))
+        b, G, C = np.zeros(f), np.zeros((f, f)), np.zeros((A.shape[1], f))
+        for k in range(len(ways) - 1, -1, -1):
+            own = (self.when >= edges[k]) & (self.when < edges[k + 1])
+            b, G = b + F[own].T @ known.left[own], G + F[own].T @ F[own]
+            C = C + A[own].T @ F[own]
+            out[k] = _fall(b, G - C.T @ linalg.cho_solve(known.factor, C))
+        return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """Columns (M, Q), the factor of their products, what is left (M,), and its penalised square."""
+
+    columns: Array
+    factor: tuple[Array, bool]
+    left: Array
+    square: float
+
+
+def _fall(b: Array, S: Array) -> float:
+    """bᵀ S⁻¹ b along what S shows."""
+    size = np.sqrt(np.maximum(np.diag(S), 1e-300))
+    values, vectors = np.linalg.eigh(S / np.outer(size, size))
+    told = values > 1e-8
+    along = vectors[:, told].T @ (b / size)
+    return float(along**2 @ (1.0 / values[told]))
