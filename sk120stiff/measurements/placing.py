@@ -16,6 +16,7 @@ from sk120stiff.measurements.placing_slips import (
     OtherConvention,
     markers,
     moved_at,
+    shifted_at,
     signs_and_turns,
     slips,
     with_sums,
@@ -30,6 +31,7 @@ BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
 FEWER = 50  # rows that sums of joints are looked for in: there are many
 TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
 MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
+SHIFTS = (1, -1, 2, -2)  # rows by which positions may be off their joints
 COMPUTED = 2e-6  # m; no arm is built, and no tracker reads, as well as that
 
 
@@ -222,21 +224,13 @@ def _refuse_slips(
         raise InputError(
             f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
         )
-    moved = moved_at(cloud) if readings.absolute and readings.absolute.frame == "unknown" else None
-    if moved is not None and moved[0] < min(BETTER * base, FITS * spread):
-        rms, row = moved
-        before, after = readings.line[rows[row - 1]], readings.line[rows[row]]
-        raise InputError(
-            f"{told}. The tracker looks moved between lines {before} and {after}: with another "
-            f"frame from there on {1e3 * rms:.3g} mm are left",
-            where=where,
-            remedy="Add a column station with one label up to there and another from there on.",
-        )
+    least = min(BETTER * base, FITS * spread)
+    _refuse_moved(cloud, told, least, readings, rows)
     ways = (signs_and_turns, "zeros or signs"), (with_sums, "zeros, signs or sums")
     for found_by, what in ways:
         way = found_by(cloud.some(FEWER))
         mapping = way.changed(readings.joint_names)
-        if mapping and way.rms < min(BETTER * base, FITS * spread):
+        if mapping and way.rms < least:
             said = ", ".join(f"{name}: {expression}" for name, expression in mapping.items())
             raise OtherConvention(
                 f"{told}. With other {what} of joints {1e3 * way.rms:.3g} mm are left",
@@ -246,6 +240,38 @@ def _refuse_slips(
                 "in its place on the right.",
                 convention=way,
             )
+
+
+def _refuse_moved(
+    cloud: Cloud, told: str, least: float, readings: Measurements, rows: Index
+) -> None:
+    """Refuse positions of a tracker that moved once, or that stand in other rows from one on."""
+    where, line = str(readings.path or "measurements"), readings.line[rows]
+    moved = None
+    if readings.absolute is not None and readings.absolute.frame == "unknown":
+        moved = moved_at(cloud)
+    if moved is not None and moved[0] < least:
+        rms, row = moved
+        raise InputError(
+            f"{told}. The tracker looks moved between lines {line[row - 1]} and {line[row]}: with "
+            f"another frame from there on {1e3 * rms:.3g} mm are left",
+            where=where,
+            remedy="Add a column station with one label up to there and another from there on.",
+        )
+    for by in SHIFTS:
+        shifted = shifted_at(cloud, by)
+        if shifted is None or shifted[0] >= least:
+            continue
+        rms, row = shifted
+        last = len(line) - 1
+        raise InputError(
+            f"{told}. From line {line[row]} on positions and joints look {abs(by)} row"
+            f"{'s' * (abs(by) > 1)} apart: with the position of line {line[max(row, -by)]} at the "
+            f"joints of line {line[min(max(row, -by) + by, last)]}, and so on, {1e3 * rms:.3g} mm "
+            "are left",
+            where=where,
+            remedy="Put the rows right: one of them lacks its partner.",
+        )
 
 
 def _refuse_exchange(cloud: Cloud, found: Registration, readings: Measurements) -> None:

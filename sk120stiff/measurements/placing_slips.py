@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations
 
@@ -75,28 +75,56 @@ def moved_at(cloud: Cloud) -> tuple[float, int] | None:
 
     None where too few rows are on either side, or stations are told.
     """
+    if len(cloud.x) < 2 * SIDE or cloud.station.any():
+        return None
+
+    def split(row: int) -> Cloud:
+        return replace(cloud, station=(np.arange(len(cloud.x)) >= row).astype(np.intp))
+
+    best = _best_row(len(cloud.x), lambda row: _mean_left(split(row)))
+    return split(best).placed(fit_marker=True, until=NEARLY)[0].rms, best
+
+
+def shifted_at(cloud: Cloud, by: int) -> tuple[float, int] | None:
+    """What is left if positions from a row on belong to the joints `by` rows on [m], and that row.
+
+    None where there are too few rows.
+    """
     count = len(cloud.x)
     if count < 2 * SIDE or cloud.station.any():
         return None
-    screws = cloud.robot.screws(cloud.a)
 
-    def split(row: int) -> Cloud:
-        return replace(cloud, station=(np.arange(count) >= row).astype(np.intp))
-
-    def left(row: int) -> float:
-        found = register(
-            cloud.x, screws.frame_position, screws.rotation, cloud.point,
-            group=cloud.group, station=split(row).station, until=NEARLY,
+    def paired(row: int) -> Cloud:
+        rows = np.arange(count)
+        of = rows + by * (rows >= row)
+        kept = (of >= 0) & (of < count) & ((rows < row) | (of >= row) | (by > 0))
+        return replace(
+            cloud, a=cloud.a[of[kept]], x=cloud.x[kept], point=cloud.point[kept],
+            marker=cloud.marker[kept], group=cloud.group[kept], station=cloud.station[kept],
         )  # fmt: skip
-        return np.inf if found is None else float(found.distance.mean())
 
-    rows = np.unique(np.linspace(SIDE, count - SIDE, SPLITS).astype(int)).tolist()
-    step = max(np.diff(rows).max(initial=1), 1)
-    best = min(rows, key=left)
+    best = _best_row(count, lambda row: _mean_left(paired(row)), first=0)
+    return paired(best).placed(fit_marker=True, until=NEARLY)[0].rms, best
+
+
+def _best_row(count: int, left: Callable[[int], float], *, first: int = SIDE) -> int:
+    """The row at which least is left, from coarse to fine."""
+    rows: list[int] = np.unique(np.linspace(first, count - SIDE, SPLITS).astype(int)).tolist()
+    best, step = min(rows, key=left), -(-count // SPLITS)
     while step > 0:
-        near = [r for r in (best - step, best, best + step) if SIDE <= r <= count - SIDE]
+        near = [r for r in (best - step, best, best + step) if first <= r <= count - SIDE]
         best, step = min(near, key=left), step // 2
-    return split(best).placed(fit_marker=True, until=NEARLY)[0].rms, best
+    return best
+
+
+def _mean_left(cloud: Cloud) -> float:
+    """Mean distance that is left over all rows, wild ones too [m]."""
+    screws = cloud.robot.screws(cloud.a)
+    found = register(
+        cloud.x, screws.frame_position, screws.rotation, cloud.point,
+        group=cloud.group, station=cloud.station, until=NEARLY,
+    )  # fmt: skip
+    return np.inf if found is None else float(found.distance.mean())
 
 
 def markers(cloud: Cloud) -> Iterator[tuple[float, float, str, str]]:

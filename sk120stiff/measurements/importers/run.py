@@ -296,7 +296,9 @@ def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
                 f"{points.total} points, but {other.total} rows of {what}, and their names "
                 "do not agree",
                 where=f"{points.path} and {other.path}",
-                remedy="Give both files the same names, or delete the rows that have no partner.",
+                remedy="Give both files the same names, or delete the rows that have no partner. "
+                "Which these are the robot tells: delete as many at the end, and the message says "
+                "from where on the rows are apart.",
             )
         place_of = {rank: k for k, rank in enumerate(other.rank)}
         rows = [k for k, rank in enumerate(points.rank) if rank in place_of]
