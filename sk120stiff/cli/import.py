@@ -42,6 +42,13 @@ class Load(StrEnum):
     kg = "kg"
 
 
+class Axes(StrEnum):
+    """Axes of forces."""
+
+    base = "base"
+    tool = "tool"
+
+
 class Dates(StrEnum):
     """What comes first in dates like 10/09/2026."""
 
@@ -59,6 +66,7 @@ def command(
     length: Length | None = None,
     angle: Angle | None = None,
     load: Load | None = None,
+    forces: Axes | None = None,
     wrench: str | None = None,
     coverage: Annotated[float | None, typer.Option(min=0.1)] = None,
     dates: Dates | None = None,
@@ -96,6 +104,7 @@ def command(
         length: Unit of positions, where the file does not say it.
         angle: Unit of joint angles, where the file does not say it.
         load: Unit of fx,fy,fz or payload (kg: payload alone).
+        forces: Axes of fx,fy,fz and mx,my,mz. [default: base]
         wrench (VALUES): What the column load counts, on the robot in base axes: '0,0,-490 N'.
         coverage (K): Stated uncertainties are K times standard ones. [default: 2 for U95, else 1]
         dates: Day (dmy) or month (mdy) first in dates like 10/09/2026, where the file leaves it
@@ -138,6 +147,7 @@ def command(
             else parse_values(point, "length", where="--point", like="0,0,150 mm"),
             joints=_names(joints),
             coverage=coverage,
+            forces=None if forces is None else forces.value,
             dates=None if dates is None else dates.value,
         ),
         joints_file=joints_file,

@@ -187,3 +187,44 @@ def test_joints_that_the_robot_does_not_have_are_no_remark(run, tmp_path: Path) 
         text = [f"{lines[0]},{harmless}", *(f"{line},0.1" for line in lines[1:])]
         source.write_text("\n".join(text) + "\n", encoding="utf-8")
         assert run("import", str(source), *TOLD, "--out", str(out)).code == 0, harmless
+
+
+def test_forces_in_axes_of_the_tool(run, tmp_path: Path) -> None:
+    """The same pushes, told in axes of the flange, give the same springs."""
+    robot = load_robot("motoman_sk120")
+    model = base_model(robot)
+    assert model is not None
+    springs, head = np.array([1.4098e6, 4.0076e5, 9.3528e5]), "x,y,z,q1,q2,q3,q4,q5,q6,fx,fy,fz"
+    lines = [head]
+    for a in np.array(POSES):
+        T, J = robot.placement(a), robot.jacobian(a)[:3, :3]
+        for push in (np.zeros(3), np.array([0.0, 300.0, -490.0])):
+            x = T[:3, 3] + J @ ((J.T @ push) / springs)
+            cells = [*x, *a, *(T[:3, :3].T @ push)]
+            lines.append(",".join(repr(float(v)) for v in cells))
+    path = tmp_path / "tool.csv"
+    path.write_text("\n".join(lines) + "\n")
+    out = tmp_path / "own.csv"
+    told = (*TOLD, "--load", "N", "--out", str(out))
+    outcome = run("import", str(path), *told, "--forces", "tool", "--json")
+    assert outcome.code == 0, outcome.stderr
+    assert "in axes of the tool frame" in " ".join(outcome.document["assumed"])
+    values = [p["value"] for p in run("identify", str(out), "--json").document["parameters"]]
+    assert values == pytest.approx(springs.tolist(), rel=2e-3)
+    refused = run("import", marks(tmp_path), *TOLD, "--wrench", "0,0,-490 N", "--forces", "tool",
+                  "--out", str(out))  # fmt: skip
+    assert refused.code == 2 and "no column fx, fy, fz holds any" in refused.stderr
+    assert run("import", str(path), *told, "--forces", "flange").code == 2
+
+
+def test_two_files_are_one_campaign(run, tmp_path: Path) -> None:
+    whole = Path(marks(tmp_path, payload=False)).read_text().splitlines()
+    parts = [tmp_path / "monday.csv", tmp_path / "friday.csv"]
+    parts[0].write_text("\n".join(whole[:3]) + "\n")
+    parts[1].write_text("\n".join([whole[0], *whole[3:]]) + "\n")
+    out = tmp_path / "own.csv"
+    outcome = run("import", *map(str, parts), *TOLD, "--out", str(out), "--json")
+    assert outcome.code == 0, outcome.stderr
+    assert outcome.document["rows"] == 3 and outcome.document["registration"]["stations"] == []
+    assert any("2 files are one campaign" in said for said in outcome.document["assumed"])
+    assert read_measurements(out).n_readings == 3

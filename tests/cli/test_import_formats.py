@@ -100,7 +100,7 @@ def test_standard_errors_of_the_frame_are_those_of_many_draws(run, tmp_path: Pat
         ("mirrored", "mirrored"),
         ("swapped", "mirrored: one axis has the other sign, or two axes are swapped"),
         ("another robot", "These are not this robot's positions"),
-        ("rows", "rows of joints and positions belong together"),
+        ("rows", "positions and joints look 1 row apart"),
     ],
 )
 def test_what_cannot_be_is_refused(run, tmp_path: Path, harm: str, words: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -19,7 +20,8 @@ MOMENTS = ("mx", "my", "mz")
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Wrench (N, 6) [N, N·m], payload (N,) [kg] if it was one, columns it is from, what was taken.
+    """Wrench (N, 6) [N, N·m], payload (N,) [kg] if it was one, columns it is from, its axes, and
+    what was taken for granted.
 
     The payload is in the wrench too: its weight along -z of the base.
     """
@@ -27,6 +29,7 @@ class Loads:
     wrench: Array
     payload: Array | None = None
     taken: tuple[Column, ...] = ()
+    frame: Literal["base", "tool"] = "base"
     said: str = "No column holds a load: all rows are taken to be without."
 
 
@@ -58,6 +61,12 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
             where=where,
             remedy="Add a column load: 1 in rows with the load, 0 in rows without.",
         )
+    if told.forces is not None and there != ["force columns"]:
+        raise InputError(
+            "--forces says in which axes forces are, and no column fx, fy, fz holds any",
+            where=where,
+            remedy="Leave it out: a payload and --wrench are in axes of the base frame.",
+        )
     W = np.zeros((len(sheet.lines), 6))
     counted, hung = sheet.get("load"), sheet.get("payload")
     if counted is not None:
@@ -69,7 +78,7 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
             )
         W += numbers(sheet, counted)[:, None] * told.wrench
         said = "The column load counts how many times --wrench acts."
-        return Loads(W, None, (counted,), said)
+        return Loads(W, None, (counted,), said=said)
     if hung is not None:
         return _hung(sheet, hung, told, W)
     return _forces(sheet, told, W) if there else Loads(W)
@@ -89,7 +98,7 @@ def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:
         )
     W[:, 2] = -STANDARD_GRAVITY * mass
     said = "The payload is taken to pull along -z of the base frame."
-    return Loads(W, mass, (column,), said)
+    return Loads(W, mass, (column,), said=said)
 
 
 def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
@@ -105,11 +114,13 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
     for k, column in enumerate(taken):
         kind = "force" if k < 3 else "moment"
         W[:, k] = quantity(sheet, column, kind, unit_of(sheet, column, kind, told))
-    said = (
-        "Forces are taken to act on the robot, in axes of the base frame; of those of a sensor on "
-        "the tool write force: {frame: tool} into the YAML file."
-    )
-    return Loads(W, None, tuple(taken), said)
+    said = {
+        "base": "Forces are taken to act on the robot, in axes of the base frame; of those of a "
+        "sensor on the tool say --forces tool.",
+        "tool": "Forces are taken to act on the robot, in axes of the tool frame.",
+    }
+    frame = told.forces or "base"
+    return Loads(W, None, tuple(taken), frame, said[frame])
 
 
 def lightest(pose: tuple[str, ...], W: Array, use: Mask) -> tuple[Array, Mask, int]:

@@ -75,7 +75,7 @@ def settings_for(
     else:
         settings["point"] = _point_entry(xyz)
     if mode != "positions" or (draft.loads.payload is None and np.any(draft.loads.wrench)):
-        settings["force"] = {"frame": "base"}
+        settings["force"] = {"frame": draft.loads.frame}
     if mode == "positions":
         settings["position"] = {"frame": "base" if registered else "unknown"}
         if any(header in QUATERNION for header, _ in draft.other):

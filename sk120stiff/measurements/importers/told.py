@@ -41,6 +41,7 @@ class Told:
         point: (3,) where the marker sits in the tool frame, m.
         joints: A column, or a linear expression of columns, for each actuated joint.
         coverage: What stated uncertainties are multiples of; as their header says by default.
+        forces: Axes of ``fx fy fz`` (``mx my mz``): ``"base"`` or ``"tool"``; base unless told.
         dates: Whether the day or the month comes first in dates like 10/09/2026.
     """
 
@@ -52,6 +53,7 @@ class Told:
     joints: tuple[str, ...] | None = None
     coverage: float | None = None
     dates: DateOrder | None = None
+    forces: Literal["base", "tool"] | None = None
 
     def of(self, kind: str) -> str | None:
         """The unit that was told for a kind."""

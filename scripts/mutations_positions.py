@@ -1,0 +1,68 @@
+"""Faults in what is made of positions: placing, calibration, names."""
+
+# ruff: noqa: E501
+
+from __future__ import annotations
+
+from scripts.mutations_fault import Fault, of, tests
+
+POSITIONS = tests("absolute", "linear", "choose", "names")
+
+OF_POSITIONS: tuple[Fault, ...] = (
+    *of(
+        "explain/absolute/choose.py", *POSITIONS,
+        confirmed_by_its_share_alone=("gained.share > SHARE and gained.errors > SURE and", "gained.share > SHARE and"),
+        looking_at_many_for_nothing=("CLEAR + float(np.log(max(len(linear.candidates), 1)))", "CLEAR"),
+        rivals_of_nothing_forgotten=("nothing + np.log(len(others) + 1.0)])", "nothing])"),
+        gain_at_poses_that_were_fitted=("linear.gap(each, linear.noise(each), held_out=True)", "linear.gap(each, linear.noise(each), held_out=False)"),
+    ),
+    *of(
+        "explain/absolute/linear.py", *POSITIONS,
+        evidence_without_its_volume=("return -0.5 * (found.square + found.volume)", "return -0.5 * found.square"),
+        poses_left_out_in_the_fit=("G = self.whole if without is None else self.whole - self.sums[without]", "G = self.whole"),
+        parts_softer_than_rigid=("wrong = (pick >= P) & (x < 0.0)", "wrong = (pick >= P) & (x < -1e99)"),
+        noise_smaller_than_stated=("return max(left, together) if self.stated else left", "return left"),
+    ),
+    *of(
+        "identify/absolute/gauss_newton.py", *POSITIONS,
+        prior_centred_elsewhere=("(centre - x) / span])", "(x - centre) / span])"),
+    ),
+    *of(
+        "measurements/registration.py", *tests("measurements", "registration"),
+        mirrored_frames=("np.sign(np.linalg.det(u @ vt)) or 1.0", "1.0"),
+        residual_not_divided_by_its_freedom=("spare = 3 * count - frames - (marker.size if fit_marker else 0)", "spare = 3 * count"),
+        covariance_of_a_frame_without_its_scale=("(vt.T / values)[:frames] / size[:frames, None]", "(vt.T / values)[:frames]"),
+        stations_laid_as_one=("rows = [station == k for k", "rows = [station >= 0 for k"),
+    ),
+    *of(
+        "measurements/placing_slips.py", *tests("absolute", "rows_apart"),
+        a_tracker_moved_never=("(np.arange(len(cloud.x)) >= row)", "(np.arange(len(cloud.x)) >= 10**9)"),
+        rows_moved_the_other_way=("of = rows + by * (rows >= row)", "of = rows - by * (rows >= row)"),
+        a_row_found_roughly=("best, step = min(near, key=left), step // 2", "step = 0"),
+    ),
+    *of(
+        "effects/tracker_frame.py", *tests("absolute", "stations", "sensitivities"),
+        all_seen_from_the_first_station=("return rotation_of(frames[:, 3:])[stood], frames[stood, :3]", "return rotation_of(frames[:, 3:])[0 * stood], frames[0 * stood, :3]"),
+        a_station_that_moves_the_others=("J, own = left_jacobian(frame[3:]), stood == k", "J, own = left_jacobian(frame[3:]), stood >= 0"),
+        unknown_stations_taken_for_the_first=("if label not in self.stations]", "if False]"),
+    ),
+    *of(
+        "identify/absolute/placed_anew.py", *tests("absolute", "stations"),
+        an_arm_that_changed_placed_away=("goal = np.inf if strange else BETTER * before", "goal = np.inf"),
+        a_marker_moved_for_nothing=("marker, before, after), BETTER * after", "marker, before, after), np.inf"),
+        wild_rows_pull_the_tracker=("near = far <= max(FAR * float(np.median(far)), 1e-9)", "near = far <= 1e9"),
+    ),
+    *of(
+        "identify/absolute/bumped.py", *tests("absolute", "bumped"),
+        creeping_taken_for_a_push=("if after > HALF * min(before, creeping):", "if after > HALF * before:"),
+        a_push_for_a_little=("HALF = 0.5", "HALF = 0.99"),
+        a_push_where_labels_say_there_is_none=("if columns and told[cause] is None", "if columns"),
+        pushes_in_the_order_of_the_file=("rows = np.arange(readings.n_readings) if clock is None else clock", "rows = np.arange(readings.n_readings)"),
+        a_place_from_the_first_row_on=("self.frame * (self.when >= cut)[:, None] for cut in cuts", "self.frame * (self.when >= 0)[:, None] for cut in cuts"),
+    ),
+    *of(
+        "measurements/importers/stations.py", *tests("measurements/importers", "several_files"),
+        frames_for_few_positions=("if left[way] <= AS_WELL * best), (", "if left[way] <= 0.0), ("),
+        a_marker_always_where_it_was=("ways += [(\"series\",), (\"station\", \"series\")]", "ways += []"),
+    ),
+)  # fmt: skip
