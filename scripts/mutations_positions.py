@@ -49,7 +49,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "identify/absolute/placed_anew.py", *tests("absolute", "stations"),
         an_arm_that_changed_placed_away=("goal = np.inf if strange else BETTER * before", "goal = np.inf"),
-        a_marker_moved_for_nothing=("marker, before, after), BETTER * after", "marker, before, after), np.inf"),
+        a_marker_moved_for_nothing=("            goal = BETTER * after", "            goal = np.inf"),
         wild_rows_pull_the_tracker=("near = far <= max(FAR * float(np.median(far)), 1e-9)", "near = far <= 1e9"),
     ),
     *of(

@@ -94,10 +94,8 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
             continue
         moved, after = _refined(moved, view.id, rows, x, marker=marker)
         if after < goal:
-            best, goal = (
-                PlacedAnew(_with_doubt(moved, model), marker, before, after),
-                BETTER * after,
-            )
+            goal = BETTER * after
+            best = PlacedAnew(_with_doubt(moved, model), marker, before, after)
     return best
 
 
