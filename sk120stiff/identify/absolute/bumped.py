@@ -9,6 +9,7 @@ since poses before and behind it are alike. What creeps from row to row instead 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import linalg
@@ -26,6 +27,7 @@ BEYOND_DOUBT = 10.0  # logarithm of the odds for it, after what so many rows and
 SIDE = 6  # rows at least before and after it
 SPLITS = 400  # rows between which it is looked for first
 MOST = 4  # pushes of one campaign
+ENOUGH = 4  # times as many numbers to spare as a push would take up: fewer are fitted by anything
 ROUNDING = 1e-10  # added to the squares of columns of length one, which may hold each other
 
 
@@ -108,7 +110,8 @@ class _Steps:
         None unless half is taken off, of what is left and of what evenly creeping would leave too.
         """
         cuts = list[int]()
-        while len(cuts) < MOST and (cut := self._next(cuts)) is not None:
+        most = min(MOST, int(self.freedom / (ENOUGH * self.frame.shape[1])))
+        while len(cuts) < most and (cut := self._next(cuts)) is not None:
             cuts = sorted([*cuts, cut])
         while cuts:  # the first ones may stand between others
             less = {cut: [c for c in cuts if c != cut] for cut in cuts}
@@ -127,9 +130,16 @@ class _Steps:
 
     def _odds(self, before: float, after: float) -> float:
         """Logarithm of the odds for one time more, which leaves a square `after` of `before`."""
-        numbers, times = len(self.gap), int(self.when.max()) + 1
-        cost = 0.5 * self.frame.shape[1] * np.log(numbers) + np.log(times)
-        return float(0.5 * numbers * np.log(before / after) - cost)
+        cost = 0.5 * self.frame.shape[1] * np.log(len(self.gap)) + np.log(int(self.when.max()) + 1)
+        return float(0.5 * self.freedom * np.log(before / after) - cost)
+
+    @cached_property
+    def freedom(self) -> float:
+        """Numbers beyond what all that may be at work takes up."""
+        alone = self._beside([])
+        inverse = linalg.cho_solve(alone.factor, np.eye(alone.columns.shape[1]))
+        taken = float(np.trace(inverse @ (alone.columns.T @ alone.columns)))
+        return len(self.gap) - taken
 
     def _beside(self, cuts: list[int], *, creeping: bool = False) -> _Fitted:
         """All that may be at work and these changes, fitted."""

@@ -24,7 +24,8 @@ BETTER = 0.2  # of what is left, below which it must fall: no error of a model m
 STEPS = 3  # of Gauss and Newton, because an instrument may misread what it sees from there
 FAR = 8.0  # times the median distance: rows that do not tell where the tracker stands
 ROUNDS = 5  # of leaving such rows out
-FEWEST = 4  # whole positions: three would fit in any case, nearly
+FEWEST = 5  # whole positions of a station: three would fit in any case, nearly
+OF_MARKER = 8  # the same where the marker's place is sought as well
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,8 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
     strange = not set(labels) <= known
     if strange:
         stands_for_all(labels, stood[whole], readings)
-    if np.bincount(stood[whole], minlength=len(labels)).min() < FEWEST:
+    fewest = np.bincount(stood[whole], minlength=len(labels)).min()
+    if fewest < FEWEST and not strange:
         return None
     rows = load_cases_of(model.robot, readings).rows(np.flatnonzero(whole))
     x = said.channels.position[whole]
@@ -87,7 +89,7 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
         before = float(np.median(np.linalg.norm(x - read_poses(model, rows).position, axis=1)))
     bare, best = model.without(view.id), None
     goal = np.inf if strange else BETTER * before
-    for marker in (False, True):
+    for marker in (False, True)[: 1 + (fewest >= OF_MARKER)]:
         found = _trimmed(bare, rows, x, stood[whole], fit_marker=marker)
         moved = None if found is None else _moved(model, view, found, readings)
         if moved is None:

@@ -38,7 +38,8 @@ def with_stations(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Draft:
     counts = Counter(label for label, used in zip(labels, draft.use, strict=True) if used)
     files = any(column.header == FILE for column in draft.sheet.columns)
     ways: list[Columns] = [(), ("station",)]
-    if files and len(set(draft.marker_of)) == 1 and told.point is None:
+    one_marker = len(set(draft.mounts)) == 1 and told.point is None
+    if files and one_marker:
         ways += [("series",), ("station", "series")]
     if len(counts) == 1:
         return _with(draft, (), labels)
