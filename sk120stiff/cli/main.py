@@ -145,6 +145,7 @@ def _unheard(error: OSError) -> int:
 def _misused(error: Any, *, as_json: bool) -> int:
     """Say what is wrong with the command line, on stderr and where wanted as JSON."""
     error.message = error.message.replace("Value error, ", "")  # the parser's own words
+    error.message += _elsewhere(error)
     error.show()
     if as_json:
         from sk120stiff.cli.frame import Failure
@@ -154,6 +155,21 @@ def _misused(error: Any, *, as_json: bool) -> int:
         said = (error.format_message(), where, f"Try '{where} --help'.")
         print(as_json_text(Failure(BAD_USAGE, "usage", *said).document))
     return BAD_USAGE
+
+
+def _elsewhere(error: Any) -> str:
+    """Where a command takes what somebody gave by an option that it does not have."""
+    option = getattr(error, "option_name", "")
+    if option not in ("--robot", "--model", "--data") or error.ctx is None:
+        return ""
+    name = option.removeprefix("--")
+    arguments = [p for p in error.ctx.command.params if p.param_type_name == "argument"]
+    if any(name.upper() in (p.metavar or "").split("|") for p in arguments):
+        order = " ".join(str(p.metavar) for p in arguments)
+        return f" (the {name} is given without an option: {error.ctx.command_path} {order})"
+    if name == "robot":
+        return " (the robot stands in the YAML file beside the readings, as 'import' writes it)"
+    return ""
 
 
 if __name__ == "__main__":
