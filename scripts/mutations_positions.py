@@ -54,10 +54,11 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "identify/absolute/bumped.py", *tests("absolute", "bumped"),
-        creeping_taken_for_a_push=("if after > HALF * min(before, creeping):", "if after > HALF * before:"),
+        creeping_taken_for_a_push=("if after <= HALF * min(before, self._left([], creeping=[_evenly])):", "if after <= HALF * before:"),
         a_push_for_a_little=("HALF = 0.5", "HALF = 0.99"),
         a_push_where_labels_say_there_is_none=("if columns and told[cause] is None", "if columns"),
         pushes_in_the_order_of_the_file=("rows = np.arange(readings.n_readings) if clock is None else clock", "rows = np.arange(readings.n_readings)"),
+        borders_in_the_joints_taken_for_a_push=("> CLEARER * self._by_places()", "> 0.0"),
         a_place_from_the_first_row_on=("self.frame * (self.when >= cut)[:, None] for cut in cuts", "self.frame * (self.when >= 0)[:, None] for cut in cuts"),
     ),
     *of(

@@ -73,9 +73,10 @@ def fit(
         )
         readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
-        refuse_pushed(calibrated, readings, calibrated.jacobian, np.zeros(len(calibrated.x)))
+        alone = np.zeros(len(calibrated.x))
+        pushed = refuse_pushed(calibrated, readings, calibrated.jacobian, alone)
         found = with_model_form(calibrated)
-        return replace(found, notes=(*found.notes, *pounds(found)))
+        return replace(found, notes=(*pushed, *found.notes, *pounds(found)))
     if not waves:
         raise InputError(
             "only positions show waves of a gear, and these readings are displacements",

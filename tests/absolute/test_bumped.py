@@ -105,6 +105,18 @@ def test_what_creeps_is_no_push(tmp_path: Path) -> None:
     assert fit(read(tmp_path, X + 4e-4 * CLOCK * np.array([1.0, -0.5, 0.5]), A)).rms > 2.0 * SIGMA
 
 
+def test_a_push_beside_larger_errors_of_the_model_is_told_and_stops_nothing(tmp_path: Path) -> None:
+    """Waves of the second order that nothing in the model has leave more than the push does."""
+    a = poses(200, 11)
+    rough = errors(4).stands(a + 6e-4 * np.sin(3.0 * a))[0]
+    x = tracked(rough)
+    path = read(tmp_path, pushed(x, np.arange(200) >= 90), a)
+    found = fit(path)
+    said = [note for note in found.notes if "looks moved" in note]
+    assert len(said) == 1 and "The tracker looks moved between lines 91 and 92" in said[0]
+    assert not any("looks moved" in note for note in fit(read(tmp_path, x, a)).notes)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_an_arm_of_other_laws_along_a_sorted_plan_is_not_taken_for_a_push(
     seed: int, tmp_path: Path
@@ -119,4 +131,6 @@ def test_an_arm_of_other_laws_along_a_sorted_plan_is_not_taken_for_a_push(
     robot = sk.load_robot(path.with_name("six.urdf"), base="base", tool="tool")
     model = sk.base_model(robot)
     assert model is not None
-    assert sk.fit(model, sk.read(path), waves=False).rms > 1.5 * SIGMA
+    found = sk.fit(model, sk.read(path), waves=False)
+    assert found.rms > 1.5 * SIGMA
+    assert isinstance(found, Calibration) and not any("looks moved" in n for n in found.notes)

@@ -107,7 +107,7 @@ def explain_positions(
     tell("searching the catalogue", 0.2)
     seen = base
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
-    refuse_pushed(base, readings, *everything(linear))
+    pushed = refuse_pushed(base, readings, *everything(linear))
     tell("fitting exactly", 0.5)
     final = _exactly(base, seen, linear, found, readings, catalogue)
     for _ in range(ROUNDS):
@@ -131,7 +131,7 @@ def explain_positions(
             found, laws = nothing_named(linear, found), {}
             final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
     final = beside_laws(final, linear, found.order, laws)
-    final = replace(final, notes=(*final.notes, *pounds(final)))
+    final = replace(final, notes=(*pushed, *final.notes, *pounds(final)))
     noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
     named = tuple(_named(linear, found, e) for e in found.order)
     gap = linear.gap(found.order, noise, held_out=True)

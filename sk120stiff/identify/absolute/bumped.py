@@ -8,7 +8,8 @@ since poses before and behind it are alike. What creeps from row to row instead 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,7 +29,25 @@ SIDE = 6  # rows at least before and after it
 SPLITS = 400  # rows between which it is looked for first
 MOST = 4  # pushes of one campaign
 ENOUGH = 4  # times as many numbers to spare as a push would take up: fewer are fitted by anything
+WORTH = 0.05  # of the gap: a push that takes off less is not spoken of
+STURDY = 5.0  # times the odds against courses of time, since errors of a model go together
+CLEARER = 3.0  # times what a border in a joint's values takes off, which an error of a model may
 ROUNDING = 1e-10  # added to the squares of columns of length one, which may hold each other
+
+
+Course = Callable[[Array], Array]
+
+
+def _evenly(time: Array) -> Array:
+    return time
+
+
+#: Other ways in which an instrument or an arm drifts in the course of a campaign, 0 to 1.
+COURSES: tuple[Course, ...] = (
+    np.square,
+    lambda time: np.exp(-time / 0.1),
+    lambda time: np.exp(-time / 0.03),
+)
 
 
 @dataclass(frozen=True)
@@ -44,8 +63,12 @@ PUSHED = _Cause("the tracker", "station", "a frame of its own")
 SLIPPED = _Cause("the marker", "series", "a place of its own on the tool")
 
 
-def refuse_pushed(found: Fit, readings: Measurements, others: Array, prior: Array) -> None:
+def refuse_pushed(
+    found: Fit, readings: Measurements, others: Array, prior: Array
+) -> tuple[str, ...]:
     """Stop where the tracker was pushed, or its marker slipped, and the file tells nothing of it.
+
+    Where an error of the model might still be mistaken for it, a sentence says what it looks like.
 
     Args:
         found: A fit whose tracker has a frame.
@@ -58,8 +81,8 @@ def refuse_pushed(found: Fit, readings: Measurements, others: Array, prior: Arra
     """
     problem = found.problem
     if not isinstance(problem, PoseProblem) or "distance" in problem.channels.present:
-        return
-    when = _when(problem.measurements)
+        return ()
+    when, a = _when(problem.measurements), problem.measurements.joints
     frames = {
         PUSHED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, Viewpoint)],
         SLIPPED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)],
@@ -67,24 +90,33 @@ def refuse_pushed(found: Fit, readings: Measurements, others: Array, prior: Arra
     told = {PUSHED: problem.said.stations, SLIPPED: problem.said.series}
     tried = {
         cause: _Steps(
-            others, prior, found.residual, found.jacobian[:, columns], when[problem.rows]
+            others,
+            prior,
+            found.residual,
+            found.jacobian[:, columns],
+            when[problem.rows],
+            a[problem.rows],
         ).found()
         for cause, columns in frames.items()
         if columns and told[cause] is None
     }
     cause = min(tried, key=lambda each: tried[each][1], default=PUSHED)
-    cuts, share = tried.get(cause, ([], 1.0))
+    cuts, share, sure = tried.get(cause, ([], 1.0, False))
     if not cuts:
-        return
+        return ()
     order, line = np.argsort(when), problem.measurements.line
     between = [f"{line[order[k - 1]]} and {line[order[k]]}" for k in cuts]
-    raise InputError(
+    looks = (
         f"{cause.what} looks moved between lines {listed(between)}: with another place from there "
-        f"on the gap falls to {100.0 * share:.2g} % of what all else leaves",
-        where=str(readings.path or "measurements"),
-        remedy=f"Add a column {cause.column} with a label for each time between, as a and b: each "
-        f"has {cause.own} then, and the arm is one. Or one label for all, if nothing was moved.",
+        f"on the gap falls to {100.0 * share:.2g} % of what all else leaves"
     )
+    remedy = (
+        f"Add a column {cause.column} with a label for each time between, as a and b: each has "
+        f"{cause.own} then, and the arm is one. Or one label for all, if nothing was moved."
+    )
+    if sure:
+        raise InputError(looks, where=str(readings.path or "measurements"), remedy=remedy)
+    return (f"{looks[0].upper()}{looks[1:]}. {remedy}",)
 
 
 def _when(readings: Measurements) -> Index:
@@ -96,18 +128,22 @@ def _when(readings: Measurements) -> Index:
 
 @dataclass(frozen=True, eq=False)
 class _Steps:
-    """Columns (M, P), inverse variances (P,), gap (M,), columns of a place (M, f), times (M,)."""
+    """Columns (M, P), inverse variances (P,), gap (M,), columns of a place (M, f), times (M,), and
+    joint values (M, n), over which errors of a model are smooth.
+    """
 
     columns: Array
     prior: Array
     gap: Array
     frame: Array
     when: Index
+    joints: Array
 
-    def found(self) -> tuple[list[int], float]:
-        """Times at which a place changed, in order, and the share of the rms gap that they leave.
+    def found(self) -> tuple[list[int], float, bool]:
+        """Times at which a place changed, in order, the share of the rms gap that they leave, and
+        whether that is beyond doubt: half is taken off, of what evenly creeping would leave too.
 
-        None unless half is taken off, of what is left and of what evenly creeping would leave too.
+        Less is told where no border in any joint takes off nearly as much, and no course of time.
         """
         cuts = list[int]()
         most = min(MOST, int(self.freedom / (ENOUGH * self.frame.shape[1])))
@@ -120,13 +156,26 @@ class _Steps:
                 break
             cuts = less[weakest]
         if not cuts:
-            return [], 1.0
+            return [], 1.0, False
         cuts = [self._nearest(cuts, k) for k in range(len(cuts))]
         before, after = self._left([]), self._left(cuts)
-        creeping = self._left([], creeping=True)
-        if after > HALF * min(before, creeping):
-            return [], 1.0
-        return cuts, float(np.sqrt(after / before))
+        share = float(np.sqrt(after / before))
+        if after <= HALF * min(before, self._left([], creeping=[_evenly])):
+            return cuts, share, True
+        courses = self._left([], creeping=[_evenly, *COURSES])
+        told = share < 1.0 - WORTH and self._odds(courses, after) > STURDY * BEYOND_DOUBT
+        if told and before - after > CLEARER * self._by_places():
+            return cuts, share, False
+        return [], 1.0, False
+
+    def _by_places(self) -> float:
+        """Fall of the square by another place beyond the best border in any joint's values."""
+        best = 0.0
+        for values in self.joints.T:
+            ranks = np.unique(values, return_inverse=True)[1]
+            beyond = replace(self, when=ranks.astype(np.intp))
+            best = max(best, beyond.largest(beyond._beside([]), [])[0])
+        return best
 
     def _odds(self, before: float, after: float) -> float:
         """Logarithm of the odds for one time more, which leaves a square `after` of `before`."""
@@ -141,11 +190,11 @@ class _Steps:
         taken = float(np.trace(inverse @ (alone.columns.T @ alone.columns)))
         return len(self.gap) - taken
 
-    def _beside(self, cuts: list[int], *, creeping: bool = False) -> _Fitted:
+    def _beside(self, cuts: list[int], *, creeping: Sequence[Course] = ()) -> _Fitted:
         """All that may be at work and these changes, fitted."""
         known = [self.frame * (self.when >= cut)[:, None] for cut in cuts]
-        if creeping:
-            known.append(self.frame * (self.when / self.when.max())[:, None])
+        time = self.when / max(self.when.max(), 1)
+        known += [self.frame * course(time)[:, None] for course in creeping]
         A = np.concatenate([self.columns, *known], axis=1)
         prior = np.concatenate([self.prior, np.zeros(A.shape[1] - len(self.prior))])
         size = np.linalg.norm(A, axis=0)
@@ -154,7 +203,7 @@ class _Steps:
         left = self.gap - A @ linalg.cho_solve(H, A.T @ self.gap)
         return _Fitted(A, H, left, max(float(self.gap @ left), 1e-300))
 
-    def _left(self, cuts: list[int], *, creeping: bool = False) -> float:
+    def _left(self, cuts: list[int], *, creeping: Sequence[Course] = ()) -> float:
         return self._beside(cuts, creeping=creeping).square
 
     def _nearest(self, cuts: list[int], k: int) -> int:
@@ -165,7 +214,14 @@ class _Steps:
 
     def _next(self, cuts: list[int]) -> int | None:
         """The change that takes off most beside those that are known, if it is beyond doubt."""
-        end, known = int(self.when.max()) + 1, self._beside(cuts)
+        known = self._beside(cuts)
+        fall, cut = self.largest(known, cuts)
+        after = max(known.square - fall, 1e-12 * known.square)
+        return cut if self._odds(known.square, after) > BEYOND_DOUBT else None
+
+    def largest(self, known: _Fitted, cuts: list[int]) -> tuple[float, int]:
+        """The largest fall of the square by one change more, and its time."""
+        end = int(self.when.max()) + 1
         best: tuple[float, int] = 0.0, -1
         for begin, stop in zip([0, *cuts], [*cuts, end], strict=True):
             if stop - begin < 2 * SIDE:
@@ -176,8 +232,7 @@ class _Steps:
             ways = np.arange(max(near - wide, begin + SIDE), min(near + wide, stop - SIDE) + 1)
             gains = self._gains(known, ways, stop)
             best = max(best, (float(gains.max()), int(ways[int(np.argmax(gains))])))
-        after = max(known.square - best[0], 1e-12 * known.square)
-        return best[1] if self._odds(known.square, after) > BEYOND_DOUBT else None
+        return best
 
     def _gains(self, known: _Fitted, ways: Index, stop: int) -> Array:
         """(K,) fall of the square by another place from each of these times on, until `stop`."""
