@@ -117,6 +117,15 @@ def test_a_push_beside_larger_errors_of_the_model_is_told_and_stops_nothing(tmp_
     assert not any("looks moved" in note for note in fit(read(tmp_path, x, a)).notes)
 
 
+def test_what_changes_with_a_joint_is_no_push_of_poses_in_its_order(tmp_path: Path) -> None:
+    """A law that jumps where joint 2 crosses zero, along a plan that is sorted by joint 2."""
+    a = poses(200, 11)
+    a = a[np.argsort(a[:, 1])]
+    x = tracked(errors(4).stands(a + 6e-4 * np.sin(3.0 * a))[0])
+    found = fit(read(tmp_path, pushed(x, a[:, 1] > 0.0), a))
+    assert not any("looks moved" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_an_arm_of_other_laws_along_a_sorted_plan_is_not_taken_for_a_push(
     seed: int, tmp_path: Path
