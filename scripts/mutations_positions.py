@@ -53,8 +53,8 @@ OF_POSITIONS: tuple[Fault, ...] = (
         wild_rows_pull_the_tracker=("near = far <= max(FAR * float(np.median(far)), 1e-9)", "near = far <= 1e9"),
     ),
     *of(
-        "identify/absolute/bumped.py", *tests("absolute", "bumped"),
-        creeping_taken_for_a_push=("if after <= HALF * min(before, self._left([], creeping=[_evenly])):", "if after <= HALF * before:"),
+        "identify/absolute/pushed.py", *tests("absolute", "pushed"),
+        creeping_taken_for_a_push=("if after <= HALF * min(before, self._left([], creeping=[self.time])):", "if after <= HALF * before:"),
         a_push_for_a_little=("HALF = 0.5", "HALF = 0.99"),
         a_push_where_labels_say_there_is_none=("if columns and told[cause] is None", "if columns"),
         pushes_in_the_order_of_the_file=("rows = np.arange(readings.n_readings) if clock is None else clock", "rows = np.arange(readings.n_readings)"),

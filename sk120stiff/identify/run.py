@@ -9,8 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.errors import InputError, listed
-from sk120stiff.identify.absolute.bumped import refuse_pushed
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
+from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import known_calibration
 from sk120stiff.identify.estimate import fit_displacements

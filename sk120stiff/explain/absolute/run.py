@@ -40,7 +40,6 @@ from sk120stiff.explain.absolute.remainder import where_it_lives
 from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options
 from sk120stiff.identify import refuse_for_positions, refuse_plan
-from sk120stiff.identify.absolute.bumped import refuse_pushed
 from sk120stiff.identify.absolute.calibrate import (
     Calibration,
     calibrate,
@@ -48,6 +47,7 @@ from sk120stiff.identify.absolute.calibrate import (
     with_model_form,
     with_values_of,
 )
+from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.remainder import (
     LEVEL,
     chance_of_noise,

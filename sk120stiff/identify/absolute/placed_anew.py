@@ -64,6 +64,7 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
     """The model with frames of its own for these readings; None where it knows the tracker's.
 
     A frame that the model knows stays unless another leaves less than `BETTER` of the gap.
+    With a station that it does not know all stations of these readings are placed anew.
 
     Raises:
         InputError: Too few positions were read from a station that the model does not know.

@@ -8,7 +8,7 @@ since poses before and behind it are alike. What creeps from row to row instead 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,6 +18,7 @@ from scipy import linalg
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Viewpoint
 from sk120stiff.effects.geometry import ToolOffset
+from sk120stiff.effects.reading_drift import BRIEF, COURSES
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
@@ -33,21 +34,6 @@ WORTH = 0.05  # of the gap: a push that takes off less is not spoken of
 STURDY = 5.0  # times the odds against courses of time, since errors of a model go together
 CLEARER = 3.0  # times what a border in a joint's values takes off, which an error of a model may
 ROUNDING = 1e-10  # added to the squares of columns of length one, which may hold each other
-
-
-Course = Callable[[Array], Array]
-
-
-def _evenly(time: Array) -> Array:
-    return time
-
-
-#: Other ways in which an instrument or an arm drifts in the course of a campaign, 0 to 1.
-COURSES: tuple[Course, ...] = (
-    np.square,
-    lambda time: np.exp(-time / 0.1),
-    lambda time: np.exp(-time / 0.03),
-)
 
 
 @dataclass(frozen=True)
@@ -160,9 +146,10 @@ class _Steps:
         cuts = [self._nearest(cuts, k) for k in range(len(cuts))]
         before, after = self._left([]), self._left(cuts)
         share = float(np.sqrt(after / before))
-        if after <= HALF * min(before, self._left([], creeping=[_evenly])):
+        if after <= HALF * min(before, self._left([], creeping=[self.time])):
             return cuts, share, True
-        courses = self._left([], creeping=[_evenly, *COURSES])
+        fading = [np.exp(-self.time / course) for course in (BRIEF, *COURSES)]
+        courses = self._left([], creeping=[self.time, *fading])
         told = share < 1.0 - WORTH and self._odds(courses, after) > STURDY * BEYOND_DOUBT
         if told and before - after > CLEARER * self._by_places():
             return cuts, share, False
@@ -182,6 +169,11 @@ class _Steps:
         cost = 0.5 * self.frame.shape[1] * np.log(len(self.gap)) + np.log(int(self.when.max()) + 1)
         return float(0.5 * self.freedom * np.log(before / after) - cost)
 
+    @property
+    def time(self) -> Array:
+        """(M,) from 0 at the first reading to 1 at the last."""
+        return np.asarray(self.when / max(self.when.max(), 1))
+
     @cached_property
     def freedom(self) -> float:
         """Numbers beyond what all that may be at work takes up."""
@@ -190,11 +182,10 @@ class _Steps:
         taken = float(np.trace(inverse @ (alone.columns.T @ alone.columns)))
         return len(self.gap) - taken
 
-    def _beside(self, cuts: list[int], *, creeping: Sequence[Course] = ()) -> _Fitted:
+    def _beside(self, cuts: list[int], *, creeping: Sequence[Array] = ()) -> _Fitted:
         """All that may be at work and these changes, fitted."""
         known = [self.frame * (self.when >= cut)[:, None] for cut in cuts]
-        time = self.when / max(self.when.max(), 1)
-        known += [self.frame * course(time)[:, None] for course in creeping]
+        known += [self.frame * course[:, None] for course in creeping]
         A = np.concatenate([self.columns, *known], axis=1)
         prior = np.concatenate([self.prior, np.zeros(A.shape[1] - len(self.prior))])
         size = np.linalg.norm(A, axis=0)
@@ -203,7 +194,7 @@ class _Steps:
         left = self.gap - A @ linalg.cho_solve(H, A.T @ self.gap)
         return _Fitted(A, H, left, max(float(self.gap @ left), 1e-300))
 
-    def _left(self, cuts: list[int], *, creeping: Sequence[Course] = ()) -> float:
+    def _left(self, cuts: list[int], *, creeping: Sequence[Array] = ()) -> float:
         return self._beside(cuts, creeping=creeping).square
 
     def _nearest(self, cuts: list[int], k: int) -> int:
